@@ -1,0 +1,14 @@
+"""The one place that reads the clock. Intervals are monotonic, records are UTC."""
+
+import time
+from datetime import UTC, datetime
+
+
+def now_s() -> float:
+    """Monotonic time in seconds, CLOCK_MONOTONIC: the same in every process of this PC."""
+    return time.clock_gettime(time.CLOCK_MONOTONIC)
+
+
+def utc_now() -> datetime:
+    """Wall-clock time for records, with its zone."""
+    return datetime.now(UTC)

@@ -1,0 +1,31 @@
+"""Every fault of the cell, one numbered tree; one module a block of numbers.
+
+CellError
+├── ConfigError       1xx   errors.config       configuration, files, arguments
+├── LinkError         2xx   errors.link         connections to devices
+├── RobotError        3xx   errors.robot        controllers and motion
+├── VisionError       4xx   errors.vision       images, holes, part poses
+├── ForceError        5xx   errors.force        sensor, guard, mating
+├── CalibrationError  6xx   errors.calibration  calibration and its gate
+├── LineError         7xx   errors.line         line PLC and commands
+├── RecordsError      8xx   errors.records      run store and artefacts
+└── InternalError     9xx   errors.internal     cellctl itself
+"""
+
+from cellctl.errors import calibration, config, force, internal, line, link, records, robot, vision
+from cellctl.errors.base import CellError, Reaction, catalogue
+
+__all__ = [
+    "CellError",
+    "Reaction",
+    "calibration",
+    "catalogue",
+    "config",
+    "force",
+    "internal",
+    "line",
+    "link",
+    "records",
+    "robot",
+    "vision",
+]

@@ -1,0 +1,7 @@
+"""8xx: run store and artefacts."""
+
+from cellctl.errors.base import CellError
+
+
+class RecordsError(CellError):
+    """The record could not be kept."""

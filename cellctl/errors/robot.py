@@ -1,0 +1,80 @@
+"""3xx: robot controllers and motion."""
+
+from cellctl.errors.base import CellError, Reaction
+
+
+class RobotError(CellError):
+    """A robot refused, failed or was stopped."""
+
+
+class MotionRejected(RobotError):
+    """The controller refused a motion command."""
+
+    number = 301
+    text = "Robot refused a motion"
+    cause = "Target unreachable, joint limit, wrong frame or speed, or a stale command."
+    remedy = "See the controller's reason in the detail; check the target pose."
+
+
+class MotionAborted(RobotError):
+    """A running motion ended before its target."""
+
+    number = 302
+    text = "Robot stopped before reaching its target"
+    cause = "Stop requested by the guard, the operator or the controller."
+    remedy = "See the reason in the detail and the force curve if there is one."
+
+
+class RobotNotReady(RobotError):
+    """The controller cannot move now: mode, drives, e-stop or error."""
+
+    number = 303
+    text = "Robot is not ready to move"
+    cause = "Not in remote mode, drives off, emergency stop, or an active controller error."
+    remedy = "Restore the controller's state on its panel; then Clear and Reset."
+
+
+class StopFailed(RobotError):
+    """Standstill was not confirmed after a stop request."""
+
+    number = 304
+    text = "Robot did not confirm a stop"
+    cause = "Lost link or hung controller program."
+    remedy = "Use the emergency stop. Do not clear before the robot is known to stand still."
+
+
+class TargetOutOfBounds(RobotError):
+    """A target lies outside the site's motion bounds and was not sent."""
+
+    number = 305
+    text = "A motion target lies outside its bounds"
+    cause = "Wrong calibration, wrong recipe, or an implausible measurement."
+    remedy = "Check calibration and recipe; look at the measurement's pictures."
+
+
+class NotRearmed(RobotError):
+    """A motion was commanded while a stop is latched."""
+
+    number = 306
+    text = "Robot stop is latched"
+    cause = "A stop was requested and nobody has re-armed the robot since."
+    remedy = "Clear the fault; the cell re-arms the robot when it is reset."
+
+
+class ControllerFault(RobotError):
+    """The controller reports an error of its own."""
+
+    number = 307
+    text = "Robot controller reports an error"
+    cause = "See the vendor's code in the detail."
+    remedy = "Look the code up in the controller's manual and clear it there."
+
+
+class HeadMoved(RobotError):
+    """A measuring head moved between two measurements that must share a pose."""
+
+    number = 308
+    text = "A measuring robot moved between measurements"
+    cause = "Brake slip, a manual jog, or a collision."
+    remedy = "Start the run again; if it recurs check the auxiliary robot."
+    reaction = Reaction.STOP

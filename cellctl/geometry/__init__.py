@@ -1,0 +1,1 @@
+"""Poses, wrenches and their uncertainty: pure functions on arrays, SI units."""

@@ -1,0 +1,46 @@
+"""Poses as ``scipy.spatial.transform.RigidTransform`` and their written form.
+
+``a_T_b`` is the pose of frame b in frame a; ``a_T_c = a_T_b * b_T_c``. Code is in metres and
+radians. Files, PLC, reports and robot controllers write X, Y, Z in mm and A, B, C in degrees with
+R = Rz(A) Ry(B) Rx(C) (intrinsic Z-Y'-X'').
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import RigidTransform, Rotation
+
+Array = NDArray[np.float64]
+
+MM = 1e-3
+"""Metres in a millimetre."""
+
+
+def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
+    """Pose from its written form, shape (6,): X, Y, Z in mm, A, B, C in degrees."""
+    values = np.asarray(xyz_mm_abc_deg, dtype=float)
+    if values.shape != (6,) or not np.isfinite(values).all():
+        raise ValueError(f"a pose is six finite numbers, got {xyz_mm_abc_deg!r}")
+    rotation = Rotation.from_euler("ZYX", values[3:], degrees=True)
+    return RigidTransform.from_components(values[:3] * MM, rotation)
+
+
+def pose_to_xyzabc(pose: RigidTransform) -> Array:
+    """Written form of a pose, shape (6,): X, Y, Z in mm, A, B, C in degrees."""
+    abc_deg = pose.rotation.as_euler("ZYX", degrees=True)
+    return np.concatenate([pose.translation / MM, abc_deg])
+
+
+def pose_from_matrix(matrix: ArrayLike) -> RigidTransform:
+    """Pose from a 4x4 homogeneous matrix in metres; the rotation part is re-orthonormalised."""
+    return RigidTransform.from_matrix(np.asarray(matrix, dtype=float))
+
+
+def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Array, Array]:
+    """Translation (m) and rotation vector (rad) from ``expected`` to ``measured``.
+
+    Both in the axes of the parent frame of the two poses. For small angles the components are the
+    errors about x, y and z and do not depend on an Euler convention.
+    """
+    translation_m = measured.translation - expected.translation
+    rotation_rad = (measured.rotation * expected.rotation.inv()).as_rotvec()
+    return translation_m, rotation_rad

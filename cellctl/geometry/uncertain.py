@@ -1,0 +1,58 @@
+"""Poses with a covariance, and how it travels along a chain of poses.
+
+Convention for the 6x6 covariance of ``a_T_b``: order x, y, z, rx, ry, rz; the origin of b and a
+small rotation vector, both in the axes of a: ``t = t0 + dt``, ``R = Exp(dr) R0``. SI units.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True)
+class UncertainPose:
+    """A pose and its 6x6 covariance (m², m·rad, rad²) in the convention of this module."""
+
+    pose: RigidTransform
+    covariance: Array
+
+    @classmethod
+    def exact(cls, pose: RigidTransform) -> "UncertainPose":
+        """A pose that is taken as known."""
+        return cls(pose, np.zeros((6, 6)))
+
+    def __mul__(self, other: "UncertainPose") -> "UncertainPose":
+        """``a_T_c = a_T_b * b_T_c`` with independent errors."""
+        rotation = self.pose.rotation.as_matrix()
+        arm = rotation @ other.pose.translation
+        from_self = np.eye(6)
+        from_self[:3, 3:] = -skew(arm)
+        from_other = np.kron(np.eye(2), rotation)
+        covariance = (
+            from_self @ self.covariance @ from_self.T
+            + from_other @ other.covariance @ from_other.T
+        )
+        return UncertainPose(self.pose * other.pose, covariance)
+
+    def inv(self) -> "UncertainPose":
+        """``b_T_a`` from ``a_T_b``."""
+        rotation_t = self.pose.rotation.inv().as_matrix()
+        jacobian = np.zeros((6, 6))
+        jacobian[:3, :3] = -rotation_t
+        jacobian[:3, 3:] = -rotation_t @ skew(self.pose.translation)
+        jacobian[3:, 3:] = -rotation_t
+        return UncertainPose(self.pose.inv(), jacobian @ self.covariance @ jacobian.T)
+
+    @property
+    def sigma(self) -> Array:
+        """Standard deviations x, y, z (m), rx, ry, rz (rad)."""
+        return np.sqrt(np.diag(self.covariance))
+
+
+def skew(vector: Array) -> Array:
+    """Matrix of the cross product, shape (3, 3): ``skew(a) @ b == a × b``."""
+    x, y, z = vector
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])

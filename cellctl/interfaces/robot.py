@@ -1,0 +1,111 @@
+"""A robot controller that moves its flange on command and says where it is."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from enum import Enum
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+
+
+class RobotMode(Enum):
+    """Operating mode on the controller's panel."""
+
+    MANUAL = "manual"
+    AUTOMATIC = "automatic"
+    REMOTE = "remote"
+
+
+@dataclass(frozen=True, slots=True)
+class RobotState:
+    """What the controller last reported."""
+
+    time_s: float
+    """Monotonic time of receipt."""
+    base_T_flange: RigidTransform
+    joints_rad: Array
+    """Shape (6,)."""
+    mode: RobotMode
+    emergency_stop: bool
+    drives_on: bool
+    moving: bool
+    stop_latched: bool
+    error_code: int
+    """The vendor's number, 0 for none."""
+    speed_override_ratio: float
+
+    @property
+    def ready(self) -> bool:
+        """True when the controller would accept a motion now."""
+        healthy = not (self.emergency_stop or self.stop_latched or self.error_code)
+        return self.mode is RobotMode.REMOTE and self.drives_on and healthy
+
+    def distance_to(self, base_T_flange: RigidTransform) -> tuple[float, float]:
+        """Distance (m) and angle (rad) from the reported pose to another."""
+        delta = self.base_T_flange.inv() * base_T_flange
+        return float(np.linalg.norm(delta.translation)), float(delta.rotation.magnitude())
+
+
+class Robot(ABC):
+    """Called by the steps of the state machine, from the daemon's event loop only.
+
+    Connecting never moves the arm. A move returns after standstill at its target; leaving it
+    early by cancellation stops the robot first. After ``stop`` every move raises ``NotRearmed``
+    until ``rearm``. Nothing resumes by itself.
+
+    Every method may raise ``LinkLost``, ``ReplyTimeout`` or ``ProtocolViolation``; moves also
+    ``MotionRejected``, ``MotionAborted``, ``RobotNotReady``, ``NotRearmed``, ``TargetOutOfBounds``.
+    """
+
+    name: str
+    """The name in the cell file."""
+
+    @abstractmethod
+    async def connect(self) -> None:
+        """Establish the link; ``ConnectTimeout``, ``VersionMismatch`` or ``PortInUse`` if not."""
+
+    @abstractmethod
+    async def disconnect(self) -> None:
+        """Stop a running motion and drop the link. May be called in any state, twice too."""
+
+    @abstractmethod
+    def state(self, max_age_s: float = 0.25) -> RobotState:
+        """The newest report; raises ``StaleData`` when it is older than ``max_age_s``."""
+
+    @abstractmethod
+    async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
+        """Joint motion to shape (6,) at a ratio (0, 1] of the rated speed."""
+
+    @abstractmethod
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        """Straight motion of the flange to a pose in the robot base."""
+
+    @abstractmethod
+    async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
+        """A short, never blended move; the controller itself refuses more than its step limit."""
+
+    @abstractmethod
+    async def stop(self) -> None:
+        """Stop and latch; returns after standstill, else raises ``StopFailed``."""
+
+    @abstractmethod
+    async def rearm(self) -> None:
+        """Release the latch of a stop. Never moves."""
+
+    async def __aenter__(self) -> Self:
+        await self.connect()
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        await self.disconnect()
