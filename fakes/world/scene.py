@@ -1,0 +1,126 @@
+"""What a stereo head sees: the hand-over from the world to the renderer.
+
+Everything is truth, in SI units. A pose ``camera_T_x`` is given in the frame of the head, which is
+its left camera: z forward, x right, y down. Parts and boards have z pointing out of their visible
+face, towards the camera.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import RigidTransform
+
+Array = NDArray[np.float64]
+HoleKind = Literal["pin", "thread", "countersink"]
+Side = Literal["left", "right"]
+
+
+@dataclass(frozen=True, slots=True)
+class LensTruth:
+    """One camera as it really is."""
+
+    focal_px: tuple[float, float]
+    centre_px: tuple[float, float]
+    """Pixel centres lie at integers."""
+    distortion: tuple[float, float, float, float, float]
+    """k1, k2, p1, p2, k3 of the usual polynomial model, normalised coordinates."""
+    blur_px: float
+    """Standard deviation of the optical blur, before the pixel's own box."""
+    gain: float
+    """Brightness of this camera relative to nominal."""
+
+
+@dataclass(frozen=True, slots=True)
+class StereoTruth:
+    """Both cameras of a head."""
+
+    image_size_px: tuple[int, int]
+    """Width, height."""
+    left: LensTruth
+    right: LensTruth
+    right_T_left: RigidTransform
+    """``x_right = right_T_left.apply(x_left)``."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneHole:
+    """A hole as it was really made, in the frame of its part; its rim lies at z = 0."""
+
+    name: str
+    kind: HoleKind
+    position_m: tuple[float, float]
+    diameter_m: float
+    """The rim that carries the centre: pin bore, thread bore, or bore of a countersunk hole."""
+    countersink_m: float | None
+    """Diameter of the outer rim of the countersink."""
+    depth_m: float
+    """Depth of the visible wall."""
+    through: bool
+
+
+@dataclass(frozen=True, slots=True)
+class ScenePlate:
+    """Frame (on its mating face) or deck (on its outer face)."""
+
+    kind: Literal["frame", "deck"]
+    camera_T_part: RigidTransform
+    size_m: tuple[float, float]
+    holes: tuple[SceneHole, ...]
+    seed: int
+    """For texture, scratches and false circles: fixed to the part for the whole run."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneDisc:
+    """A white disc of the target board, in the plane z = 0 of the board."""
+
+    name: str
+    position_m: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class SceneTargetBoard:
+    """Dark plate with white discs; origin in its middle."""
+
+    camera_T_board: RigidTransform
+    size_m: tuple[float, float]
+    disc_diameter_m: float
+    discs: tuple[SceneDisc, ...]
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class SceneChessboard:
+    """Printed chessboard, slightly bowed; origin in the middle of the printed field.
+
+    The inner corners lie on a grid with ``square_m`` pitch, symmetric about the origin. A point
+    (x, y) of the print has the height z = bow_x (1 - (x/a)²) + bow_y (1 - (y/b)²), where a and b
+    are half the sides of the plate.
+    """
+
+    camera_T_board: RigidTransform
+    inner_corners: tuple[int, int]
+    """Along x, along y."""
+    square_m: float
+    size_m: tuple[float, float]
+    bow_m: tuple[float, float]
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class CameraScene:
+    """One exposure of one head. Objects that are absent are None; nearer ones hide farther ones."""
+
+    head: str
+    time_s: float
+    stereo: StereoTruth
+    frame: ScenePlate | None
+    deck: ScenePlate | None
+    target_board: SceneTargetBoard | None
+    chessboard: SceneChessboard | None
+    light_seed: int
+    """Direction of the light gradient; fixed for the head in one run."""
+    noise_seed: int
+    """Sensor noise; differs from exposure to exposure."""
