@@ -1,7 +1,182 @@
-"""4xx: images, holes and part poses."""
+"""4xx: images, holes and part poses.
 
-from cellctl.errors.base import CellError
+VisionError
+├── CalibrationFileInvalid, FeatureFileInvalid, ImageFileInvalid     401 402 403  inputs
+├── ImageSizeMismatch, ImageBlack, ImageSaturated, ImageBlurred      411–414      one image
+├── CamerasSwapped, CameraUpsideDown                                 415 416      the pair
+├── HoleMissing, HoleAmbiguous, TooFewHoles                          421–423      features
+├── ResidualsTooLarge, UncertaintyTooLarge                           431 432      the pose
+└── NoProgress, CorrectionDiverging, CorrectionImplausible,          441–444      compensation
+    CorrectionLimitReached
+"""
+
+from cellctl.errors.base import CellError, Reaction
 
 
 class VisionError(CellError):
     """A measurement could not be made or trusted."""
+
+
+class CalibrationFileInvalid(VisionError):
+    """A stereo calibration file cannot be used."""
+
+    number = 401
+    text = "Stereo calibration file cannot be used"
+    cause = "The file is missing, not JSON, incomplete, or holds impossible values."
+    remedy = "Make a new file with `cellctl calibrate stereo`."
+    reaction = Reaction.STOP
+
+
+class FeatureFileInvalid(VisionError):
+    """A feature file cannot be used."""
+
+    number = 402
+    text = "Feature file cannot be used"
+    cause = "The file is missing, not TOML, incomplete, or names a hole twice."
+    remedy = "Correct the file at the place named in the detail."
+    reaction = Reaction.STOP
+
+
+class ImageFileInvalid(VisionError):
+    """An image file cannot be read."""
+
+    number = 403
+    text = "Image file cannot be used"
+    cause = "The file is missing, not an image, or not 8 bit."
+    remedy = "Give an 8 bit image as the camera delivered it."
+    reaction = Reaction.STOP
+
+
+class ImageSizeMismatch(VisionError):
+    """The image has another size than the calibration."""
+
+    number = 411
+    text = "Image size does not match the calibration"
+    cause = "Calibration of another camera, or the image was cropped or scaled."
+    remedy = "Use the calibration of this head and images at full resolution."
+
+
+class ImageBlack(VisionError):
+    """The image carries no light."""
+
+    number = 412
+    text = "Image is black"
+    cause = "Lamp off, lens cap on, exposure far too short, or a camera fault."
+    remedy = "Check lamp, lens and exposure time."
+
+
+class ImageSaturated(VisionError):
+    """Large parts of the image are at full scale."""
+
+    number = 413
+    text = "Image is saturated"
+    cause = "Exposure too long, or a reflection of the lamp."
+    remedy = "Shorten the exposure or change the lamp's angle."
+
+
+class ImageBlurred(VisionError):
+    """The image has neither the sharpness nor the contrast that a measurement needs."""
+
+    number = 414
+    text = "Image is blurred or has too little contrast"
+    cause = "Out of focus, motion during exposure, dirt on the lens, or too little light."
+    remedy = "Check working distance, focus, exposure and cleanliness of the lens."
+
+
+class CamerasSwapped(VisionError):
+    """The pair fits the calibration only with left and right exchanged."""
+
+    number = 415
+    text = "Left and right images are exchanged"
+    cause = "Cameras or files given in the wrong order."
+    remedy = "Exchange the two cameras in the head's configuration, or the two files."
+
+
+class CameraUpsideDown(VisionError):
+    """The pair fits the calibration only with one image turned by 180°."""
+
+    number = 416
+    text = "One camera's image is upside down"
+    cause = "The image is turned by 180° in the camera's settings, or the camera was remounted."
+    remedy = "Restore the orientation that the head was calibrated with."
+
+
+class HoleMissing(VisionError):
+    """A named hole was not found."""
+
+    number = 421
+    text = "A hole was not found"
+    cause = "Part not in view, hole covered or damaged, wrong feature file, or bad light."
+    remedy = "Look at the picture; check part, light and feature file."
+
+
+class HoleAmbiguous(VisionError):
+    """More than one assignment of image features to holes fits."""
+
+    number = 422
+    text = "A hole cannot be told from another feature"
+    cause = "A mark of the same size near the hole, or a layout that fits in two ways."
+    remedy = "Clean the part, give a predicted pose, or choose holes with an unequal layout."
+
+
+class TooFewHoles(VisionError):
+    """Fewer than three holes that do not lie on a line."""
+
+    number = 423
+    text = "Too few holes for a pose"
+    cause = "Holes were rejected, or those left lie on a line."
+    remedy = "Look at the picture and at the residuals of the rejected holes."
+
+
+class ResidualsTooLarge(VisionError):
+    """The measured holes do not fit the drawing."""
+
+    number = 431
+    text = "Measured holes do not fit their nominal positions"
+    cause = "Wrong feature file, a wrongly detected hole, a moved head, or an outdated calibration."
+    remedy = "Look at the residuals; check feature file and head calibration."
+
+
+class UncertaintyTooLarge(VisionError):
+    """The permitted number of frames does not bring the uncertainty below its limit."""
+
+    number = 432
+    text = "Measurement is too uncertain for its threshold"
+    cause = "Noise, blur, weak contrast, or an uncertain calibration between the heads."
+    remedy = "Improve the light, allow more frames, or calibrate the heads again."
+
+
+class NoProgress(VisionError):
+    """The error stopped shrinking before it was within its threshold."""
+
+    number = 441
+    text = "Compensation makes no progress"
+    cause = "Robot does not resolve the step, friction, or an obstacle."
+    remedy = "Compare commanded and reported flange poses of the last iterations."
+
+
+class CorrectionDiverging(VisionError):
+    """The error grew after a correction."""
+
+    number = 442
+    text = "Compensation makes the error grow"
+    cause = "Wrong calibration between head and robot, a slipped deck, or a moved head."
+    remedy = "Check the grip and the base-to-head calibration before another run."
+
+
+class CorrectionImplausible(VisionError):
+    """A single correction exceeds what can be needed here."""
+
+    number = 443
+    text = "A correction is implausibly large"
+    cause = "A wrong measurement, a slipped deck, or a moved head."
+    remedy = "Look at the pictures of the last two measurements."
+
+
+class CorrectionLimitReached(VisionError):
+    """The permitted number of corrections was used up."""
+
+    number = 444
+    text = "Too many corrections without reaching the threshold"
+    cause = "Robot repeatability or measurement noise near the size of the threshold."
+    remedy = "See the error by iteration in the report; check robot and calibration."

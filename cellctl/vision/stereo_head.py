@@ -1,0 +1,150 @@
+"""A calibrated stereo head and its JSON file.
+
+The head frame is the left camera: x right, y down, z forward. Pixel centres lie at integers.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.vision import CalibrationFileInvalid
+from cellctl.geometry.pose import MM, Array
+
+CAMERA_PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
+PARAMETER_ORDER = (
+    *(f"left.{name}" for name in CAMERA_PARAMETERS),
+    *(f"right.{name}" for name in CAMERA_PARAMETERS),
+    *("rotation.x", "rotation.y", "rotation.z"),
+    *("translation.x", "translation.y", "translation.z"),
+)
+"""Order of ``StereoHead.covariance``: pixels, plain numbers, rad (R = Exp(dr) R0), m (mm in the file)."""
+
+_FILE_UNITS = np.array([1.0] * 21 + [MM] * 3)
+_ROTATION_TOLERANCE = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class CameraModel:
+    """One camera: pinhole with OpenCV's five distortion coefficients."""
+
+    camera_matrix: Array
+    """Shape (3, 3), px."""
+    distortion: Array
+    """Shape (5,): k1, k2, p1, p2, k3."""
+
+
+@dataclass(frozen=True, slots=True)
+class StereoHead:
+    """Two cameras that expose together; ``x_right = rotation @ x_left + translation_m``."""
+
+    image_size: tuple[int, int]
+    """Width, height in px."""
+    left: CameraModel
+    right: CameraModel
+    rotation: Array
+    """Shape (3, 3)."""
+    translation_m: Array
+    """Shape (3,)."""
+    rms_px: float
+    covariance: Array | None = None
+    """Shape (24, 24) in the order of ``PARAMETER_ORDER``, or None when unknown."""
+
+    @property
+    def right_T_left(self) -> RigidTransform:
+        """Pose of the left camera in the right camera."""
+        matrix = np.eye(4)
+        matrix[:3, :3] = self.rotation
+        matrix[:3, 3] = self.translation_m
+        return RigidTransform.from_matrix(matrix)
+
+
+def read_stereo_head(path: Path) -> StereoHead:
+    """Read a calibration file; raises ``CalibrationFileInvalid`` with the reason."""
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise CalibrationFileInvalid(f"{path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise CalibrationFileInvalid(f"{path} is not JSON: {error}") from error
+    try:
+        return _head_from_json(data)
+    except (KeyError, TypeError, ValueError) as error:
+        reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
+        raise CalibrationFileInvalid(f"{path}: {reason}") from error
+
+
+def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:
+    """Write a calibration file; ``extra`` adds keys such as the residuals of each view."""
+    data = {**(extra or {}), **stereo_head_to_json(head)}
+    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
+
+
+def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
+    """The head as the plain data of its file: lengths in mm."""
+    data: dict[str, Any] = {
+        "image_size": list(head.image_size),
+        "left": _camera_to_json(head.left),
+        "right": _camera_to_json(head.right),
+        "rotation": head.rotation.tolist(),
+        "translation_mm": (head.translation_m / MM).tolist(),
+        "rms_px": head.rms_px,
+        "covariance": None,
+        "covariance_order": list(PARAMETER_ORDER),
+    }
+    if head.covariance is not None:
+        scale = np.outer(_FILE_UNITS, _FILE_UNITS)
+        data["covariance"] = (head.covariance / scale).tolist()
+    return data
+
+
+def _camera_to_json(camera: CameraModel) -> dict[str, Any]:
+    return {
+        "camera_matrix": camera.camera_matrix.tolist(),
+        "distortion": camera.distortion.tolist(),
+    }
+
+
+def _head_from_json(data: Mapping[str, Any]) -> StereoHead:
+    width, height = (int(value) for value in data["image_size"])
+    if width <= 0 or height <= 0:
+        raise ValueError("image_size must be two positive numbers")
+    rotation = _array(data, "rotation", (3, 3))
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > _ROTATION_TOLERANCE:
+        raise ValueError("rotation is not a rotation matrix")
+    if np.linalg.det(rotation) < 0:
+        raise ValueError("rotation is a reflection")
+    translation_m = _array(data, "translation_mm", (3,)) * MM
+    if not np.linalg.norm(translation_m) > 0:
+        raise ValueError("translation_mm is zero: the cameras have no baseline")
+    covariance = None
+    if data.get("covariance") is not None:
+        scale = np.outer(_FILE_UNITS, _FILE_UNITS)
+        covariance = _array(data, "covariance", (24, 24)) * scale
+    return StereoHead(
+        image_size=(width, height),
+        left=_camera_from_json(data["left"]),
+        right=_camera_from_json(data["right"]),
+        rotation=rotation,
+        translation_m=translation_m,
+        rms_px=float(data.get("rms_px", np.nan)),
+        covariance=covariance,
+    )
+
+
+def _camera_from_json(data: Mapping[str, Any]) -> CameraModel:
+    matrix = _array(data, "camera_matrix", (3, 3))
+    if matrix[0, 0] <= 0 or matrix[1, 1] <= 0 or not np.array_equal(matrix[2], [0.0, 0.0, 1.0]):
+        raise ValueError("camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy")
+    return CameraModel(matrix, _array(data, "distortion", (5,)))
+
+
+def _array(data: Mapping[str, Any], key: str, shape: tuple[int, ...]) -> Array:
+    values = np.asarray(data[key], dtype=float)
+    if values.shape != shape or not np.isfinite(values).all():
+        raise ValueError(f"{key} must hold finite numbers of shape {shape}")
+    return values
