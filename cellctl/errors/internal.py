@@ -5,3 +5,30 @@ from cellctl.errors.base import CellError
 
 class InternalError(CellError):
     """A fault of the software."""
+
+
+class Unexpected(InternalError):
+    """An exception that nobody foresaw."""
+
+    number = 901
+    text = "Unexpected software fault"
+    cause = "A defect in cellctl or a driver."
+    remedy = "Keep the log and report it; Clear and Reset start the cell again."
+
+
+class WorkerDied(InternalError):
+    """A vision worker process ended."""
+
+    number = 902
+    text = "A vision worker process died"
+    cause = "Out of memory, or a defect in a native library."
+    remedy = "Restart the daemon; keep the log."
+
+
+class GuardDied(InternalError):
+    """The guard process ended or does not answer."""
+
+    number = 903
+    text = "The force guard process died"
+    cause = "Killed, out of memory, or a defect. The robot has been stopped by its dead man."
+    remedy = "Restart the daemon; keep the log."

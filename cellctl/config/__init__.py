@@ -1,0 +1,6 @@
+"""The cell file: one TOML per cell, parsed to frozen models, every error reported at once."""
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.load import Problem, load_cell, problems
+
+__all__ = ["CellConfig", "Problem", "load_cell", "problems"]

@@ -1,0 +1,18 @@
+"""What all sections of the cell file share."""
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+Millimetres = Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)]
+Degrees = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]
+WrittenPose = tuple[Millimetres, Millimetres, Millimetres, Degrees, Degrees, Degrees]
+"""X, Y, Z in mm, A, B, C in degrees; R = Rz(A) Ry(B) Rx(C)."""
+JointsDeg = tuple[Degrees, Degrees, Degrees, Degrees, Degrees, Degrees]
+
+
+class Section(BaseModel):
+    """A section: immutable, and an unknown key is an error."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+

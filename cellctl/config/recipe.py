@@ -1,0 +1,74 @@
+"""What to assemble and within which bounds (mission A2-A4)."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from cellctl.config.base import Section, WrittenPose
+
+
+class Compensation(Section):
+    """The measure-compensate loop (paper 2.3)."""
+
+    threshold_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
+    threshold_deg: Annotated[float, Field(gt=0, le=1)] = 0.005
+    max_iterations: Annotated[int, Field(ge=1, le=50)] = 10
+    max_correction_mm: Annotated[float, Field(gt=0, le=50)] = 10.0
+    max_correction_deg: Annotated[float, Field(gt=0, le=10)] = 1.5
+    frames: Annotated[int, Field(ge=1, le=50)] = 2
+    """Pairs a head takes for one measurement to begin with."""
+    max_frames: Annotated[int, Field(ge=1, le=200)] = 12
+    """Pairs after which a measurement that is still too uncertain is given up."""
+    rule: Literal["compose", "paper"] = "compose"
+    """Pose composition, or the paper's componentwise Euler accumulation for comparison."""
+    method: Literal["default", "paper"] = "default"
+    """Hole measurement: the default, or the paper's image steps for comparison."""
+
+
+class Mating(Section):
+    """Force-limited mating (paper 2.4.2, mission A4)."""
+
+    target_force_n: Annotated[float, Field(ge=5, le=200)] = 35.0
+    """F_t of the paper."""
+    limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
+    """Never to be exceeded."""
+    touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
+    release_force_n: Annotated[float, Field(ge=0, le=100)] = 15.0
+    """Left on the joint for fastening after the hold."""
+    max_lateral_force_n: Annotated[float, Field(gt=0, le=500)] = 25.0
+    max_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 25.0
+    max_past_contact_mm: Annotated[float, Field(gt=0, le=2)] = 0.5
+    contact_window_mm: Annotated[float, Field(gt=0, le=3)] = 0.3
+    """Contact earlier or later than expected by more than this is a fault."""
+    fast_speed_mm_s: Annotated[float, Field(gt=0, le=20)] = 5.0
+    acceleration_mm_s2: Annotated[float, Field(gt=0, le=200)] = 20.0
+    stop_latency_ms: Annotated[float, Field(ge=1, le=2000)]
+    """Measured on this cell by the stop-latency procedure."""
+    stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
+    """Robot and joint in series, measured on this cell."""
+    max_tries: Annotated[int, Field(ge=1, le=5)] = 3
+
+
+class Recipe(Section):
+    """One product: parts, distances, thresholds."""
+
+    id: Annotated[int, Field(ge=1, le=99)]
+    name: Annotated[str, Field(min_length=1, max_length=64)]
+    frame_features: str
+    """Feature file, relative to the cell file."""
+    deck_features: str
+    deck_thickness_mm: Annotated[float, Field(gt=0, le=200)]
+    """D1 of the paper."""
+    stand_off_mm: Annotated[float, Field(gt=0, le=100)]
+    """D2 of the paper."""
+    over_travel_mm: Annotated[float, Field(gt=0, le=100)]
+    """D3 of the paper: the hard end of travel, never a target."""
+    base_T_frame: WrittenPose
+    """Where the frame stands, roughly."""
+    flange_T_deck: WrittenPose
+    """How the deck is gripped, roughly."""
+    station_tolerance_mm: Annotated[float, Field(gt=0, le=100)] = 15.0
+    """A frame or deck measured farther than this from its nominal place is refused."""
+    station_tolerance_deg: Annotated[float, Field(gt=0, le=20)] = 3.0
+    compensation: Compensation = Compensation()
+    mating: Mating

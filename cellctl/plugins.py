@@ -1,0 +1,29 @@
+"""Drivers by name: entry points, loaded only when a cell file names them."""
+
+from importlib.metadata import entry_points
+
+from cellctl.errors.config import UnknownDriver
+
+ROBOT = "cellctl.robot"
+STOP_CHANNEL = "cellctl.stop_channel"
+CAMERA = "cellctl.camera"
+TARGET_TRACKER = "cellctl.target_tracker"
+FT_SENSOR = "cellctl.ft_sensor"
+
+
+def names(group: str) -> list[str]:
+    """Names of the installed drivers of one kind."""
+    return sorted(point.name for point in entry_points(group=group))
+
+
+def load(group: str, name: str) -> type:
+    """The driver class ``name``; raises ``UnknownDriver`` when absent or not importable."""
+    for point in entry_points(group=group, name=name):
+        try:
+            loaded = point.load()
+        except ImportError as error:
+            raise UnknownDriver(f"{group} '{name}' cannot be imported: {error}") from error
+        if not isinstance(loaded, type):
+            raise UnknownDriver(f"{group} '{name}' is not a class")
+        return loaded
+    raise UnknownDriver(f"no {group} named '{name}'; installed: {', '.join(names(group)) or 'none'}")
