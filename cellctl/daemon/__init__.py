@@ -1,0 +1,1 @@
+"""The long-running process: wires devices, state machine, line and records together."""
