@@ -1,7 +1,261 @@
-"""5xx: force sensor, guard and mating."""
+"""5xx: force sensor (50x), guard (51x), mating (52x–53x), payload and commissioning (54x)."""
 
-from cellctl.errors.base import CellError
+from collections.abc import Sequence
+
+from cellctl.errors.base import CellError, Reaction
 
 
 class ForceError(CellError):
     """Force sensing or mating left its window."""
+
+
+class SensorSilent(ForceError):
+    """No sample within the staleness limit."""
+
+    number = 501
+    text = "Force sensor has fallen silent"
+    cause = "Cable, power or network of the sensor's box, or its data stream stopped."
+    remedy = "Check the box and its link; then Clear and Reset. The cell tares again by itself."
+
+
+class SensorSaturated(ForceError):
+    """A channel is at the end of its range."""
+
+    number = 502
+    text = "Force sensor is saturated"
+    cause = "Load beyond the sensor's range, a damaged gauge, or a loose connector."
+    remedy = "Unload the sensor, inspect it for overload, and compare its zero with the sheet."
+
+
+class SensorDataInvalid(ForceError):
+    """Samples arrive but their content cannot be used."""
+
+    number = 503
+    text = "Force sensor sends unusable values"
+    cause = "Electrical noise, wrong format or firmware of the box, or a broken bridge."
+    remedy = "Check shielding and the box's configuration; see the counters in the detail."
+
+
+class SensorFrozen(ForceError):
+    """Samples arrive with new numbers but the same value."""
+
+    number = 504
+    text = "Force sensor value is frozen"
+    cause = "The box repeats its last conversion: A/D fault or a hung program."
+    remedy = "Power-cycle the box; replace it if the fault returns."
+
+
+class SensorRateWrong(ForceError):
+    """The sample rate left its tolerance."""
+
+    number = 505
+    text = "Force sensor sends at a wrong rate"
+    cause = "Rate setting of the box, network load, or lost samples."
+    remedy = "Compare the box's rate setting with the cell file; check the network."
+
+
+class SensorSetupWrong(ForceError):
+    """The box is not configured the way the cell file says."""
+
+    number = 506
+    text = "Force sensor box has an unexpected configuration"
+    cause = "Another box, a reset to factory settings, or a wrong cell file."
+    remedy = "See the setting in the detail; correct the box or the cell file."
+    reaction = Reaction.STOP
+
+
+class GuardDied(ForceError):
+    """The guard process ended or stopped answering."""
+
+    number = 510
+    text = "Force guard is not running"
+    cause = "The guard process crashed, was killed, or hangs."
+    remedy = "See the guard's log; Clear restarts it. Motion is impossible without it."
+
+
+class GuardRefused(ForceError):
+    """The guard did not accept a request."""
+
+    number = 511
+    text = "Force guard refused a request"
+    cause = "No fresh samples, no compensation, a latched trip, or limits out of range."
+    remedy = "See the guard's reason in the detail; then Clear and Reset."
+
+
+class ForceLimitExceeded(ForceError):
+    """A compensated force or moment passed its limit and the guard stopped the robot."""
+
+    number = 512
+    text = "Force limit exceeded"
+    cause = "Contact where none was expected, a wrong payload, or a robot that stopped too late."
+    remedy = "Look at the force curve in the record; inspect the parts before the next attempt."
+
+
+class FlangePoseStale(ForceError):
+    """The flange pose that gravity compensation needs is too old."""
+
+    number = 513
+    text = "Flange pose for the force guard is too old"
+    cause = "The robot's guard channel stopped sending although its connection stands."
+    remedy = "Check the background job on the robot; then Clear and Reset."
+
+
+class MatingFault(ForceError):
+    """A fault of the mating step; carries the force curve up to the fault."""
+
+    def __init__(self, detail: str = "", curve: object | None = None) -> None:
+        super().__init__(detail)
+        self.curve = curve
+        """Force curve of the attempt as the guard recorded it, or None when none was recorded."""
+
+
+class NotSettled(MatingFault):
+    """The wrench at the stand-off is not steady enough to tare."""
+
+    number = 520
+    text = "Force is not steady at the stand-off"
+    cause = "Robot still moving, vibration, swinging hoses, or a disturbed sensor."
+    remedy = "Check hoses and surroundings; the detail names the component and its scatter."
+    reaction = Reaction.STOP
+
+
+class TareImplausible(MatingFault):
+    """The residual wrench before the tare is larger than compensation can leave."""
+
+    number = 521
+    text = "Force at the stand-off is implausible before the tare"
+    cause = "Payload identification out of date, another deck, or the deck already touches."
+    remedy = "Check that the deck hangs free; identify the payload again."
+    reaction = Reaction.STOP
+
+
+class ContactEarly(MatingFault):
+    """Touch before the contact window opened."""
+
+    number = 522
+    text = "Contact came too early"
+    cause = "Something between deck and frame, a pin that catches, or a wrong measurement."
+    remedy = "Inspect the gap between deck and frame; measure both again."
+    reaction = Reaction.STOP
+
+
+class ContactLate(MatingFault):
+    """No touch although the contact window has been passed."""
+
+    number = 523
+    text = "Contact did not come where it was expected"
+    cause = "Wrong measurement or deck thickness, a shifted frame, or a force signal that is dead."
+    remedy = "Measure both parts again; check that the force sensor answers a push by hand."
+    reaction = Reaction.STOP
+
+
+class FalseSeat(MatingFault):
+    """Force without seat depth, in every attempt."""
+
+    number = 524
+    text = "Deck does not seat"
+    cause = "A pin sits on its chamfer, dirt, or a burr: force is reached above the seat."
+    remedy = "Inspect pins, holes and mating faces; then start the run again."
+    reaction = Reaction.STOP
+
+
+class LateralLoad(MatingFault):
+    """Force or moment across the mating direction beyond its bound at the seat."""
+
+    number = 525
+    text = "Side load too high while mating"
+    cause = "Pins or edges catch on one side, or the deck is tilted."
+    remedy = "See components in the detail; measure both parts again."
+    reaction = Reaction.STOP
+
+
+class CreepNotConverged(MatingFault):
+    """The target force was not reached within the steps or the travel allowed."""
+
+    number = 526
+    text = "Target force was not reached"
+    cause = "Contact softer than the plan allows, slipping fixture, or a drifting sensor."
+    remedy = "See force and travel of the steps in the record; check fixture and sensor."
+    reaction = Reaction.STOP
+
+
+class MatingOverforce(MatingFault):
+    """The force along the mating direction reached its abort limit."""
+
+    number = 527
+    text = "Mating force reached its abort limit"
+    cause = "Contact stiffer or stop slower than measured at commissioning."
+    remedy = "Inspect the parts; measure stop latency and stiffness again before the next run."
+
+
+class MatingPlanInvalid(MatingFault):
+    """The mating plan contradicts itself, the cell's limits or the robot's position."""
+
+    number = 528
+    text = "Mating plan cannot be carried out"
+    cause = "Recipe or commissioning figures that do not fit together, or a wrong start pose."
+    remedy = "See the contradiction in the detail; correct recipe or commissioning."
+    reaction = Reaction.STOP
+
+
+class MatingInterrupted(MatingFault):
+    """A device failed during mating; the first fault is its cause (``__cause__``)."""
+
+    number = 529
+    text = "Mating was interrupted by a device fault"
+    cause = "See the first fault in the detail."
+    remedy = "Remove that fault; inspect the contact before the next attempt."
+
+
+class PayloadFileInvalid(ForceError):
+    """A file of poses and wrenches cannot be read."""
+
+    number = 540
+    text = "File of poses and wrenches is invalid"
+    cause = "Missing column, text where a number belongs, or a quaternion that is none."
+    remedy = "Correct the line named in the detail; the columns are in docs/mating.md."
+    reaction = Reaction.STOP
+
+
+class TooFewPoses(ForceError):
+    """Not enough distinct poses for the unknowns."""
+
+    number = 541
+    text = "Too few poses for payload identification"
+    cause = "Fewer distinct orientations than the parameters need."
+    remedy = "Record more poses; twelve or more around the mating orientation are advised."
+    reaction = Reaction.STOP
+
+
+class PosesDegenerate(ForceError):
+    """The poses leave a parameter without excitation."""
+
+    number = 542
+    text = "Poses do not excite the payload parameters"
+    cause = "Gravity hardly moves in the sensor: turns about the vertical or one tilt axis only."
+    remedy = "Tilt about two horizontal axes of the base, 10° to 15° each way."
+    reaction = Reaction.STOP
+
+
+class PayloadRejected(ForceError):
+    """The identified payload failed its acceptance tests."""
+
+    number = 543
+    text = "Payload identification failed its acceptance"
+    cause = "Hoses that pull, a loose deck, sensor drift, or another payload than expected."
+    remedy = "See the failed checks in the detail; correct and record again."
+    reaction = Reaction.STOP
+
+    def __init__(self, failed: Sequence[str]) -> None:
+        super().__init__("; ".join(failed))
+        self.failed = tuple(failed)
+
+
+class CommissioningFailed(ForceError):
+    """Stop latency or stiffness could not be estimated from the record."""
+
+    number = 544
+    text = "Stop latency or stiffness could not be measured"
+    cause = "Too few or too similar speeds, or points that do not lie on a line."
+    remedy = "Repeat with three or more clearly different speeds."
+    reaction = Reaction.STOP
