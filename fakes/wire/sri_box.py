@@ -1,0 +1,61 @@
+"""The fake SRI interface box: one core, reached over TCP, a serial line (pty) or CAN.
+
+    box = SriBox(sample)                    # sample(time_s) -> Fx, Fy, Fz, Mx, My, Mz at a time
+    port = await box.start_tcp("127.0.0.1", 4008)
+    box.faults.inject("frozen")
+    await box.stop()
+
+Times are CLOCK_MONOTONIC. A frame is paced by that clock at the rate the client set, and carries
+the sample of its own due time even when it leaves late.
+"""
+
+import time
+from collections.abc import Callable, Sequence
+
+from fakes.wire.sri_core import SriCore
+from fakes.wire.sri_faults import SriFaults
+from fakes.wire.sri_links import Link
+from fakes.wire.sri_settings import SriSettings
+from fakes.wire.sri_tcp import TcpLink
+
+OnWrite = Callable[[bytes, float], None]
+"""Told of every write of stream data and the time just after it, for latency measurements."""
+
+
+class SriBox:
+    """A box with any number of links; everything runs in the event loop that starts them."""
+
+    def __init__(
+        self,
+        sample: Callable[[float], Sequence[float]],
+        *,
+        settings: SriSettings | None = None,
+        faults: SriFaults | None = None,
+        clock: Callable[[], float] = time.monotonic,
+        on_write: OnWrite | None = None,
+    ) -> None:
+        self.core = SriCore(sample, settings, faults)
+        self._clock = clock
+        self._on_write = on_write
+        self._links: list[Link] = []
+
+    @property
+    def faults(self) -> SriFaults:
+        """Faults to inject or clear at any time."""
+        return self.core.faults
+
+    @property
+    def settings(self) -> SriSettings:
+        """Parameters as a client has left them."""
+        return self.core.settings
+
+    async def start_tcp(self, host: str = "127.0.0.1", port: int = 0) -> int:
+        """Listen for clients; returns the port."""
+        link = TcpLink(self.core, self._clock, self._on_write)
+        self._links.append(link)
+        return await link.start(host, port)
+
+    async def stop(self) -> None:
+        """Close every link. Idempotent."""
+        while self._links:
+            await self._links.pop().stop()
