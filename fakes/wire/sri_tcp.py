@@ -74,3 +74,4 @@ class TcpLink(Link):
         finally:
             await cancel(sender)
             writer.transport.abort()
+            await asyncio.gather(writer.wait_closed(), return_exceptions=True)
