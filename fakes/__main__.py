@@ -1,0 +1,68 @@
+"""The fake cell and its helpers: ``python -m fakes run | plc | demo | taught``."""
+
+import asyncio
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fakes import scenario as scenarios
+from fakes.taught import taught as taught_poses
+
+DEFAULT_SCENARIO = Path("config/fake-cell.toml")
+ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
+
+
+@app.command()
+def taught(scenario: ScenarioOption = DEFAULT_SCENARIO) -> None:
+    """Print taught poses of the nominal cell as JSON."""
+    json.dump(taught_poses(scenarios.load(scenario)), sys.stdout, indent=2)
+    sys.stdout.write("\n")
+
+
+@app.command()
+def run(
+    scenario: ScenarioOption = DEFAULT_SCENARIO,
+    seed: Annotated[int, typer.Option(min=0, help="Reproduces the whole cell.")] = 1,
+    port: Annotated[
+        list[str] | None, typer.Option(help="NAME=PORT, as in main.CMD=7001 or control=0.")
+    ] = None,
+) -> None:
+    """Run the fake cell until SIGINT or SIGTERM."""
+    from fakes.cell import run_cell
+
+    asyncio.run(run_cell(scenarios.load(scenario), seed, dict(_port(item) for item in port or [])))
+
+
+def _port(item: str) -> tuple[str, int]:
+    name, separator, number = item.partition("=")
+    if not (separator and number.isdigit()):
+        raise typer.BadParameter(f"expected NAME=PORT, got {item!r}")
+    return name, int(number)
+
+
+_FORWARDED = {"ignore_unknown_options": True, "allow_extra_args": True, "help_option_names": []}
+
+
+@app.command(context_settings=_FORWARDED)
+def plc(context: typer.Context) -> None:
+    """Act as the line PLC; see ``plc --help``."""
+    from fakes.wire import line_plc
+
+    line_plc.app(args=context.args, prog_name="python -m fakes plc")
+
+
+@app.command(context_settings=_FORWARDED)
+def demo(context: typer.Context) -> None:
+    """Run a whole demonstration; see ``demo --help``."""
+    from fakes import demo as orchestrator
+
+    orchestrator.app(args=context.args, prog_name="python -m fakes demo")
+
+
+if __name__ == "__main__":
+    app()

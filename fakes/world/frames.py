@@ -1,0 +1,49 @@
+"""Poses of the world: the written form, small displacements, seeded random streams."""
+
+from collections.abc import Sequence
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import RigidTransform, Rotation
+
+Array = NDArray[np.float64]
+
+MM = 1e-3
+
+
+def from_written(xyz_mm_abc_deg: Sequence[float]) -> RigidTransform:
+    """Pose from x, y, z in mm and A, B, C in degrees, R = Rz(A) Ry(B) Rx(C)."""
+    x, y, z, a, b, c = xyz_mm_abc_deg
+    rotation = Rotation.from_euler("ZYX", [a, b, c], degrees=True)
+    return RigidTransform.from_components(np.array([x, y, z]) * MM, rotation)
+
+
+def to_written(pose: RigidTransform) -> list[float]:
+    """x, y, z in mm and A, B, C in degrees."""
+    abc_deg = pose.rotation.as_euler("ZYX", degrees=True)
+    return [float(value) for value in (*(pose.translation / MM), *abc_deg)]
+
+
+def displacement(translation_m: ArrayLike, rotation_rad: ArrayLike) -> RigidTransform:
+    """Small displacement: a translation and a rotation vector."""
+    return RigidTransform.from_components(
+        np.asarray(translation_m, dtype=float), Rotation.from_rotvec(rotation_rad)
+    )
+
+
+def distance(one: RigidTransform, other: RigidTransform) -> tuple[float, float]:
+    """Distance (m) and angle (rad) between two poses of one parent frame."""
+    delta = one.inv() * other
+    return float(np.linalg.norm(delta.translation)), float(delta.rotation.magnitude())
+
+
+def stream(seed: int, *names: str | int) -> np.random.Generator:
+    """A random stream of its own for every thing that is drawn, so that draws stay independent."""
+    keys = [name if isinstance(name, int) else crc32(name.encode()) for name in names]
+    return np.random.default_rng(np.random.SeedSequence([seed, *keys]))
+
+
+def stream_seed(seed: int, *names: str | int) -> int:
+    """A number for a stream that is made elsewhere, as in the renderer."""
+    return int(stream(seed, *names).integers(2**31))
