@@ -1,0 +1,27 @@
+"""`cellctl run`: the daemon."""
+
+import asyncio
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cellctl import log
+
+
+def run(
+    cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")],
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
+    ] = None,
+    modbus_port: Annotated[
+        int | None, typer.Option(help="Overrides plc.port; 0 takes any free port.")
+    ] = None,
+    log_level: Annotated[str, typer.Option(help="DEBUG, INFO, WARNING or ERROR.")] = "INFO",
+) -> None:
+    """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
+    from cellctl.daemon.app import serve
+
+    log.configure(level=log_level.upper())
+    sys.exit(asyncio.run(serve(cell_file, data_dir=data_dir, modbus_port=modbus_port)))

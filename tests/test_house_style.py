@@ -1,0 +1,81 @@
+"""The house rules that a machine can check (docs/contributing.md)."""
+
+import ast
+import statistics
+from pathlib import Path
+
+import pytest
+
+from cellctl.cli.faults import fault_catalogue
+from cellctl.errors import CellError, catalogue
+
+ROOT = Path(__file__).parent.parent
+PACKAGES = ("cellctl", "drivers", "fakes")
+SOURCES = sorted(path for name in PACKAGES for path in (ROOT / name).rglob("*.py"))
+BLOCKS = {"config": 1, "link": 2, "robot": 3, "vision": 4, "force": 5, "calibration": 6, "line": 7}
+DRIVER_FILES = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
+
+
+def lines(path: Path) -> int:
+    return len(path.read_text(encoding="utf-8").splitlines())
+
+
+def test_files_stay_small() -> None:
+    sizes = {path: lines(path) for path in SOURCES}
+    written = [size for size in sizes.values() if size > 2]
+    assert statistics.median(written) < 100
+    assert [str(path) for path, size in sizes.items() if size > 300] == []
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
+def test_every_module_says_what_it_is(path: Path) -> None:
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    assert not tree.body or ast.get_docstring(tree)
+
+
+def test_fault_numbers_are_unique_and_in_their_block() -> None:
+    faults = catalogue()
+    numbers = [fault.number for fault in faults]
+    assert len(set(numbers)) == len(numbers)
+    for fault in faults:
+        block = BLOCKS.get(fault.__module__.rsplit(".", 1)[-1])
+        assert block is None or fault.number // 100 == block, fault
+
+
+def test_every_fault_tells_the_operator_what_to_do() -> None:
+    for fault in catalogue():
+        assert fault.text, fault
+        assert fault.cause, fault
+        assert fault.remedy, fault
+        assert issubclass(fault, CellError)
+
+
+def test_the_fault_catalogue_is_current() -> None:
+    written = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
+    assert written == fault_catalogue(), "run `cellctl faults > docs/faults.md`"
+
+
+def driver_folders() -> list[Path]:
+    return sorted(path.parent for path in (ROOT / "drivers").glob("*/*/driver.py"))
+
+
+@pytest.mark.parametrize("folder", driver_folders(), ids=lambda path: path.name)
+def test_driver_folders_hold_the_same_files(folder: Path) -> None:
+    missing = DRIVER_FILES - {path.name for path in folder.iterdir()}
+    assert not missing
+
+
+@pytest.mark.parametrize("folder", driver_folders(), ids=lambda path: path.name)
+def test_driver_protocols_do_no_io(folder: Path) -> None:
+    tree = ast.parse((folder / "protocol.py").read_text(encoding="utf-8"))
+    imported = {
+        name.name.split(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import)
+        for name in node.names
+    } | {
+        (node.module or "").split(".")[0]
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ImportFrom)
+    }
+    assert not imported & {"asyncio", "socket", "serial", "can", "select", "threading"}

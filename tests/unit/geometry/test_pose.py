@@ -1,0 +1,88 @@
+"""Written poses, errors and the propagation of covariances."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.uncertain import UncertainPose, skew
+from cellctl.geometry.wrench import Wrench
+
+mm = st.floats(-5000, 5000)
+angle = st.floats(-179, 179)
+tilt = st.floats(-89, 89)
+
+
+@given(mm, mm, mm, angle, tilt, angle)
+def test_written_form_round_trips(x: float, y: float, z: float, a: float, b: float, c: float):
+    written = [x, y, z, a, b, c]
+    assert pose_to_xyzabc(pose_from_xyzabc(written)) == pytest.approx(written, abs=1e-6)
+
+
+def test_a_turns_about_z_then_b_about_the_new_y():
+    pose = pose_from_xyzabc([0, 0, 0, 90, 90, 0])
+    assert pose.apply([1, 0, 0]) == pytest.approx([0, 0, -1], abs=1e-12)
+
+
+@pytest.mark.parametrize("bad", [[1, 2, 3], [0, 0, 0, 0, 0, float("nan")]])
+def test_a_pose_is_six_finite_numbers(bad: list[float]):
+    with pytest.raises(ValueError, match="six finite numbers"):
+        pose_from_xyzabc(bad)
+
+
+def test_pose_error_is_in_the_parent_axes():
+    expected = pose_from_xyzabc([100, 0, 0, 90, 0, 0])
+    turn = RigidTransform.from_rotation(Rotation.from_rotvec([0.01, 0, 0]))
+    measured = RigidTransform.from_translation([0.001, 0, 0]) * turn * expected
+    shift, rotation = pose_error(expected, measured)
+    assert shift == pytest.approx([0.001, 0, 0], abs=1e-9)
+    assert rotation == pytest.approx([0.01, 0, 0])
+
+
+def perturbed(pose: RigidTransform, delta: np.ndarray) -> RigidTransform:
+    return RigidTransform.from_components(
+        pose.translation + delta[:3], Rotation.from_rotvec(delta[3:]) * pose.rotation
+    )
+
+
+def scatter(nominal: RigidTransform, drawn: list[RigidTransform]) -> np.ndarray:
+    return np.cov(np.array([np.concatenate(pose_error(nominal, pose)) for pose in drawn]).T)
+
+
+def test_covariances_of_products_and_inverses_match_the_scatter():
+    rng = np.random.default_rng(7)
+    first = pose_from_xyzabc([300, -200, 500, 30, 20, -60])
+    second = pose_from_xyzabc([-100, 400, 900, -70, 10, 40])
+    sigma = np.array([1e-5, 2e-5, 3e-5, 1e-5, 4e-5, 2e-5])
+    covariance = np.diag(sigma**2)
+    chain = UncertainPose(first, covariance) * UncertainPose(second, covariance)
+    inverse = UncertainPose(first, covariance).inv()
+    deltas = rng.normal(size=(4000, 2, 6)) * sigma
+    products = [perturbed(first, a) * perturbed(second, b) for a, b in deltas]
+    inverses = [perturbed(first, a).inv() for a, _ in deltas]
+    for expected, nominal, drawn in (
+        (chain.covariance, chain.pose, products),
+        (inverse.covariance, inverse.pose, inverses),
+    ):
+        scale = np.sqrt(np.outer(np.diag(expected), np.diag(expected)))
+        assert np.abs(scatter(nominal, drawn) - expected).max() < 0.1 * scale.max()
+        assert np.diag(scatter(nominal, drawn)) / np.diag(expected) == pytest.approx(1, abs=0.12)
+
+
+def test_skew_is_the_cross_product():
+    a, b = np.array([1.0, -2.0, 3.0]), np.array([0.5, 4.0, -1.0])
+    assert skew(a) @ b == pytest.approx(np.cross(a, b))
+
+
+def test_a_wrench_keeps_its_power_in_any_frame():
+    rng = np.random.default_rng(1)
+    wrench = Wrench.from_vector(rng.normal(size=6))
+    b_T_a = pose_from_xyzabc([120, -340, 560, 20, -50, 75])
+    velocity_a, rate_a = rng.normal(size=3), rng.normal(size=3)
+    rate_b = b_T_a.rotation.apply(rate_a)
+    velocity_b = b_T_a.rotation.apply(velocity_a) - np.cross(rate_b, b_T_a.translation)
+    moved = wrench.in_frame(b_T_a)
+    before = wrench.force_n @ velocity_a + wrench.torque_n_m @ rate_a
+    assert moved.force_n @ velocity_b + moved.torque_n_m @ rate_b == pytest.approx(before)
