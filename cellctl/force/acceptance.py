@@ -1,0 +1,88 @@
+"""Is an identified payload good enough to guard a mating? One line a test, none hidden."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from cellctl.force.compensation import Compensation
+from cellctl.force.payload import PayloadIdentification
+from cellctl.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True)
+class PayloadLimits:
+    """Limits of the acceptance; defaults for 200 kg below a 5 kN sensor."""
+
+    drift_n: float = 2.0
+    hold_out_n: float = 5.0
+    hold_out_n_m: float = 2.0
+    mass_ratio: float = 0.02
+    inclination_rad: float = float(np.deg2rad(0.5))
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One test of an acceptance; ``value`` and ``limit`` in ``unit``."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+
+    @property
+    def passed(self) -> bool:
+        """True when the value is finite and within the limit."""
+        return bool(np.isfinite(self.value) and abs(self.value) <= self.limit)
+
+    def __str__(self) -> str:
+        sign = "≤" if self.passed else ">"
+        return f"{self.name} {self.value:.3g} {self.unit} {sign} {self.limit:.3g} {self.unit}"
+
+
+def hold_out_checks(
+    compensation: Compensation, base_R_sensor: Rotation, wrenches: Array, limits: PayloadLimits
+) -> tuple[Check, Check]:
+    """Greatest |F| and |T| that compensation leaves at poses that were not used in the fit."""
+    left = compensation.apply(wrenches, base_R_sensor)
+    force_n = float(np.linalg.norm(left[:, :3], axis=1).max())
+    torque_n_m = float(np.linalg.norm(left[:, 3:], axis=1).max())
+    return (
+        Check("hold-out force", force_n, limits.hold_out_n, "N"),
+        Check("hold-out torque", torque_n_m, limits.hold_out_n_m, "N·m"),
+    )
+
+
+def left_out_checks(
+    identification: PayloadIdentification, limits: PayloadLimits
+) -> tuple[Check, Check]:
+    """The same from leave-one-out residuals, where no hold-out poses were recorded."""
+    left = identification.affine.left_out
+    force_n = float(np.linalg.norm(left[:, :3], axis=1).max())
+    torque_n_m = float(np.linalg.norm(left[:, 3:], axis=1).max())
+    return (
+        Check("left-out force", force_n, limits.hold_out_n, "N"),
+        Check("left-out torque", torque_n_m, limits.hold_out_n_m, "N·m"),
+    )
+
+
+def drift_check(first: Array, repeated: Array, limits: PayloadLimits) -> Check:
+    """Change of force between the first pose and its repetition at the end, shape (6,) each."""
+    drift_n = float(np.linalg.norm(repeated[:3] - first[:3]))
+    return Check("drift of the repeated pose", drift_n, limits.drift_n, "N")
+
+
+def rigid_checks(
+    identification: PayloadIdentification, expected_mass_kg: float | None, limits: PayloadLimits
+) -> tuple[Check, ...]:
+    """Mass against CAD, where it is known, and the inclination of the base."""
+    rigid = identification.rigid
+    checks = [
+        Check(f"inclination {name}", float(np.rad2deg(value)), limit_deg, "°")
+        for name, value in (("U", rigid.inclination_u_rad), ("V", rigid.inclination_v_rad))
+        for limit_deg in (float(np.rad2deg(limits.inclination_rad)),)
+    ]
+    if expected_mass_kg is not None:
+        error_percent = 100.0 * (rigid.mass_kg / expected_mass_kg - 1.0)
+        checks.insert(0, Check("mass against CAD", error_percent, 100.0 * limits.mass_ratio, "%"))
+    return tuple(checks)

@@ -1,0 +1,198 @@
+"""How fast, from where and how far to move towards a contact: all derived, nothing guessed.
+
+Force grows with ``k·v`` once deck and frame touch. Until the arm stands, that is ``T`` later, it
+grows by ``k·v·T``; the speed follows from how much growth the limits leave.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.force import MatingPlanInvalid
+from cellctl.force.detectors import Cusum
+
+
+@dataclass(frozen=True, slots=True)
+class ApproachFigures:
+    """What the speed depends on: measured at commissioning or stated by the recipe."""
+
+    stop_latency_s: float
+    """From the stop request on the wire to standstill at low speed, upper bound."""
+    robot_stiffness_n_m: float
+    """Arm, sensor and gripper in series, along the approach, upper bound."""
+    contact_stiffness_n_m: float
+    """Deck on frame, upper bound."""
+    moving_mass_kg: float
+    """What hangs behind the arm's compliance and meets the contact."""
+    deceleration_m_s2: float
+    stale_s: float
+    """Age of a sample at which the guard stops: the worst delay of a reading."""
+    filter_delay_s: float
+    """Delay of detector input behind the true force beyond the detector's own."""
+    sample_period_s: float
+    touch: Cusum
+    tare_uncertainty_n: float
+    """What tare, drift and pose may leave on the force reading."""
+
+    @property
+    def stiffness_n_m(self) -> float:
+        """Arm and contact in series: what force grows with when the arm moves on."""
+        return series(self.robot_stiffness_n_m, self.contact_stiffness_n_m)
+
+    @property
+    def delay_s(self) -> float:
+        """From a force at the contact to standstill, without the detector's own delay."""
+        return self.stop_latency_s + self.stale_s + self.filter_delay_s
+
+
+@dataclass(frozen=True, slots=True)
+class ApproachSpeed:
+    """The speed and every term of the formula at that speed, for the record."""
+
+    speed_m_s: float
+    peak_n: float
+    """Predicted worst peak: the sum of the terms below."""
+    touch_n: float
+    """Force when the detector alarms."""
+    latency_n: float
+    """k·v·T while the stop is under way."""
+    ramp_n: float
+    """k·v²/2a while the arm slows down."""
+    impact_n: float
+    """v·sqrt(k_c·m), the moving mass against the contact."""
+    tare_n: float
+    figures: ApproachFigures
+
+    FORMULA = "F_peak = h(k v) + k v T + k v^2/(2 a) + v sqrt(k_c m) + F_tare"
+
+
+def series(first_n_m: float, second_n_m: float) -> float:
+    """Stiffness of two springs in series."""
+    return first_n_m * second_n_m / (first_n_m + second_n_m)
+
+
+def peak_at(speed_m_s: float, figures: ApproachFigures) -> ApproachSpeed:
+    """Predicted worst peak of the contact force when touched at a speed."""
+    stiffness = figures.stiffness_n_m
+    touch_n = figures.touch.force_at_alarm(stiffness * speed_m_s, figures.sample_period_s)
+    latency_n = stiffness * speed_m_s * figures.delay_s
+    ramp_n = stiffness * speed_m_s**2 / (2.0 * figures.deceleration_m_s2)
+    impact_n = speed_m_s * float(np.sqrt(figures.contact_stiffness_n_m * figures.moving_mass_kg))
+    tare_n = figures.tare_uncertainty_n
+    peak_n = touch_n + latency_n + ramp_n + impact_n + tare_n
+    return ApproachSpeed(speed_m_s, peak_n, touch_n, latency_n, ramp_n, impact_n, tare_n, figures)
+
+
+def approach_speed(
+    figures: ApproachFigures, *, allowed_peak_n: float, greatest_m_s: float = 1e-3
+) -> ApproachSpeed:
+    """The greatest speed whose predicted peak stays below ``allowed_peak_n``.
+
+    Raises ``MatingPlanInvalid`` when even the slowest approach would exceed it.
+    """
+    slowest = 1e-7
+    if peak_at(slowest, figures).peak_n >= allowed_peak_n:
+        raise MatingPlanInvalid(
+            f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
+            f"tare alone take {peak_at(slowest, figures).peak_n:.1f} N"
+        )
+    if peak_at(greatest_m_s, figures).peak_n <= allowed_peak_n:
+        return peak_at(greatest_m_s, figures)
+    speed = brentq(
+        lambda v: peak_at(v, figures).peak_n - allowed_peak_n, slowest, greatest_m_s, rtol=1e-6
+    )
+    return peak_at(float(speed), figures)
+
+
+def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
+    """Longest single move (m) that cannot exceed ``limit_n`` even if no stop is ever obeyed.
+
+    Each move starts with the force read at standstill below the detector's drift level, so it can
+    add no more than k times its length.
+    """
+    spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
+    if spare_n <= 0.0:
+        raise MatingPlanInvalid(f"no force is left below {limit_n:.1f} N for a single move")
+    return spare_n / figures.stiffness_n_m
+
+
+@dataclass(frozen=True, slots=True)
+class ContactWindow:
+    """Where contact is expected, as travel from the stand-off along the approach (m)."""
+
+    expected_m: float
+    earliest_m: float
+    latest_m: float
+    """Also the greatest travel that may be commanded before contact."""
+    clear_m: float
+    """Travel up to which contact is excluded: fast motion ends here."""
+
+
+def contact_window(
+    expected_m: float,
+    *,
+    sigma_m: float,
+    coverage: float = 4.0,
+    margin_m: float,
+    greatest_past_m: float,
+) -> ContactWindow:
+    """Window of ±coverage·sigma plus ``margin_m`` around the expected contact.
+
+    ``sigma_m`` joins all sources (see ``contact_sigma``); ``margin_m`` is what the arm may overrun
+    at the end of the fast travel. Raises ``MatingPlanInvalid`` when the window asks for a target
+    further past the expected contact than ``greatest_past_m``, or reaches back to the stand-off.
+    """
+    half_m = coverage * sigma_m
+    if half_m > greatest_past_m:
+        raise MatingPlanInvalid(
+            f"contact is known to ±{half_m * 1e3:.3f} mm ({coverage:g} sigma) only, targets may "
+            f"lie {greatest_past_m * 1e3:.3f} mm past it at most"
+        )
+    clear_m = expected_m - half_m - margin_m
+    if clear_m <= 0.0:
+        raise MatingPlanInvalid(
+            f"expected contact after {expected_m * 1e3:.3f} mm leaves no clear travel before its "
+            f"window of ±{half_m * 1e3:.3f} mm"
+        )
+    return ContactWindow(expected_m, expected_m - half_m, expected_m + half_m, clear_m)
+
+
+def contact_sigma(*sigmas_m: float) -> float:
+    """Independent standard deviations of the contact position joined (m)."""
+    return float(np.sqrt(sum(sigma**2 for sigma in sigmas_m)))
+
+
+def seated_pose_limit(
+    M_T_D: RigidTransform, d1_m: float, d2_m: float, d3_m: float
+) -> RigidTransform:
+    """Paper eq. 17: the deck pose at the end of all travel, Z_K = Z_N − D1 − D2 − D3.
+
+    Here it is the hard end that no command may reach, never a target: it lies 25 mm past contact
+    when the deck frame is on the outer face (docs/decisions/0001).
+    """
+    target = M_T_D.translation - np.array([0.0, 0.0, d1_m + d2_m + d3_m])
+    return RigidTransform.from_components(target, M_T_D.rotation)
+
+
+def flange_for_deck(
+    base_T_C1: RigidTransform,
+    C1_T_M: RigidTransform,
+    M_T_D: RigidTransform,
+    flange_T_deck: RigidTransform,
+) -> RigidTransform:
+    """Paper eq. 18 (as eq. 7): B_T_F = B_T_C1 · C1_T_M · M_T_D · (F_T_D)^-1."""
+    return base_T_C1 * C1_T_M * M_T_D * flange_T_deck.inv()
+
+
+def advance(
+    base_T_flange: RigidTransform, flange_T_deck: RigidTransform, travel_m: float
+) -> RigidTransform:
+    """The flange after the deck has moved by ``travel_m`` along −Z_D, orientation unchanged.
+
+    Eq. 18 for a pure translation from the present pose: needs no camera in the chain, so the
+    travel is as good as the arm's relative accuracy.
+    """
+    along = (base_T_flange * flange_T_deck).rotation.apply([0.0, 0.0, -travel_m])
+    return RigidTransform.from_translation(along) * base_T_flange

@@ -1,0 +1,88 @@
+"""Gravity compensation of a six-axis sensor: what the hanging load contributes, and taking it off.
+
+A wrench reads ``y = A u + b`` where ``u`` is the unit vector of gravity in sensor axes. The affine
+form absorbs gain, cross-talk and mounting errors around the orientation it was identified at.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.wrench import Wrench
+
+GRAVITY_M_S2 = 9.80665
+"""Standard gravity; a site may use its own value."""
+
+BASE_DOWN: tuple[float, float, float] = (0.0, 0.0, -1.0)
+"""Direction of gravity in a robot base that stands level, unit vector."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compensation:
+    """The wrench of the unmoving load as a function of the sensor's orientation."""
+
+    A: Array
+    """Shape (6, 3): N and N·m for a unit vector of gravity in sensor axes."""
+    b: Array
+    """Shape (6,): offset in N and N·m."""
+    method: str
+    """``affine24`` or ``rigid12``."""
+    residual_n: float = 0.0
+    """Root mean square of the force residuals of the identification, a component."""
+    residual_n_m: float = 0.0
+    """The same for the torques."""
+
+    def __post_init__(self) -> None:
+        if self.A.shape != (6, 3) or self.b.shape != (6,):
+            raise ValueError(f"A is (6, 3) and b (6,), got {self.A.shape} and {self.b.shape}")
+
+    def load(self, base_R_sensor: Rotation) -> Array:
+        """Wrench of the load at one orientation, shape (6,), or at n, shape (n, 6)."""
+        return gravity_in_sensor(base_R_sensor) @ self.A.T + self.b
+
+    def apply(self, wrench: Array, base_R_sensor: Rotation) -> Array:
+        """Contact wrench in sensor axes, shape (6,) or (n, 6): reading less load."""
+        return np.asarray(wrench - self.load(base_R_sensor))
+
+
+def gravity_in_sensor(
+    base_R_sensor: Rotation, base_down: tuple[float, float, float] = BASE_DOWN
+) -> Array:
+    """Unit vector of gravity in sensor axes, shape (3,) for one rotation, (n, 3) for n."""
+    return np.asarray(base_R_sensor.inv().apply(base_down), dtype=float)
+
+
+@dataclass(frozen=True, slots=True)
+class RigidLoad:
+    """Mass properties that inertial correction needs, in sensor axes about its origin."""
+
+    mass_kg: float
+    centre_of_mass_m: Array
+    """Shape (3,)."""
+    inertia_kg_m2: Array
+    """Shape (3, 3), about the origin of the sensor."""
+
+
+def inertial_wrench(
+    load: RigidLoad,
+    acceleration_m_s2: Array,
+    angular_acceleration_rad_s2: Array,
+    angular_velocity_rad_s: Array,
+) -> Wrench:
+    """What a moving load adds to the reading beyond gravity (inertial correction).
+
+    All motion arguments have shape (3,), are of the sensor's origin and in sensor axes, without
+    gravity. Sign as in ``Wrench``: the load lags behind, so it pulls against the acceleration.
+    """
+    centre = load.centre_of_mass_m
+    swirl = np.cross(angular_velocity_rad_s, np.cross(angular_velocity_rad_s, centre))
+    centre_acceleration = acceleration_m_s2 + np.cross(angular_acceleration_rad_s2, centre) + swirl
+    spin = load.inertia_kg_m2 @ angular_velocity_rad_s
+    torque_n_m = (
+        load.mass_kg * np.cross(centre, acceleration_m_s2)
+        + load.inertia_kg_m2 @ angular_acceleration_rad_s2
+        + np.cross(angular_velocity_rad_s, spin)
+    )
+    return Wrench(-load.mass_kg * centre_acceleration, -torque_n_m)

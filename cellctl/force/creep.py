@@ -1,0 +1,103 @@
+"""Creep to the target force: admittance in small moves, force read at standstill.
+
+Law: ``M dv/dt + S v = F_ref − F`` along the approach. A move over the line protocol takes effect
+once per period T (dead time, move, settling, reading), far longer than the arm's own dynamics, so
+each step starts and ends at rest and sees a spring: ``F(x + d) = F(x) + k d``. Taking the contact
+force of the *next* instant into the law (backward Euler, implicit in F as well as in v) gives
+
+    d = T (F_ref − F) / (S + M/T + T k_hat)
+
+Stability: the error e = F_ref − F obeys e' = (1 − T k/(S + M/T + T k_hat)) e. It shrinks without
+changing sign when ``k ≤ k_hat + S/T + M/T²``, and is stable up to twice that; explicit Euler has
+no k_hat in the denominator and needs S > T k/2. With k_hat an upper bound of the stiffness the
+force never overshoots, whatever T is. k_hat then falls towards what the steps have shown plus a
+margin, by no more than half a step, and rises at once.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True)
+class CreepLaw:
+    """Constants of one creep."""
+
+    reference_n: float
+    """F_ref: the middle of the window the force must end in."""
+    done_low_n: float
+    done_high_n: float
+    damping_n_s_m: float
+    """S."""
+    mass_kg: float
+    """M, virtual."""
+    period_s: float
+    """T: the time one step takes altogether."""
+    stiffness_n_m: float
+    """Upper bound of arm and contact in series: the first k_hat."""
+    greatest_step_m: float
+    smallest_step_m: float
+    """Below this a step tells less than its noise; also the controller's resolution."""
+    force_sigma_n: float
+    """Standard deviation of a reading at standstill."""
+    greatest_rise_n: float
+    """No step may be expected to raise the force by more than this."""
+    stiffness_margin_ratio: float = 1.25
+    """k_hat stays this much above the stiffness that the steps have shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class CreepState:
+    """What the creep knows after the steps so far."""
+
+    stiffness_n_m: float
+    """k_hat."""
+    force_n: float
+    travel_m: float
+    steps: int = 0
+
+
+def begin(law: CreepLaw, force_n: float, travel_m: float) -> CreepState:
+    """State at first contact."""
+    return CreepState(law.stiffness_n_m, force_n, travel_m)
+
+
+def done(law: CreepLaw, state: CreepState) -> bool:
+    """True when the force lies in the window."""
+    return law.done_low_n <= state.force_n <= law.done_high_n
+
+
+def next_step(law: CreepLaw, state: CreepState) -> float:
+    """Length of the next move (m), positive towards the frame, bounded."""
+    error_n = law.reference_n - state.force_n
+    resistance = law.damping_n_s_m + law.mass_kg / law.period_s
+    step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
+    bound_m = min(law.greatest_step_m, law.greatest_rise_n / state.stiffness_n_m)
+    step_m = float(np.clip(step_m, -bound_m, bound_m))
+    if abs(step_m) < law.smallest_step_m:
+        step_m = float(np.copysign(law.smallest_step_m, error_n))
+    return step_m
+
+
+def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float) -> CreepState:
+    """State after a step was driven and the force read again at standstill.
+
+    The stiffness is corrected from the step when it moved the force by clearly more than noise:
+    upwards at once, downwards by at most half a step.
+    """
+    stiffness = state.stiffness_n_m
+    moved_m, rose_n = travel_m - state.travel_m, force_n - state.force_n
+    noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
+    if abs(moved_m) >= 0.5 * law.smallest_step_m:
+        # The noise of the readings counts as stiffness: luck must not make the next step bold.
+        shown = law.stiffness_margin_ratio * abs(rose_n) / abs(moved_m)
+        cautious = shown + law.stiffness_margin_ratio * noise_n / abs(moved_m)
+        ceiling = max(law.stiffness_n_m, shown)
+        stiffness = min(max(cautious, 0.5 * stiffness), ceiling)
+    return replace(
+        state,
+        stiffness_n_m=float(stiffness),
+        force_n=force_n,
+        travel_m=travel_m,
+        steps=state.steps + 1,
+    )
