@@ -1,7 +1,182 @@
-"""6xx: calibration and its gate."""
+"""6xx: calibration and its gate.
 
-from cellctl.errors.base import CellError
+CalibrationError
+├── BoardNotFound, WrongBoard, TooFewViews, MixedImageSizes          601–604  what the images show
+├── CalibrationCamerasSwapped, CalibrationCameraUpsideDown,
+│   PairsInconsistent                                                605–607  how the pairs fit
+├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
+├── AxisMotionInvalid                                                621      base frame
+├── BoardPoseInvalid                                                 622      board transfer
+├── PosesNotDiverse, RobotCameraMismatch                             623 624  hand-eye, tool
+└── CalibrationRecordInvalid, CalibrationMissing, CalibrationExpired 631–633  stored results
+"""
+
+from cellctl.errors.base import CellError, Reaction
 
 
 class CalibrationError(CellError):
     """A calibration failed or may not be used."""
+
+    reaction = Reaction.STOP
+
+
+class BoardNotFound(CalibrationError):
+    """No image pair shows the calibration board whole and sharp."""
+
+    number = 601
+    text = "Calibration board was not found"
+    cause = "Board not in view, partly covered, out of focus, or too dark."
+    remedy = "Look at the images named in the detail; the whole chessboard must be visible."
+
+
+class WrongBoard(CalibrationError):
+    """The images show a board with another number of corners."""
+
+    number = 602
+    text = "The board in the images is not the one described"
+    cause = "Another board was used, or the number of inner corners was given wrongly."
+    remedy = "Count inner corners, not squares: 10 x 7 squares have 9 x 6 inner corners."
+
+
+class TooFewViews(CalibrationError):
+    """Not enough usable views for a solution."""
+
+    number = 603
+    text = "Too few usable views"
+    cause = "Too few images were taken, or the board was not found in most of them."
+    remedy = "Take at least 20 views, near and far, tilted about both axes, up to all corners."
+
+
+class MixedImageSizes(CalibrationError):
+    """The images of one calibration differ in size."""
+
+    number = 604
+    text = "Images differ in size"
+    cause = "Images of different cameras or resolutions were mixed, or one was cropped."
+    remedy = "Use images at full resolution from this head only."
+
+
+class CalibrationCamerasSwapped(CalibrationError):
+    """The solution puts the right camera left of the left one."""
+
+    number = 605
+    text = "Left and right images are exchanged"
+    cause = "The two cameras or the two groups of files were given in the wrong order."
+    remedy = "Exchange left and right."
+
+
+class CalibrationCameraUpsideDown(CalibrationError):
+    """One camera sees the board turned by about 180° against the other."""
+
+    number = 606
+    text = "One camera's image is upside down"
+    cause = "The image is turned by 180° in the camera's settings, or the camera was remounted."
+    remedy = "Give both cameras the same orientation and take the images again."
+
+
+class PairsInconsistent(CalibrationError):
+    """The pairs imply different poses of the right camera to the left one."""
+
+    number = 607
+    text = "Left and right images do not belong together"
+    cause = "Pairs are mixed up, the board moved between two exposures, or a camera is loose."
+    remedy = "Check that both groups of files have the same order; take the images again."
+
+
+class PoorCoverage(CalibrationError):
+    """The views leave too much of the image, or of the needed directions, unseen."""
+
+    number = 611
+    text = "Views do not cover what the calibration needs"
+    cause = "The board was always at the same place in the image or always at the same tilt."
+    remedy = "Add views at the image borders and with tilts of 15–30° about both board axes."
+
+
+class IllConditioned(CalibrationError):
+    """The data determine some parameter not at all."""
+
+    number = 612
+    text = "The data do not determine the result"
+    cause = "Motions or positions that are too small, too similar, or all in one direction."
+    remedy = "See the detail for what is missing; take additional data."
+
+
+class SolveFailed(CalibrationError):
+    """The adjustment did not converge."""
+
+    number = 613
+    text = "The adjustment did not converge"
+    cause = "Gross errors in the data, or data that belong to another setup."
+    remedy = "Look at the residuals; remove wrong data or take it again."
+
+
+class ResultOutOfLimits(CalibrationError):
+    """A calibration was solved, but a figure of it is beyond its limit."""
+
+    number = 614
+    text = "Calibration result is out of its limits"
+    cause = "Noise, movement, a damaged board, or too little data."
+    remedy = "See the figures in the detail and the picture; repeat the calibration."
+
+
+class AxisMotionInvalid(CalibrationError):
+    """The stops of an axis are not a turn of that axis alone."""
+
+    number = 621
+    text = "Recorded stops are not a turn of one robot axis"
+    cause = "Another axis moved too, targets were confused, or too few stops were taken."
+    remedy = "Turn one axis alone, by at least 90°, and keep the targets in view."
+
+
+class BoardPoseInvalid(CalibrationError):
+    """Measured discs do not fit the drawing of the target board."""
+
+    number = 622
+    text = "Measured target board does not fit its drawing"
+    cause = "Too few discs in view, wrong names, another board, or it moved while measured."
+    remedy = "Look at the residuals of the discs; check board, light and view."
+
+
+class PosesNotDiverse(CalibrationError):
+    """Robot poses are too few or too alike."""
+
+    number = 623
+    text = "Robot poses are too few or too similar"
+    cause = "Hand-eye and tool calibrations need turns about at least two directions."
+    remedy = "Add poses that turn the flange by 20–60° about different axes."
+
+
+class RobotCameraMismatch(CalibrationError):
+    """Robot and camera report motions that cannot belong together."""
+
+    number = 624
+    text = "Robot and camera motions do not fit each other"
+    cause = "Wrong setup (eye-in-hand or eye-to-hand), wrong angle convention, or mixed-up poses."
+    remedy = "Check the setup, the pose convention and the order of the poses."
+
+
+class CalibrationRecordInvalid(CalibrationError):
+    """A stored calibration cannot be read or was altered."""
+
+    number = 631
+    text = "Stored calibration cannot be used"
+    cause = "The file is missing, incomplete, or its content does not match its identity."
+    remedy = "Calibrate again in Maintenance mode; never edit these files."
+
+
+class CalibrationMissing(CalibrationError):
+    """A calibration that production needs is not in the set."""
+
+    number = 632
+    text = "A needed calibration is missing"
+    cause = "It was never made for this cell, or its result was not accepted."
+    remedy = "Run the calibration named in the detail in Maintenance mode."
+
+
+class CalibrationExpired(CalibrationError):
+    """A calibration is past its date or was invalidated."""
+
+    number = 633
+    text = "A needed calibration is no longer valid"
+    cause = "Its validity has ended, or an event such as a collision invalidated it."
+    remedy = "Run the calibration named in the detail in Maintenance mode."

@@ -1,0 +1,73 @@
+"""Figures of a calibration against their limits."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from cellctl.errors.calibration import ResultOutOfLimits
+
+Side = Literal["max", "min"]
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """One figure and what it may be at most or must be at least, in the unit of reports."""
+
+    name: str
+    value: float
+    limit: float
+    unit: str
+    side: Side = "max"
+
+    @property
+    def passed(self) -> bool:
+        """False also for a value that is not a number."""
+        return self.value <= self.limit if self.side == "max" else self.value >= self.limit
+
+    def __str__(self) -> str:
+        relation = "≤" if self.side == "max" else "≥"
+        mark = "ok" if self.passed else "OUT OF LIMIT"
+        return f"{self.name} {self.value:.4g} {self.unit} ({relation} {self.limit:.4g}): {mark}"
+
+    def to_record(self) -> dict[str, Any]:
+        """Plain data for the store."""
+        return {
+            "name": self.name,
+            "value": self.value,
+            "limit": self.limit,
+            "unit": self.unit,
+            "side": self.side,
+            "passed": self.passed,
+        }
+
+    @classmethod
+    def from_record(cls, record: Mapping[str, Any]) -> "Check":
+        """The inverse of ``to_record``."""
+        side: Side = "min" if record["side"] == "min" else "max"
+        value, limit = float(record["value"]), float(record["limit"])
+        return cls(str(record["name"]), value, limit, str(record["unit"]), side)
+
+
+Checks = tuple[Check, ...]
+
+
+def all_passed(checks: Iterable[Check]) -> bool:
+    """The verdict."""
+    return all(check.passed for check in checks)
+
+
+def require_passed(checks: Sequence[Check]) -> None:
+    """Raise ``ResultOutOfLimits`` with every figure that is beyond its limit."""
+    failed = [str(check) for check in checks if not check.passed]
+    if failed:
+        raise ResultOutOfLimits("; ".join(failed))
+
+
+def checks_to_record(checks: Checks) -> list[dict[str, Any]]:
+    """Plain data for the store."""
+    return [check.to_record() for check in checks]
+
+
+def checks_from_record(records: Sequence[Mapping[str, Any]]) -> Checks:
+    """The inverse of ``checks_to_record``."""
+    return tuple(Check.from_record(record) for record in records)

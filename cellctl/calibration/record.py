@@ -1,0 +1,57 @@
+"""Poses with covariance as the plain data of files and the store: mm and degrees."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+
+_WRITTEN_UNITS = np.array([MM] * 3 + [np.pi / 180] * 3)
+
+
+def pose_to_record(pose: UncertainPose) -> dict[str, Any]:
+    """Matrix in mm, written form, and covariance (x, y, z, rx, ry, rz) in mm and degrees."""
+    matrix_mm = pose.pose.as_matrix()
+    matrix_mm[:3, 3] /= MM
+    return {
+        "matrix_mm": matrix_mm.tolist(),
+        "xyz_abc_mm_deg": pose_to_xyzabc(pose.pose).tolist(),
+        "covariance_mm_deg": covariance_to_written(pose.covariance).tolist(),
+    }
+
+
+def pose_from_record(record: Mapping[str, Any]) -> UncertainPose:
+    """The inverse of ``pose_to_record``; raises ``ValueError`` or ``KeyError``."""
+    pose = matrix_mm_to_pose(record["matrix_mm"])
+    covariance = np.asarray(record["covariance_mm_deg"], dtype=float)
+    if covariance.shape != (6, 6):
+        raise ValueError(f"a pose covariance is 6 x 6, got {covariance.shape}")
+    return UncertainPose(pose, covariance_from_written(covariance))
+
+
+def covariance_to_written(covariance: Array) -> Array:
+    """From m, rad to mm, degrees."""
+    return covariance / np.outer(_WRITTEN_UNITS, _WRITTEN_UNITS)
+
+
+def covariance_from_written(covariance: Array) -> Array:
+    """From mm, degrees to m, rad."""
+    return covariance * np.outer(_WRITTEN_UNITS, _WRITTEN_UNITS)
+
+
+def matrix_mm_to_pose(values: Any) -> RigidTransform:
+    """A 4x4 matrix in mm, or X, Y, Z, A, B, C in mm and degrees; raises ``ValueError``."""
+    array = np.asarray(values, dtype=float)
+    if array.shape == (6,):
+        return pose_from_xyzabc(array)
+    if array.shape != (4, 4) or not np.isfinite(array).all():
+        raise ValueError("a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C")
+    rotation = array[:3, :3]
+    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0:
+        raise ValueError("the rotation part of a pose is not a rotation")
+    matrix = array.copy()
+    matrix[:3, 3] *= MM
+    return RigidTransform.from_matrix(matrix)
