@@ -32,3 +32,12 @@ class GuardDied(InternalError):
     text = "The force guard process died"
     cause = "Killed, out of memory, or a defect. The robot has been stopped by its dead man."
     remedy = "Restart the daemon; keep the log."
+
+
+class StateDidNotEnd(InternalError):
+    """A cancelled state coroutine did not clean up in time."""
+
+    number = 904
+    text = "A cancelled sequence did not end in time"
+    cause = "A device call hangs while it is being stopped, or a defect."
+    remedy = "Use the emergency stop if anything moves; restart the daemon and keep the log."

@@ -1,0 +1,118 @@
+"""What runs while the unit is in a state: one task, started on entry, cancelled on leaving."""
+
+import asyncio
+from collections.abc import Awaitable, Callable, Mapping
+from functools import partial
+
+from cellctl.errors.internal import StateDidNotEnd
+from cellctl.packml.state import State
+from cellctl.packml.tables import WHEN_DONE
+
+Action = Callable[[], Awaitable[None]]
+Task = asyncio.Task[None]
+
+_PAUSE = frozenset({State.HOLDING, State.SUSPENDING})
+_PAUSED = _PAUSE | {State.HELD, State.UNHOLDING, State.SUSPENDED, State.UNSUSPENDING}
+
+
+class Activities:
+    """Runs the coroutine of the present state.
+
+    Execute is parked, not cancelled, when it pauses at a safe point, and goes on after Unholding
+    or Unsuspending. A cancelled coroutine gets ``leave_timeout_s`` to clean up; the next state
+    waits for it, except Aborting, which acts at once and waits afterwards.
+    """
+
+    def __init__(
+        self,
+        actions: Mapping[State, Action],
+        on_end: Callable[[Task, BaseException | None], None],
+        leave_timeout_s: float,
+    ) -> None:
+        unknown = set(actions) - set(WHEN_DONE)
+        if unknown:
+            raise ValueError(f"these states only wait: {sorted(state.name for state in unknown)}")
+        self._actions = dict(actions)
+        self._on_end = on_end
+        self._leave_timeout_s = leave_timeout_s
+        self._task: Task | None = None
+        self._parked: Task | None = None
+        self._leaving: list[Task] = []
+        self._resumed = asyncio.Event()
+
+    def is_current(self, task: Task) -> bool:
+        """True while the state that started the task has not been left."""
+        return task is self._task
+
+    def follow(self, previous: State, state: State) -> None:
+        """Leave one state and enter another."""
+        task, self._task = self._task, None
+        if task is not None and not task.done():
+            if previous is State.EXECUTE and state in _PAUSE:
+                self._parked = task
+                self._resumed.clear()
+            else:
+                self._leave(task)
+        if state is State.EXECUTE and self._parked is not None:
+            self._task, self._parked = self._parked, None
+            self._resumed.set()
+            return
+        if self._parked is not None and state not in _PAUSED:
+            self._leave(self._parked)
+            self._parked = None
+        if state in WHEN_DONE:
+            self._start(state)
+
+    async def resumed(self) -> None:
+        """Wait, parked, until Execute goes on."""
+        await self._resumed.wait()
+
+    async def close(self) -> None:
+        """Cancel everything and wait for it."""
+        current = [task for task in (self._task, self._parked) if task is not None]
+        self._task = self._parked = None
+        for task in current:
+            self._leave(task)
+        if self._leaving:
+            await asyncio.wait(self._leaving, timeout=self._leave_timeout_s)
+
+    def _start(self, state: State) -> None:
+        task = asyncio.create_task(self._run(state), name=state.name)
+        task.add_done_callback(self._ended)
+        self._task = task
+
+    def _leave(self, task: Task) -> None:
+        task.cancel(msg="state left")
+        self._leaving.append(task)
+
+    async def _run(self, state: State) -> None:
+        settle = partial(self._settle, tuple(self._leaving))
+        if state is not State.ABORTING:
+            await settle()
+        try:
+            if state in self._actions:
+                await self._actions[state]()
+        finally:
+            if state is State.ABORTING:
+                await settle()
+
+    async def _settle(self, left: tuple[Task, ...]) -> None:
+        """Wait until left coroutines have ended; raises what went wrong in their clean-up."""
+        if not left:
+            return
+        _, pending = await asyncio.wait(left, timeout=self._leave_timeout_s)
+        self._leaving = [task for task in self._leaving if task not in left or task in pending]
+        if pending:
+            names = ", ".join(sorted(task.get_name() for task in pending))
+            raise StateDidNotEnd(
+                f"{names} still runs {self._leave_timeout_s:g} s after it was left"
+            )
+        for task in left:
+            error = None if task.cancelled() else task.exception()
+            if error is not None:
+                raise error
+
+    def _ended(self, task: Task) -> None:
+        error = asyncio.CancelledError() if task.cancelled() else task.exception()
+        if self.is_current(task):
+            self._on_end(task, error)
