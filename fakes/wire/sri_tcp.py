@@ -72,6 +72,6 @@ class TcpLink(Link):
         except ConnectionError:
             writer.transport.abort()
         finally:
-            await cancel(sender)
             writer.transport.abort()
+            await cancel(sender)
             await asyncio.gather(writer.wait_closed(), return_exceptions=True)
