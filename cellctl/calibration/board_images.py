@@ -1,0 +1,178 @@
+"""Corners of a calibration board in images, and the wrong images that give none."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from cellctl.calibration.board import BoardView, CalibrationBoard, Charuco, Corners
+from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
+from cellctl.errors.vision import ImageBlack, ImageSaturated
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.stereo_camera import Image
+
+_SEARCH_PX = 1000
+"""Longer side of the image in which a chessboard is searched first."""
+_WINDOW_PX = 5
+"""Half window of the corner refinement: larger ones meet lens distortion and board edges."""
+_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
+_MIN_CHARUCO = 12
+_BLACK_LEVEL = 16
+_FULL_LEVEL = 254
+_FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class ImagePair:
+    """Two images of one exposure and the name they are reported by."""
+
+    name: str
+    left: Image
+    right: Image
+
+
+@dataclass(frozen=True, slots=True)
+class DetectedViews:
+    """Views of one calibration."""
+
+    views: tuple[BoardView, ...]
+    not_found: tuple[str, ...]
+    """Pairs in which at least one camera does not see the board."""
+    image_size: tuple[int, int]
+
+
+def detect_views(pairs: Sequence[ImagePair], board: CalibrationBoard) -> DetectedViews:
+    """Find the board in all pairs.
+
+    Raises ``MixedImageSizes``, ``ImageBlack``, ``ImageSaturated``, ``WrongBoard``,
+    ``BoardNotFound`` or ``TooFewViews``.
+    """
+    if not pairs:
+        raise TooFewViews("no image pairs were given")
+    image_size = _common_size(pairs)
+    views, missing = [], []
+    for pair in pairs:
+        view = detect_view(pair, board)
+        if view is None:
+            missing.append(pair.name)
+        else:
+            views.append(view)
+    if not views:
+        _raise_not_found(pairs[0], board)
+    return DetectedViews(tuple(views), tuple(missing), image_size)
+
+
+def detect_view(pair: ImagePair, board: CalibrationBoard) -> BoardView | None:
+    """The board in one pair, or None; raises ``ImageBlack`` or ``ImageSaturated``."""
+    corners = []
+    for side, image in (("left", pair.left), ("right", pair.right)):
+        found = detect_corners(image, board)
+        _check_exposure(f"{pair.name} {side}", image, board_found=found is not None)
+        corners.append(found)
+    left, right = corners
+    if left is None or right is None:
+        return None
+    return BoardView(pair.name, left, right)
+
+
+def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
+    """Corners of the board in one image, or None."""
+    if board.charuco is not None:
+        return _detect_charuco(image, board, board.charuco)
+    scale = max(1.0, max(image.shape) / _SEARCH_PX)
+    found = _search(image, (board.columns, board.rows), scale)
+    if found is None and scale > 1:
+        found = _search(image, (board.columns, board.rows), 1.0)
+    if found is None:
+        return None
+    pixels = _refine(image, found)
+    if not _first_cell_is_dark(image, pixels, board) and not board.symmetric:
+        pixels = pixels[::-1]
+    return Corners(np.arange(len(pixels)), np.ascontiguousarray(pixels))
+
+
+def _search(image: Image, size: tuple[int, int], scale: float, flags: int = 0) -> Array | None:
+    shape = (round(image.shape[1] / scale), round(image.shape[0] / scale))
+    small = cv2.resize(image, shape, interpolation=cv2.INTER_AREA) if scale > 1 else image
+    flags |= cv2.CALIB_CB_NORMALIZE_IMAGE
+    is_found, corners = cv2.findChessboardCornersSB(small, size, flags=flags)
+    if not is_found:
+        return None
+    ratio = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
+    return np.asarray((corners.reshape(-1, 2) + 0.5) * ratio - 0.5, dtype=float)
+
+
+def _refine(image: Image, pixels: Array) -> Array:
+    window = (_WINDOW_PX, _WINDOW_PX)
+    start = pixels.astype(np.float32).reshape(-1, 1, 2)
+    refined = cv2.cornerSubPix(image, start, window, (-1, -1), _CRITERIA)
+    return np.asarray(refined, dtype=float).reshape(-1, 2)
+
+
+def _first_cell_is_dark(image: Image, pixels: Array, board: CalibrationBoard) -> bool:
+    """Whether the square between the first four corners is darker than its neighbours."""
+    grid = pixels.reshape(board.rows, board.columns, 2)
+    middles = (grid[:-1, :-1] + grid[1:, 1:] + grid[:-1, 1:] + grid[1:, :-1]) / 4
+    columns, rows = np.rint(middles).astype(int).transpose(2, 0, 1)
+    values = image[
+        np.clip(rows, 0, image.shape[0] - 1), np.clip(columns, 0, image.shape[1] - 1)
+    ].astype(float)
+    parity = np.add.outer(np.arange(values.shape[0]), np.arange(values.shape[1])) % 2
+    return bool(values[parity == 0].mean() < values[parity == 1].mean())
+
+
+def _detect_charuco(image: Image, board: CalibrationBoard, charuco: Charuco) -> Corners | None:
+    dictionary_id = getattr(cv2.aruco, f"DICT_{charuco.dictionary}", None)
+    if not isinstance(dictionary_id, int):
+        raise WrongBoard(f"there is no marker dictionary {charuco.dictionary!r}")
+    size = (board.columns + 1, board.rows + 1)
+    dictionary = cv2.aruco.getPredefinedDictionary(dictionary_id)
+    pattern = cv2.aruco.CharucoBoard(size, board.square_m, charuco.marker_m, dictionary)
+    found, ids, _, _ = cv2.aruco.CharucoDetector(pattern).detectBoard(image)
+    if ids is None or len(ids) < _MIN_CHARUCO:
+        return None
+    order = np.argsort(np.ravel(ids))
+    pixels = _refine(image, np.asarray(found, dtype=float).reshape(-1, 2)[order])
+    return Corners(np.ravel(ids)[order].astype(np.int64), pixels)
+
+
+def _common_size(pairs: Sequence[ImagePair]) -> tuple[int, int]:
+    sizes: dict[tuple[int, int], str] = {}
+    for pair in pairs:
+        for side, image in (("left", pair.left), ("right", pair.right)):
+            sizes.setdefault((image.shape[1], image.shape[0]), f"{pair.name} {side}")
+    if len(sizes) > 1:
+        raise MixedImageSizes("; ".join(f"{w} x {h} ({n})" for (w, h), n in sizes.items()))
+    return next(iter(sizes))
+
+
+def _check_exposure(name: str, image: Image, *, board_found: bool) -> None:
+    if float(np.percentile(image, 99.9)) < _BLACK_LEVEL:
+        raise ImageBlack(f"{name}: 99.9 % of the pixels are below level {_BLACK_LEVEL}")
+    full = float((image >= _FULL_LEVEL).mean())
+    if full > (_FULL_ALWAYS if board_found else _FULL_SUSPECT):
+        raise ImageSaturated(f"{name}: {full:.0%} of the pixels are at full scale")
+
+
+def _raise_not_found(pair: ImagePair, board: CalibrationBoard) -> None:
+    """Say what is there instead of the board, if that can be told."""
+    seen = _other_board(pair.left, board)
+    if seen is not None:
+        raise WrongBoard(f"{pair.name} shows {seen}, not the {board}")
+    raise BoardNotFound(f"no pair shows the {board}; first pair: {pair.name}")
+
+
+def _other_board(image: Image, board: CalibrationBoard) -> str | None:
+    scale = max(1.0, max(image.shape) / _SEARCH_PX)
+    shape = (round(image.shape[1] / scale), round(image.shape[0] / scale))
+    small = cv2.resize(image, shape, interpolation=cv2.INTER_AREA) if scale > 1 else image
+    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
+    if board.charuco is None:
+        is_found, _, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags=flags)
+        if is_found and meta is not None:
+            return f"a chessboard with about {meta.shape[1]} x {meta.shape[0]} inner corners"
+        return None
+    plain = replace(board, charuco=None)
+    found = _search(image, (plain.columns, plain.rows), scale)
+    return None if found is None else f"the chessboard {plain} without markers"
