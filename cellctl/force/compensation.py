@@ -33,6 +33,8 @@ class Compensation:
     """Root mean square of the force residuals of the identification, a component."""
     residual_n_m: float = 0.0
     """The same for the torques."""
+    base_down: tuple[float, float, float] = BASE_DOWN
+    """Direction of gravity in the base that the fit used, unit vector."""
 
     def __post_init__(self) -> None:
         if self.A.shape != (6, 3) or self.b.shape != (6,):
@@ -40,7 +42,7 @@ class Compensation:
 
     def load(self, base_R_sensor: Rotation) -> Array:
         """Wrench of the load at one orientation, shape (6,), or at n, shape (n, 6)."""
-        return gravity_in_sensor(base_R_sensor) @ self.A.T + self.b
+        return gravity_in_sensor(base_R_sensor, self.base_down) @ self.A.T + self.b
 
     def apply(self, wrench: Array, base_R_sensor: Rotation) -> Array:
         """Contact wrench in sensor axes, shape (6,) or (n, 6): reading less load."""

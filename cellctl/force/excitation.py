@@ -15,6 +15,9 @@ MIN_POSES = {"rigid12": 4, "affine24": 6}
 MIN_TILT_RAD = np.deg2rad(3.0)
 """Root-mean-square tilt below which a direction counts as not excited."""
 
+WIDE_TILT_RAD = np.deg2rad(20.0)
+"""Root-mean-square tilt above which gravity's direction is told apart from cross-talk."""
+
 SAME_DIRECTION_RAD = np.deg2rad(0.5)
 """Poses whose gravity directions differ by less count once."""
 
@@ -32,6 +35,11 @@ class Excitation:
     condition_rigid12: float
     """Condition number of the force equation of rigid12."""
     condition_affine24: float
+
+    @property
+    def wide(self) -> bool:
+        """True when the poses range so wide that the direction of gravity is well determined."""
+        return bool(self.tilt_rad[1] > WIDE_TILT_RAD)
 
 
 def excitation(base_R_sensor: Rotation) -> Excitation:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cellctl.force.compensation import GRAVITY_M_S2, Compensation, gravity_in_sensor
+from cellctl.force.compensation import BASE_DOWN, GRAVITY_M_S2, Compensation, gravity_in_sensor
 from cellctl.force.excitation import Excitation, require_excitation
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
@@ -35,11 +35,17 @@ class Rigid12:
     residual: Array
     """Shape (n, 6), N and N·m."""
 
+    @property
+    def base_down(self) -> tuple[float, float, float]:
+        """Direction of gravity in the base as identified, unit vector."""
+        down = self.weight_n / np.linalg.norm(self.weight_n)
+        x, y, z = map(float, -down if self.reads_reaction else down)
+        return x, y, z
+
     def compensation(self) -> Compensation:
-        """The same model in the affine form, for comparison; assumes gravity along base −z."""
-        weight = np.linalg.norm(self.weight_n)
+        """The same model in the affine form, for comparison."""
         sign = -1.0 if self.reads_reaction else 1.0
-        force = sign * weight * np.eye(3)
+        force = sign * float(np.linalg.norm(self.weight_n)) * np.eye(3)
         torque = skew(self.centre_of_mass_m) @ force
         force_rms, torque_rms = rms_residuals(self.residual)
         return Compensation(
@@ -48,6 +54,7 @@ class Rigid12:
             "rigid12",
             force_rms,
             torque_rms,
+            self.base_down,
         )
 
 
@@ -77,15 +84,15 @@ def identify_payload(
 ) -> PayloadIdentification:
     """Fit rigid12 and affine24 to n still poses; wrenches in sensor axes, shape (n, 6).
 
-    Raises ``TooFewPoses`` or ``PosesDegenerate`` with the reason.
+    In a cone the affine form absorbs a base that is not quite level. Poses that range wide tell
+    the direction of gravity well and need it: there it is taken from rigid12. Raises
+    ``TooFewPoses`` or ``PosesDegenerate`` with the reason.
     """
     found = require_excitation(base_R_sensor, "affine24")
-    return PayloadIdentification(
-        rigid=fit_rigid12(base_R_sensor, wrenches, gravity_m_s2),
-        affine=fit_affine24(base_R_sensor, wrenches),
-        excitation=found,
-        poses=len(wrenches),
-    )
+    rigid = fit_rigid12(base_R_sensor, wrenches, gravity_m_s2)
+    down = rigid.base_down if found.wide else BASE_DOWN
+    affine = fit_affine24(base_R_sensor, wrenches, down)
+    return PayloadIdentification(rigid, affine, found, len(wrenches))
 
 
 def fit_rigid12(
@@ -126,15 +133,24 @@ def fit_rigid12(
     )
 
 
-def fit_affine24(base_R_sensor: Rotation, wrenches: Array) -> Affine24:
+def fit_affine24(
+    base_R_sensor: Rotation,
+    wrenches: Array,
+    base_down: tuple[float, float, float] = BASE_DOWN,
+) -> Affine24:
     """Linear fit of ``y = A u + b`` with u the unit vector of gravity in sensor axes."""
     require_excitation(base_R_sensor, "affine24")
-    design = np.column_stack([gravity_in_sensor(base_R_sensor), np.ones(len(wrenches))])
+    design = np.column_stack([gravity_in_sensor(base_R_sensor, base_down), np.ones(len(wrenches))])
     solution, *_ = np.linalg.lstsq(design, wrenches)
     residual = wrenches - design @ solution
     force_rms, torque_rms = rms_residuals(residual)
     model = Compensation(
-        np.ascontiguousarray(solution[:3].T), solution[3], "affine24", force_rms, torque_rms
+        np.ascontiguousarray(solution[:3].T),
+        solution[3],
+        "affine24",
+        force_rms,
+        torque_rms,
+        base_down,
     )
     leverage = np.einsum("ij,ji->i", design, np.linalg.pinv(design))
     free = np.clip(1.0 - leverage, 1e-6, None)

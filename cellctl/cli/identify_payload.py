@@ -1,0 +1,91 @@
+"""`cellctl identify-payload`: the payload from a file of still poses and wrenches."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from cellctl.errors.force import PayloadFileInvalid
+from cellctl.force.pose_file import parse_pose_file
+from cellctl.geometry.pose import MM
+from cellctl.procedures.payload_picture import residual_picture
+from cellctl.procedures.payload_result import PayloadResult, evaluate_payload, payload_document
+
+NOT_ACCEPTED = 3
+"""Exit code when the payload was identified but failed its acceptance."""
+
+
+def identify_payload(
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="CSV with qx,qy,qz,qw of base_T_sensor and fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm; "
+            "optional column role: fit, hold-out or repeat."
+        ),
+    ],
+    out: Annotated[Path | None, typer.Option(help="Write the result to this JSON file.")] = None,
+    picture: Annotated[Path | None, typer.Option(help="Write the residuals as PNG.")] = None,
+    mass_kg: Annotated[float | None, typer.Option(help="Mass that CAD says, to compare.")] = None,
+) -> None:
+    """Identify mass, centre of mass, offsets and gravity compensation from still poses.
+
+    Exit code 3 when the result fails its acceptance; it is written all the same.
+    """
+    result = evaluate_payload(parse_pose_file(_read(file)), expected_mass_kg=mass_kg)
+    _show(result, Console(soft_wrap=True, highlight=False))
+    if out is not None:
+        _write(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
+    if picture is not None:
+        _write(picture, residual_picture(result))
+    if not result.accepted:
+        raise typer.Exit(NOT_ACCEPTED)
+
+
+def _read(file: Path) -> str:
+    try:
+        return file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise PayloadFileInvalid(f"{file}: {error}") from error
+
+
+def _write(file: Path, content: bytes) -> None:
+    try:
+        file.write_bytes(content)
+    except OSError as error:
+        raise PayloadFileInvalid(f"cannot write {file}: {error}") from error
+
+
+def _show(result: PayloadResult, console: Console) -> None:
+    rigid, affine = result.identification.rigid, result.identification.affine
+    excitation = result.identification.excitation
+    table = Table("quantity", "value", show_header=False, title="Payload")
+    centre = ", ".join(f"{value / MM:.2f}" for value in rigid.centre_of_mass_m)
+    table.add_row("poses used", str(result.identification.poses))
+    table.add_row("mass", f"{rigid.mass_kg:.3f} kg")
+    table.add_row("centre of mass", f"({centre}) mm")
+    table.add_row("force offset", _numbers(rigid.force_offset_n) + " N")
+    table.add_row("torque offset", _numbers(rigid.torque_offset_n_m) + " N·m")
+    inclinations = np.rad2deg([rigid.inclination_u_rad, rigid.inclination_v_rad])
+    table.add_row("inclination U, V", f"{inclinations[0]:.3f}°, {inclinations[1]:.3f}°")
+    model = affine.compensation
+    table.add_row(
+        "affine24 residual rms", f"{model.residual_n:.3f} N, {model.residual_n_m:.3f} N·m"
+    )
+    table.add_row(
+        "condition rigid12, affine24",
+        f"{excitation.condition_rigid12:.1f}, {excitation.condition_affine24:.1f}",
+    )
+    console.print(table)
+    if rigid.reads_reaction:
+        console.print("note: weight points up in this file, so it states reactions, not loads")
+    for check in result.checks:
+        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
+    console.print("accepted" if result.accepted else "NOT accepted")
+
+
+def _numbers(values: object) -> str:
+    return "(" + ", ".join(f"{value:.3f}" for value in np.asarray(values)) + ")"

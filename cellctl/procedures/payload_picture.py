@@ -1,0 +1,38 @@
+"""The residuals of a payload identification as a picture."""
+
+import io
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cellctl.geometry.pose import Array
+from cellctl.procedures.payload_result import PayloadResult
+
+
+def residual_picture(result: PayloadResult) -> bytes:
+    """PNG: forces above, torques below; bars of both models, dots for left-out predictions."""
+    rigid, affine = result.identification.rigid, result.identification.affine
+    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+    rows = figure.subplots(2, 3, sharex=True, sharey="row")
+    for index, name in enumerate(("Fx", "Fy", "Fz", "Mx", "My", "Mz")):
+        axes = rows[index // 3][index % 3]
+        _bars(axes, rigid.residual[:, index], affine.residual[:, index])
+        poses = np.arange(1, len(affine.left_out) + 1)
+        axes.plot(poses, affine.left_out[:, index], "k.", label="affine24, pose left out")
+        axes.set_title(f"{name} / {'N' if index < 3 else 'N·m'}")
+        axes.axhline(0.0, color="0.5", linewidth=0.8)
+    for axes in rows[1]:
+        axes.set_xlabel("pose")
+    rows[0][0].legend(fontsize="small")
+    verdict = "accepted" if result.accepted else "NOT accepted"
+    figure.suptitle(f"Payload {rigid.mass_kg:.2f} kg, {len(affine.residual)} poses, {verdict}")
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=110)
+    return buffer.getvalue()
+
+
+def _bars(axes: Axes, rigid: Array, affine: Array) -> None:
+    poses = np.arange(1, len(rigid) + 1)
+    axes.bar(poses - 0.2, rigid, width=0.4, color="tab:orange", label="rigid12")
+    axes.bar(poses + 0.2, affine, width=0.4, color="tab:blue", label="affine24")
