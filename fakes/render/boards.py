@@ -1,0 +1,67 @@
+"""Calibration boards: white discs, chessboard, ChArUco; bowed where they are."""
+
+import numpy as np
+
+from fakes.render.canvas import Image, Patch
+from fakes.render.coverage import coverage
+from fakes.render.faces import draw_face
+from fakes.render.lattice import (
+    NODES_FULL,
+    Height,
+    Window,
+    surface_map,
+    to_pixels,
+    window_around,
+)
+from fakes.render.lens import View
+from fakes.render.model import SceneCharucoBoard
+from fakes.render.options import RenderOptions
+from fakes.render.prints import charuco_print, chessboard_print, print_grey
+from fakes.world.scene import SceneChessboard, SceneTargetBoard
+
+
+def draw_target_board(
+    view: View, image: Image, board: SceneTargetBoard, options: RenderOptions
+) -> None:
+    """Dark plate with white discs."""
+    x, y = surface_map(view, board.camera_T_board, Window.full(view), nodes=NODES_FULL)
+    draw_face(image, x, y, board.size_m, options.black_grey)
+    radius_m = board.disc_diameter_m / 2
+    angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
+    rim = radius_m * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(48)])
+    for disc in board.discs:
+        middle = np.array([*disc.position_m, 0.0])
+        pixels = to_pixels(view, board.camera_T_board, rim + middle)
+        window = window_around(view, pixels, 3, options.sub_samples)
+        if window is None:
+            continue
+        x, y = surface_map(view, board.camera_T_board, window)
+        outside = window.mean(coverage(np.hypot(x - middle[0], y - middle[1]) - radius_m))
+        Patch(window, outside, (1 - outside) * options.white_grey).lay_over(image)
+
+
+def draw_chessboard(
+    view: View,
+    image: Image,
+    board: SceneChessboard | SceneCharucoBoard,
+    options: RenderOptions,
+) -> None:
+    """Printed board: every edge exact, through bow and lens."""
+    if isinstance(board, SceneChessboard):
+        pattern = chessboard_print(board)
+    else:
+        pattern = charuco_print(board)
+    pose, window = board.camera_T_board, Window.full(view)
+    x, y = surface_map(view, pose, window, z_m=_bow(board), nodes=NODES_FULL)
+    white = print_grey(pattern, x, y, sub=options.sub_samples)
+    white *= options.white_grey - options.black_grey
+    white += options.black_grey
+    draw_face(image, x, y, board.size_m, white)
+
+
+def _bow(board: SceneChessboard | SceneCharucoBoard) -> float | Height:
+    bow_x, bow_y = board.bow_m
+    if bow_x == 0 and bow_y == 0:
+        return 0.0
+    half_x, half_y = board.size_m[0] / 2, board.size_m[1] / 2
+    return lambda x, y: bow_x * (1 - (x / half_x) ** 2) + bow_y * (1 - (y / half_y) ** 2)

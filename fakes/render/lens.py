@@ -1,0 +1,83 @@
+"""The lens of one camera: forward by formula, backward by Newton's method."""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import RigidTransform
+
+from fakes.world.scene import LensTruth, Side, StereoTruth
+
+Array = NDArray[np.float64]
+
+_NEWTON_STEPS: Final = 12
+_NEWTON_TOLERANCE: Final = 1e-13
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One camera of a head, with its place in the head."""
+
+    side: Side
+    lens: LensTruth
+    size_px: tuple[int, int]
+    """Width, height."""
+    view_T_head: RigidTransform
+    """The head frame is the left camera."""
+
+
+def views(stereo: StereoTruth) -> tuple[View, View]:
+    """Left and right camera of a head."""
+    left = View("left", stereo.left, stereo.image_size_px, RigidTransform.identity())
+    right = View("right", stereo.right, stereo.image_size_px, stereo.right_T_left)
+    return left, right
+
+
+def project(lens: LensTruth, points_m: Array) -> Array:
+    """Pixels of points given in the camera, shape (N, 3) to (N, 2)."""
+    xn = points_m[:, 0] / points_m[:, 2]
+    yn = points_m[:, 1] / points_m[:, 2]
+    xd, yd = distort(lens, xn, yn)
+    return np.column_stack(
+        [lens.focal_px[0] * xd + lens.centre_px[0], lens.focal_px[1] * yd + lens.centre_px[1]]
+    )
+
+
+def distort(lens: LensTruth, xn: Array, yn: Array) -> tuple[Array, Array]:
+    """Distorted from ideal normalised coordinates: k1, k2, p1, p2, k3."""
+    k1, k2, p1, p2, k3 = lens.distortion
+    r2 = xn * xn + yn * yn
+    radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+    xd = xn * radial + 2 * p1 * xn * yn + p2 * (r2 + 2 * xn * xn)
+    yd = yn * radial + p1 * (r2 + 2 * yn * yn) + 2 * p2 * xn * yn
+    return xd, yd
+
+
+def undistort(lens: LensTruth, pixels: Array) -> Array:
+    """Ideal normalised coordinates of pixels, shape (N, 2) to (N, 2)."""
+    xd = (pixels[:, 0] - lens.centre_px[0]) / lens.focal_px[0]
+    yd = (pixels[:, 1] - lens.centre_px[1]) / lens.focal_px[1]
+    xn, yn = xd.copy(), yd.copy()
+    for _ in range(_NEWTON_STEPS):
+        fx, fy = distort(lens, xn, yn)
+        ex, ey = xd - fx, yd - fy
+        jxx, jxy, jyy = _jacobian(lens, xn, yn)
+        determinant = jxx * jyy - jxy * jxy
+        xn = xn + (jyy * ex - jxy * ey) / determinant
+        yn = yn + (jxx * ey - jxy * ex) / determinant
+        if max(np.abs(ex).max(), np.abs(ey).max()) < _NEWTON_TOLERANCE:
+            return np.column_stack([xn, yn])
+    raise ValueError("the lens model cannot be inverted over the whole image")
+
+
+def _jacobian(lens: LensTruth, xn: Array, yn: Array) -> tuple[Array, Array, Array]:
+    """d(distorted)/d(ideal); symmetric in this model."""
+    k1, k2, p1, p2, k3 = lens.distortion
+    r2 = xn * xn + yn * yn
+    radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
+    slope = 2 * (k1 + r2 * (2 * k2 + 3 * k3 * r2))
+    jxx = radial + slope * xn * xn + 2 * p1 * yn + 6 * p2 * xn
+    jyy = radial + slope * yn * yn + 6 * p1 * yn + 2 * p2 * xn
+    jxy = slope * xn * yn + 2 * p1 * xn + 2 * p2 * yn
+    return jxx, jxy, jyy

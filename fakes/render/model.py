@@ -1,0 +1,34 @@
+"""Inputs that only tests and offline tools use, beside those of ``fakes.world.scene``."""
+
+from dataclasses import dataclass
+
+from scipy.spatial.transform import RigidTransform
+
+from fakes.world.scene import SceneChessboard, ScenePlate, SceneTargetBoard
+
+
+@dataclass(frozen=True, slots=True)
+class SceneCharucoBoard:
+    """ChArUco board; origin in the middle of the printed field, z towards the camera.
+
+    Ids and layout are those of ``cv2.aruco.CharucoBoard(squares, square_m, marker_m, …)`` seen
+    from its front, with its x along x and its y along −y of this board.
+    """
+
+    camera_T_board: RigidTransform
+    squares: tuple[int, int]
+    """Along x, along y."""
+    square_m: float
+    marker_m: float
+    dictionary: int
+    """A ``cv2.aruco.DICT_…`` number."""
+    size_m: tuple[float, float]
+    bow_m: tuple[float, float] = (0.0, 0.0)
+
+
+SceneObject = ScenePlate | SceneTargetBoard | SceneChessboard | SceneCharucoBoard
+
+
+def pose_of(item: SceneObject) -> RigidTransform:
+    """Pose of an object in the frame of the head."""
+    return item.camera_T_part if isinstance(item, ScenePlate) else item.camera_T_board

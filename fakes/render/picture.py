@@ -1,0 +1,55 @@
+"""From a scene to the clean picture of each camera."""
+
+import numpy as np
+
+from fakes.render.boards import draw_chessboard, draw_target_board
+from fakes.render.canvas import Image
+from fakes.render.lens import View, views
+from fakes.render.light import light_direction, light_field
+from fakes.render.model import SceneCharucoBoard, SceneObject, pose_of
+from fakes.render.options import RenderOptions
+from fakes.render.plate import draw_plate
+from fakes.render.sensor import blurred
+from fakes.world.scene import (
+    SceneChessboard,
+    ScenePlate,
+    SceneTargetBoard,
+    StereoTruth,
+)
+
+
+def clean_pair(
+    stereo: StereoTruth,
+    objects: tuple[SceneObject, ...],
+    options: RenderOptions,
+    light_seed: int,
+) -> tuple[Image, Image]:
+    """Pictures without noise, in grey levels, not rounded and not clipped."""
+    left, right = views(stereo)
+    return (
+        clean_picture(left, objects, options, light_seed),
+        clean_picture(right, objects, options, light_seed),
+    )
+
+
+def clean_picture(
+    view: View, objects: tuple[SceneObject, ...], options: RenderOptions, light_seed: int
+) -> Image:
+    """Picture of one camera; farther objects are drawn first."""
+    width, height = view.size_px
+    image = np.full((height, width), options.floor_grey, dtype=np.float32)
+    far_to_near = sorted(objects, key=lambda item: -float(pose_of(item).translation[2]))
+    azimuth = light_direction(light_seed)
+    below: ScenePlate | None = None
+    for item in far_to_near:
+        match item:
+            case ScenePlate():
+                draw_plate(view, image, item, options, light_azimuth=azimuth, below=below)
+                below = item
+            case SceneTargetBoard():
+                draw_target_board(view, image, item, options)
+            case SceneChessboard() | SceneCharucoBoard():
+                draw_chessboard(view, image, item, options)
+    if far_to_near:
+        image *= light_field(view, pose_of(far_to_near[-1]), light_seed, options).astype(np.float32)
+    return blurred(image, view.lens.blur_px)

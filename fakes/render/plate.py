@@ -1,0 +1,58 @@
+"""A part as the camera sees it: finish, wear, holes."""
+
+from typing import Final
+
+import numpy as np
+
+from fakes.render.canvas import Image
+from fakes.render.clutter import draw_clutter
+from fakes.render.faces import draw_face, draw_sides
+from fakes.render.holes import hole_patch
+from fakes.render.lattice import NODES_FULL, Window, surface_map, to_pixels
+from fakes.render.lens import View
+from fakes.render.options import RenderOptions
+from fakes.render.texture import brushed_tile, sample
+from fakes.world.scene import SceneHole, ScenePlate
+
+THICKNESS_M: Final = {"deck": 15e-3, "frame": 40e-3}
+
+
+def draw_plate(
+    view: View,
+    image: Image,
+    plate: ScenePlate,
+    options: RenderOptions,
+    *,
+    light_azimuth: float,
+    below: ScenePlate | None = None,
+) -> None:
+    """Lay a part over ``image``; ``below`` is the part that shows through its through holes."""
+    pose = plate.camera_T_part
+    x, y = surface_map(view, pose, Window.full(view), nodes=NODES_FULL)
+    seen = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
+    draw_sides(
+        view, image, pose, plate.size_m, THICKNESS_M[plate.kind], 0.4 * options.plate_grey, seen
+    )
+    face: Image | float = options.plate_grey
+    if options.texture_grey > 0:
+        face = sample(brushed_tile(plate.seed), x, y)
+        face *= np.float32(options.texture_grey)
+        face += np.float32(options.plate_grey)
+    draw_face(image, x, y, plate.size_m, face)
+    draw_clutter(view, image, plate, options, light_azimuth)
+    for hole in plate.holes:
+        if _is_near(view, plate, hole):
+            patch = hole_patch(view, plate, hole, options, light_azimuth=light_azimuth, below=below)
+            if patch is not None:
+                patch.lay_over(image)
+
+
+def _is_near(view: View, plate: ScenePlate, hole: SceneHole) -> bool:
+    """False for holes so far outside that the lens model does not hold for them."""
+    pose = plate.camera_T_part
+    centre = np.array([[*hole.position_m, 0.0]])
+    in_view = (view.view_T_head * pose).apply(centre)[0]
+    if in_view[2] <= 0 or np.hypot(*in_view[:2]) > 0.6 * in_view[2]:
+        return False
+    pixel = to_pixels(view, pose, centre)[0]
+    return bool((pixel > -200).all() and (pixel < np.array(view.size_px) + 200).all())

@@ -1,0 +1,45 @@
+"""Blur of the lens, noise of the sensor, eight bits."""
+
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from fakes.render.canvas import Image
+from fakes.render.options import RenderOptions
+
+Grey = NDArray[np.uint8]
+
+_REACH: Final = 4.5
+"""Half width of the sampled kernel in standard deviations."""
+
+
+def blurred(image: Image, sigma_px: float) -> Image:
+    """Convolve with a Gaussian point spread; the pixel's own box is already in ``image``."""
+    if sigma_px <= 0:
+        return image
+    size = 2 * int(np.ceil(_REACH * sigma_px)) + 1
+    kernel = cv2.getGaussianKernel(size, sigma_px, cv2.CV_32F)
+    result = cv2.sepFilter2D(image, cv2.CV_32F, kernel, kernel, borderType=cv2.BORDER_REFLECT)
+    return np.asarray(result, dtype=np.float32)
+
+
+def noise_sigma(clean: Image, options: RenderOptions) -> Image:
+    """Standard deviation of every pixel: read noise and shot noise."""
+    variance = np.float32(options.noise_grey**2)
+    shot = np.float32(options.shot_share) * variance / np.float32(options.plate_grey)
+    read = np.float32(1 - options.shot_share) * variance
+    return np.sqrt(read + shot * np.maximum(clean, 0), dtype=np.float32)
+
+
+def exposed(clean: Image, options: RenderOptions, rng: np.random.Generator) -> Grey:
+    """One exposure of a clean image: independent normal noise, rounded and clipped to 8 bits.
+
+    With the thousands of electrons behind every grey level the Poisson law is a normal one.
+    """
+    if options.noise_grey <= 0:
+        return np.asarray(cv2.add(clean, 0.0, dtype=cv2.CV_8U))
+    noise = rng.standard_normal(clean.shape, dtype=np.float32)
+    noise *= noise_sigma(clean, options)
+    return np.asarray(cv2.add(clean, noise, dtype=cv2.CV_8U))
