@@ -1,0 +1,1 @@
+"""Campaigns and benchmarks: figures as distributions, against the truth and against baselines."""

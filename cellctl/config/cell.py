@@ -24,9 +24,9 @@ class Plc(Section):
 class Procedures(Section):
     """Settings of the calibration procedures."""
 
-    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "13x10"
+    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "9x6"
     """Inner corners of the calibration chessboard, columns x rows."""
-    square_mm: Annotated[float, Field(gt=0, le=100)] = 16.0
+    square_mm: Annotated[float, Field(gt=0, le=100)] = 25.0
     stereo_views: Annotated[int, Field(ge=8, le=100)] = 24
     circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
     circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0

@@ -1,0 +1,90 @@
+"""Many seeds of the demonstration in a row: `python -m benchmarks.campaign -n 20`."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+COLUMNS = (
+    ("iterations", "iterations", "{:.0f}"),
+    ("lateral_mm", "lateral at pins, max mm", "{:.4f}"),
+    ("rotation_deg", "true rotation, max deg", "{:.5f}"),
+    ("seat_gap_mm", "seat gap mm", "{:.4f}"),
+    ("peak_true_n", "peak true N", "{:.1f}"),
+    ("peak_sensed_n", "peak sensed N", "{:.1f}"),
+    ("final_true_n", "final true N", "{:.1f}"),
+    ("gauge_min_mm", "smallest gauge mm", "{:.2f}"),
+    ("wall_s", "wall s", "{:.0f}"),
+)
+
+
+def campaign(
+    n: Annotated[int, typer.Option("-n", min=1, help="Number of seeds.")] = 20,
+    first: Annotated[int, typer.Option(help="First seed.")] = 1,
+    out: Annotated[Path, typer.Option(help="Folder for the runs and the table.")] = Path(
+        "runs/campaign"
+    ),
+) -> None:
+    """Run the seeds, print a table, write campaign.json; exit code 1 when a run was not good."""
+    console = Console(highlight=False)
+    out.mkdir(parents=True, exist_ok=True)
+    results = [_run(seed, out, console) for seed in range(first, first + n)]
+    (out / "campaign.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
+    console.print(_table(results))
+    good = [result for result in results if result["passed"]]
+    if good:
+        console.print(_statistics(good))
+    for result in results:
+        if not result["passed"]:
+            console.print(f"seed {result['seed']}: {result['fault']}", style="red")
+    console.print(f"{len(good)} of {len(results)} good; figures in {out / 'campaign.json'}")
+    raise typer.Exit(0 if len(good) == len(results) else 1)
+
+
+def _run(seed: int, out: Path, console: Console) -> dict[str, Any]:
+    folder = out / f"seed-{seed}"
+    command = ["-m", "fakes", "demo", "--seed", str(seed), "--out", str(folder), "--quiet"]
+    begun = time.monotonic()
+    process = subprocess.run([sys.executable, *command], check=False, capture_output=True, text=True)
+    wall_s = time.monotonic() - begun
+    path = folder / "result.json"
+    if path.exists():
+        result: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+    else:
+        tail = "\n".join(process.stderr.splitlines()[-5:])
+        result = {"seed": seed, "passed": False, "fault": f"no result: {tail}"}
+    result["wall_s"] = wall_s
+    console.print(f"seed {seed}: {'good' if result['passed'] else 'NOT GOOD'} in {wall_s:.0f} s")
+    return result
+
+
+def _table(results: list[dict[str, Any]]) -> Table:
+    table = Table("seed", "result", *(title for _, title, _ in COLUMNS), title="campaign")
+    for result in results:
+        cells = [
+            form.format(result[key]) if isinstance(result.get(key), int | float) else "–"
+            for key, _, form in COLUMNS
+        ]
+        table.add_row(str(result["seed"]), "good" if result["passed"] else "FAILED", *cells)
+    return table
+
+
+def _statistics(good: list[dict[str, Any]]) -> Table:
+    table = Table("figure", "median", "p95", "max", title=f"{len(good)} good runs")
+    for key, title, form in COLUMNS:
+        values = [result[key] for result in good if isinstance(result.get(key), int | float)]
+        if values:
+            numbers = (np.median(values), np.percentile(values, 95), np.max(values))
+            table.add_row(title, *(form.format(number) for number in numbers))
+    return table
+
+
+if __name__ == "__main__":
+    typer.run(campaign)
