@@ -1,7 +1,36 @@
 """7xx: the line PLC and commands."""
 
-from cellctl.errors.base import CellError
+from cellctl.errors.base import CellError, Reaction
 
 
 class LineError(CellError):
     """The line asked for something that cannot be done, or vanished."""
+
+
+class LineLost(LineError):
+    """The PLC's heartbeat stands still."""
+
+    number = 701
+    text = "Line PLC lost"
+    cause = "PLC stopped, network broken, or its program no longer writes plc_heartbeat."
+    remedy = "Restore the PLC; then Unhold, or Stop and Reset."
+    reaction = Reaction.HOLD
+
+
+class CannotListen(LineError):
+    """The Modbus server cannot be opened."""
+
+    number = 702
+    text = "Cannot open the port for the line PLC"
+    cause = "Address not on this PC, or a port below 1024 without the permission for it."
+    remedy = "Check plc.host and plc.port in the cell file."
+    reaction = Reaction.STOP
+
+
+class LineTaskDied(LineError):
+    """The task that takes the line's commands ended."""
+
+    number = 703
+    text = "The line interface has stopped taking commands"
+    cause = "A defect in cellctl."
+    remedy = "Restart the daemon; keep the log."
