@@ -6,6 +6,7 @@ from typing import Final, Literal
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from fakes.render.canvas import Image, Patch
 from fakes.render.coverage import coverage
@@ -13,6 +14,8 @@ from fakes.render.lattice import surface_map, to_pixels, window_around
 from fakes.render.lens import Array, View
 from fakes.render.options import RenderOptions
 from fakes.world.scene import SceneHole, ScenePlate
+
+MarkKind = Literal["stain", "punch", "spot"]
 
 _SHIFT: Final = 5
 _CLEARANCE_M: Final = 1.5e-3
@@ -24,7 +27,7 @@ _PER_M2: Final = {"scratch": 260, "stain": 70, "punch": 60, "spot": 30}
 class Mark:
     """A false circle in the face of a part."""
 
-    kind: Literal["stain", "punch", "spot"]
+    kind: MarkKind
     position_m: tuple[float, float]
     radius_m: float
     strength: float
@@ -47,16 +50,18 @@ def marks_of(
     rng = np.random.default_rng([seed, 21])
     area = size_m[0] * size_m[1] * density
     places: list[Mark] = []
-    for kind, radii_m, strengths in (
+    kinds: tuple[tuple[MarkKind, tuple[float, float], tuple[float, float]], ...] = (
         ("stain", (2e-3, 7e-3), (-0.14, -0.04)),
         ("punch", (0.6e-3, 1.6e-3), (0.25, 0.5)),
         ("spot", (2.2e-3, 3.3e-3), (-0.5, -0.25)),
-    ):
+    )
+    for kind, radii_m, strengths in kinds:
         for _ in range(round(area * _PER_M2[kind])):
             radius_m, strength = float(rng.uniform(*radii_m)), float(rng.uniform(*strengths))
             place = rng.uniform(-0.5, 0.5, 2) * size_m
             if _is_clear(place, radius_m, holes):
-                places.append(Mark(kind, (float(place[0]), float(place[1])), radius_m, strength))  # type: ignore[arg-type]
+                x, y = (float(value) for value in place)
+                places.append(Mark(kind, (x, y), radius_m, strength))
     return tuple(places)
 
 
@@ -91,7 +96,7 @@ def draw_clutter(
 
 def _draw_scratches(view: View, image: Image, plate: ScenePlate, options: RenderOptions) -> None:
     pose = plate.camera_T_part
-    lines: dict[float, list[Array]] = {}
+    lines: dict[float, list[NDArray[np.int32]]] = {}
     limits = np.array(view.size_px)
     for scratch in scratches_of(plate.seed, plate.size_m, options.clutter):
         points = np.column_stack([scratch.points_m, np.zeros(len(scratch.points_m))])
@@ -104,9 +109,7 @@ def _draw_scratches(view: View, image: Image, plate: ScenePlate, options: Render
             lines.setdefault(scratch.strength, []).append(fixed)
     for strength, polylines in lines.items():
         mask = np.zeros(image.shape, np.uint8)
-        cv2.polylines(
-            mask, polylines, isClosed=False, color=255, lineType=cv2.LINE_AA, shift=_SHIFT
-        )
+        cv2.polylines(mask, polylines, False, 255, 1, cv2.LINE_AA, _SHIFT)  # noqa: FBT003
         image += image * (mask * np.float32(strength / 255))
 
 

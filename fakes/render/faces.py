@@ -25,6 +25,7 @@ def draw_face(
 def draw_sides(
     view: View,
     image: Image,
+    *,
     pose: RigidTransform,
     size_m: tuple[float, float],
     thickness_m: float,

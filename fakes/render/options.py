@@ -56,7 +56,7 @@ class RenderOptions:
 
     @classmethod
     def clean(cls, **changes: Any) -> "RenderOptions":
-        """Even light, flat surfaces, dark holes without visible walls, no noise; then ``changes``."""
+        """Even light, flat surfaces, dark holes without visible walls, no noise."""
         even = cls(
             wall_grey=cls().dark_grey,
             thread_grey=cls().dark_grey,

@@ -31,7 +31,13 @@ def draw_plate(
     x, y = surface_map(view, pose, Window.full(view), nodes=NODES_FULL)
     seen = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
     draw_sides(
-        view, image, pose, plate.size_m, THICKNESS_M[plate.kind], 0.4 * options.plate_grey, seen
+        view,
+        image,
+        pose=pose,
+        size_m=plate.size_m,
+        thickness_m=THICKNESS_M[plate.kind],
+        grey=0.4 * options.plate_grey,
+        seen_m=seen,
     )
     face: Image | float = options.plate_grey
     if options.texture_grey > 0:

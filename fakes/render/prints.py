@@ -29,8 +29,8 @@ class Print:
 def chessboard_print(board: SceneChessboard) -> Print:
     """Fields of a chessboard; the one at −x, −y is black."""
     columns, rows = (count + 1 for count in board.inner_corners)
-    lines_x = (np.arange(columns + 1) - columns / 2) * board.square_m
-    lines_y = (np.arange(rows + 1) - rows / 2) * board.square_m
+    lines_x = np.linspace(-0.5, 0.5, columns + 1) * columns * board.square_m
+    lines_y = np.linspace(-0.5, 0.5, rows + 1) * rows * board.square_m
     white = np.ones((rows + 2, columns + 2), dtype=bool)
     white[1:-1, 1:-1] = np.add.outer(np.arange(rows), np.arange(columns)) % 2 == 1
     return Print(lines_x, lines_y, white)
@@ -49,8 +49,8 @@ def charuco_print(board: SceneCharucoBoard) -> Print:
     per_square = len(steps)
     square = np.add.outer(np.arange(rows), np.arange(columns)) % 2 == 1
     fields = np.kron(square, np.ones((per_square, per_square), dtype=bool)).astype(bool)
-    for number, corners in zip(layout.getIds().ravel(), layout.getObjPoints(), strict=True):
-        column, row = (corners.mean(axis=0)[:2] // board.square_m).astype(int)
+    for number, corners in zip(np.ravel(layout.getIds()), layout.getObjPoints(), strict=True):
+        column, row = (np.mean(corners, axis=0)[:2] // board.square_m).astype(int)
         marker = cv2.aruco.generateImageMarker(dictionary, int(number), bits) > 0
         top, left = row * per_square + 1, column * per_square + 1
         fields[top : top + bits, left : left + bits] = marker

@@ -30,7 +30,7 @@ def noise_sigma(clean: Image, options: RenderOptions) -> Image:
     variance = np.float32(options.noise_grey**2)
     shot = np.float32(options.shot_share) * variance / np.float32(options.plate_grey)
     read = np.float32(1 - options.shot_share) * variance
-    return np.sqrt(read + shot * np.maximum(clean, 0), dtype=np.float32)
+    return np.asarray(np.sqrt(read + shot * np.maximum(clean, 0)), dtype=np.float32)
 
 
 def exposed(clean: Image, options: RenderOptions, rng: np.random.Generator) -> Grey:
@@ -39,7 +39,7 @@ def exposed(clean: Image, options: RenderOptions, rng: np.random.Generator) -> G
     With the thousands of electrons behind every grey level the Poisson law is a normal one.
     """
     if options.noise_grey <= 0:
-        return np.asarray(cv2.add(clean, 0.0, dtype=cv2.CV_8U))
+        return np.asarray(cv2.add(clean, np.zeros_like(clean), dtype=cv2.CV_8U), dtype=np.uint8)
     noise = rng.standard_normal(clean.shape, dtype=np.float32)
     noise *= noise_sigma(clean, options)
-    return np.asarray(cv2.add(clean, noise, dtype=cv2.CV_8U))
+    return np.asarray(cv2.add(clean, noise, dtype=cv2.CV_8U), dtype=np.uint8)

@@ -20,8 +20,8 @@ def brushed_tile(seed: int) -> Image:
     """Zero mean, unit standard deviation, brushed along x; wraps round at its borders."""
     rng = np.random.default_rng([seed, 11])
     noise = np.fft.rfft2(rng.standard_normal(_SHAPE))
-    frequency_y = np.fft.fftfreq(_SHAPE[0])[:, None]
-    frequency_x = np.fft.rfftfreq(_SHAPE[1])[None, :]
+    frequency_y: Array = np.fft.fftfreq(_SHAPE[0]).astype(np.float64)[:, None]
+    frequency_x: Array = np.fft.rfftfreq(_SHAPE[1]).astype(np.float64)[None, :]
     strokes = _lowpass(frequency_x, 60.0) * _lowpass(frequency_y, 0.9)
     coarse = _lowpass(frequency_x, 220.0) * _lowpass(frequency_y, 6.0)
     grain = _lowpass(np.hypot(frequency_x, frequency_y), 0.8)
@@ -31,7 +31,7 @@ def brushed_tile(seed: int) -> Image:
         part = np.fft.irfft2(noise * response, s=_SHAPE)
         tile += weight * part / part.std()
         noise = np.roll(noise, 7, axis=1)
-    result = ((tile - tile.mean()) / tile.std()).astype(np.float32)
+    result: Image = ((tile - tile.mean()) / tile.std()).astype(np.float32)
     result.setflags(write=False)
     return result
 
