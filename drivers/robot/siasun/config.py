@@ -1,0 +1,71 @@
+"""The settings of a SIASUN robot in the cell file. mm, degrees, mm/s, seconds."""
+
+from typing import Annotated, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Port = Annotated[int, Field(ge=1, le=65535)]
+Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
+Point = tuple[float, float, float]
+Joints = tuple[float, float, float, float, float, float]
+
+_ANY_JOINTS_MIN: Joints = (-360.0, -360.0, -360.0, -360.0, -360.0, -360.0)
+_ANY_JOINTS_MAX: Joints = (360.0, 360.0, 360.0, 360.0, 360.0, 360.0)
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    listen_host: str = "127.0.0.1"
+    """Address of this PC that the job programs connect to."""
+    robot_name: Annotated[str, Field(pattern=r"^[A-Z0-9_-]{1,16}$")]
+    """The name the controller must give in its hello."""
+    connect_timeout_s: Seconds = 10.0
+    max_deadman_s: Seconds = 0.5
+    """A job program that would keep moving longer than this without a heartbeat is refused."""
+
+
+class SiasunConfig(_Section):
+    """Motion and state channels of one robot, and the bounds of every target."""
+
+    command_port: Port
+    state_port: Port
+    reply_timeout_s: Seconds = 1.0
+    """For the answer to a command, and for the state to show its effect."""
+    stop_timeout_s: Seconds = 3.0
+    move_timeout_s: Seconds = 120.0
+    stale_s: Seconds = 0.25
+    """No motion starts on a state older than this."""
+    silence_s: Seconds = 0.5
+    """A robot without a state report for this long counts as lost."""
+    workspace_min_mm: Point
+    workspace_max_mm: Point
+    """Corners of the box, in the robot base, that the flange must stay in."""
+    joints_min_deg: Joints = _ANY_JOINTS_MIN
+    joints_max_deg: Joints = _ANY_JOINTS_MAX
+    max_speed_mm_s: Annotated[float, Field(gt=0.0, le=2000.0)]
+    max_acceleration_mm_s2: Annotated[float, Field(gt=0.0, le=5000.0)] = 1000.0
+    max_joint_speed_percent: Annotated[int, Field(ge=1, le=100)] = 25
+    max_step_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
+    arrival_tolerance_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
+    """A motion that reports its end farther from its target than this has failed."""
+    arrival_tolerance_deg: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.command_port == self.state_port:
+            raise ValueError("command_port and state_port must differ")
+        pairs = {
+            "workspace_min_mm": (self.workspace_min_mm, self.workspace_max_mm),
+            "joints_min_deg": (self.joints_min_deg, self.joints_max_deg),
+        }
+        for key, (lower, upper) in pairs.items():
+            if any(low >= high for low, high in zip(lower, upper, strict=True)):
+                raise ValueError(f"{key} must lie below its maximum in every component")
+        return self
+
+
+class SiasunStopChannelConfig(_Section):
+    """The guard's own channel to the same controller."""
+
+    guard_port: Port

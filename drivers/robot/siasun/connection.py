@@ -1,0 +1,216 @@
+"""One SJL channel: a listener of this PC, at most one client on it, and that client's session."""
+
+import asyncio
+import logging
+import random
+import socket
+from collections.abc import Callable
+
+from cellctl.errors.link import (
+    ConnectTimeout,
+    LinkError,
+    LinkLost,
+    ProtocolViolation,
+    VersionMismatch,
+)
+from drivers.robot.siasun import faults, protocol
+from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
+from drivers.robot.siasun.records import Hello, Record
+
+_log = logging.getLogger(__name__)
+
+
+class SjlChannel:
+    """A channel that listens until it is closed; the robot may come, go and come back.
+
+    ``on_up`` is called after each accepted hello, ``on_record`` with every record after it,
+    ``on_lost`` once at the end of an accepted session, unless ``close`` ended it.
+    """
+
+    def __init__(
+        self,
+        channel: str,
+        robot: str,
+        *,
+        max_deadman_s: float,
+        on_up: Callable[[], None],
+        on_record: Callable[[Record], None],
+        on_lost: Callable[[LinkError], None],
+    ) -> None:
+        self.hello = Hello("")
+        self.session = random.randrange(SESSIONS)
+        self._channel = channel
+        self._robot = robot
+        self._max_deadman_s = max_deadman_s
+        self._on_up = on_up
+        self._on_record = on_record
+        self._on_lost = on_lost
+        self._server: asyncio.Server | None = None
+        self._client: _Client | None = None
+        self._accepted = False
+        self._changed = asyncio.Event()
+        self._refused: LinkError | None = None
+
+    @property
+    def connected(self) -> bool:
+        """An accepted session stands."""
+        return self._accepted
+
+    def __str__(self) -> str:
+        return f"{self._robot} {self._channel}"
+
+    async def listen(self, host: str, port: int) -> None:
+        """Open the port; ``PortInUse`` when it cannot be had."""
+        loop = asyncio.get_running_loop()
+        self._refused = None
+        try:
+            self._server = await loop.create_server(lambda: _Client(self), host, port)
+        except OSError as error:
+            raise faults.cannot_listen(host, port, error) from error
+
+    async def wait_connected(self) -> None:
+        """Until a session stands; raises at once when the wrong robot or job program calls."""
+        while not self._accepted:
+            if isinstance(self._refused, VersionMismatch):
+                raise self._refused
+            self._changed.clear()
+            await self._changed.wait()
+
+    def timeout(self, timeout_s: float) -> LinkError:
+        """What to raise when nobody came in time."""
+        if isinstance(self._refused, VersionMismatch):
+            return self._refused
+        trace = f"; last caller: {self._refused}" if self._refused else ""
+        return ConnectTimeout(f"{self} did not connect within {timeout_s:g} s{trace}")
+
+    def send(self, line: bytes) -> None:
+        """Hand one record to the socket; ``LinkLost`` when no session stands."""
+        if self._client is None or not self._accepted:
+            raise LinkLost(f"{self} is not connected")
+        self._client.send(line)
+
+    def drop(self, fault: LinkError) -> None:
+        """End the session because of a fault; the listener stays."""
+        if self._client is not None:
+            self._client.abort()
+            self._ended(fault)
+
+    async def close(self) -> None:
+        """Close client and listener. Idempotent."""
+        client, self._client, self._accepted = self._client, None, False
+        server, self._server = self._server, None
+        if server is not None:
+            server.close()
+        if client is not None:
+            client.abort()
+            await client.closed.wait()
+
+    # --- called by the client
+
+    def _admit(self, client: "_Client") -> bool:
+        if self._client is not None or self._server is None:
+            _log.warning("%s: second connection refused", self)
+            return False
+        self._client = client
+        return True
+
+    def _record(self, record: Record) -> None:
+        if self._accepted:
+            if isinstance(record, Hello):
+                raise ProtocolViolation(f"{self}: second HELLO in a session")
+            self._on_record(record)
+        elif isinstance(record, Hello):
+            self._greet(record)
+        else:
+            raise ProtocolViolation(f"{self}: {type(record).__name__} before HELLO")
+
+    def _greet(self, hello: Hello) -> None:
+        assert self._client is not None  # a record came from it
+        refused = refusal(hello, self._channel, self._robot, self._max_deadman_s)
+        if refused is not None:
+            word, facts = refused
+            self._client.send(protocol.refuse_hello(word))
+            self._client.close()
+            self._ended(VersionMismatch(f"{self}: {facts}"))
+            return
+        self.hello = hello
+        self.session = self.session % SESSIONS + 1
+        self._client.send(protocol.accept_hello(self.session))
+        self._client.greeted()
+        self._accepted = True
+        _log.info("%s: connected, job program %s", self, hello.job_version)
+        self._changed.set()
+        self._on_up()
+
+    def _ended(self, fault: LinkError) -> None:
+        """The present client is gone or going."""
+        _log.warning("%s: %s", self, fault)
+        accepted, self._accepted, self._client = self._accepted, False, None
+        if accepted:
+            self._on_lost(fault)
+        else:
+            self._refused = fault
+        self._changed.set()
+
+    def _gone(self, client: "_Client", error: Exception | None) -> None:
+        if client is self._client:
+            self._ended(LinkLost(f"{self}: {error or 'closed by the robot'}"))
+
+
+class _Client(asyncio.Protocol):
+    """Bytes of one accepted socket."""
+
+    def __init__(self, channel: SjlChannel) -> None:
+        self.closed = asyncio.Event()
+        self._channel = channel
+        self._reader = protocol.RecordReader()
+        self._transport: asyncio.Transport | None = None
+        self._hello_timer: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        if not self._channel._admit(self):
+            transport.abort()
+            return
+        self._transport = transport
+        sock = transport.get_extra_info("socket")
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        loop = asyncio.get_running_loop()
+        fault = ConnectTimeout(f"{self._channel}: no HELLO within {HELLO_TIMEOUT_S:g} s")
+        self._hello_timer = loop.call_later(HELLO_TIMEOUT_S, self._channel.drop, fault)
+
+    def data_received(self, data: bytes) -> None:
+        _log.debug("%s <- %r", self._channel, data)
+        self._reader.feed(data)
+        try:
+            while self._transport is not None and (record := self._reader.next()) is not None:
+                self._channel._record(record)
+        except ProtocolViolation as fault:
+            self._channel.drop(fault)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self.greeted()
+        self._transport = None
+        self.closed.set()
+        self._channel._gone(self, exc)
+
+    def send(self, line: bytes) -> None:
+        _log.debug("%s -> %r", self._channel, line)
+        if self._transport is not None:
+            self._transport.write(line)
+
+    def greeted(self) -> None:
+        if self._hello_timer is not None:
+            self._hello_timer.cancel()
+
+    def close(self) -> None:
+        self.greeted()
+        transport, self._transport = self._transport, None
+        if transport is not None:
+            transport.close()
+
+    def abort(self) -> None:
+        self.greeted()
+        transport, self._transport = self._transport, None
+        if transport is not None:
+            transport.abort()

@@ -1,0 +1,214 @@
+"""A SIASUN robot whose job programs speak SJL/1 (docs/protocols/sjl-1.md)."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.base import CellError
+from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout
+from cellctl.errors.robot import (
+    ControllerFault,
+    MotionAborted,
+    MotionRejected,
+    NotRearmed,
+    RobotNotReady,
+)
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.interfaces.robot import Robot, RobotState
+from drivers.robot.siasun import protocol
+from drivers.robot.siasun.bounds import Bounds
+from drivers.robot.siasun.command_channel import CommandChannel
+from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.records import Six
+from drivers.robot.siasun.state_channel import StateChannel
+
+
+class SiasunRobot(Robot):
+    """Commands go over CMD; state, heartbeat and stop over STA. The PC listens on both.
+
+    Any fault that leaves it open what the arm does (lost link, invalid record, missing answer,
+    stop, abort) sets a latch here too: moves raise ``NotRearmed`` until ``rearm``.
+    """
+
+    Config = SiasunConfig
+
+    def __init__(self, name: str, config: SiasunConfig) -> None:
+        self.name = name
+        self._config = config
+        self._bounds = Bounds(name, config)
+        self._latch: CellError | None = None
+        """Why moves are refused until ``rearm``."""
+        self._command = CommandChannel(name, config, self._on_command_lost)
+        self._state = StateChannel(name, config, self._on_stopped, self._on_state_lost)
+        self._listening = False
+
+    async def connect(self) -> None:
+        """Listen and wait for both channels and a first state report. Idempotent."""
+        if self._listening:
+            return
+        self._listening = True
+        host, timeout_s = self._config.listen_host, self._config.connect_timeout_s
+        try:
+            await self._command.channel.listen(host, self._config.command_port)
+            await self._state.channel.listen(host, self._config.state_port)
+            async with asyncio.timeout(timeout_s):
+                await self._command.channel.wait_connected()
+                await self._state.channel.wait_connected()
+                await self._state.wait(lambda _: True, timeout_s)
+        except TimeoutError:
+            command, state = self._command.channel, self._state.channel
+            missing = state if command.connected else command
+            await self._close()
+            raise missing.timeout(timeout_s) from None
+        except BaseException:
+            await self._close()
+            raise
+
+    async def disconnect(self) -> None:
+        """Stop a running motion and close both channels."""
+        try:
+            if self._command.running and self._state.channel.connected:
+                await self.stop()
+        finally:
+            await self._close()
+
+    def state(self, max_age_s: float = 0.25) -> RobotState:
+        """The newest report. ``stop_latched`` includes this driver's own latch."""
+        state = self._state.newest(max_age_s)
+        return replace(state, stop_latched=True) if self._latch else state
+
+    async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
+        """MOVJ."""
+        joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
+        return await self._move(
+            lambda session, seq: protocol.move_joint(session, seq, joints_deg.tolist(), percent),
+            target=None,
+        )
+
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        """MOVL."""
+        xyzabc = self._bounds.pose(base_T_flange).tolist()
+        speed = self._bounds.speed_mm_s(speed_m_s)
+        acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
+        return await self._move(
+            lambda session, seq: protocol.move_linear(session, seq, xyzabc, speed, acceleration),
+            target=base_T_flange,
+        )
+
+    async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
+        """STEP, at most as long as both the configuration and the job program allow."""
+        xyzabc = self._bounds.pose(base_T_flange).tolist()
+        speed = self._bounds.speed_mm_s(speed_m_s)
+        state = self.state(self._config.stale_s)
+        self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
+        return await self._move(
+            lambda session, seq: protocol.step(session, seq, xyzabc, speed),
+            target=base_T_flange,
+        )
+
+    async def stop(self) -> None:
+        """ABORT on STA; returns after STOPD."""
+        self._latch = NotRearmed(f"{self.name}: a stop was requested")
+        await self._state.stop(self._config.stop_timeout_s)
+
+    async def rearm(self) -> None:
+        """REARM; returns when the state shows the latch released."""
+        if self._command.running:
+            raise MotionRejected(f"{self.name}: cannot rearm while a motion runs")
+        self._check_link()
+        latch = self._latch
+        await self._command.run(protocol.rearm, self._config.reply_timeout_s)
+        await self._state.wait(lambda status: not status.latched, self._config.reply_timeout_s)
+        if self._latch is not latch:
+            raise NotRearmed(f"{self.name}: {self._latch}, while it was re-armed")
+        self._latch = None
+
+    async def _move(
+        self, build: Callable[[int, int], bytes], target: RigidTransform | None
+    ) -> RobotState:
+        """Run one motion to standstill; leave it early only after stopping the robot."""
+        self._check_ready()
+        try:
+            end_xyzabc = await self._command.run(build, self._config.move_timeout_s)
+        except (asyncio.CancelledError, ReplyTimeout):
+            await self._stop_before_leaving()
+            raise
+        except (MotionAborted, ControllerFault) as fault:
+            self._latch = self._latch or fault
+            raise
+        await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
+        self._check_arrival(end_xyzabc, target)
+        return replace(self.state(self._config.stale_s), base_T_flange=pose_from_xyzabc(end_xyzabc))
+
+    def _check_ready(self) -> None:
+        if self._command.running:
+            raise MotionRejected(f"{self.name}: another motion is running")
+        self._check_link()
+        if self._latch is not None:
+            raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
+        state = self.state(self._config.stale_s)
+        if state.stop_latched:
+            raise NotRearmed(f"{self.name}: the controller's stop latch is set")
+        if state.error_code:
+            raise ControllerFault(f"{self.name}: controller error {state.error_code}")
+        if not state.ready:
+            raise RobotNotReady(
+                f"{self.name}: mode {state.mode.value}, drives "
+                f"{'on' if state.drives_on else 'off'}, emergency stop "
+                f"{'active' if state.emergency_stop else 'released'}"
+            )
+
+    def _check_arrival(self, end_xyzabc: Six, target: RigidTransform | None) -> None:
+        if target is None:
+            return
+        end = pose_from_xyzabc(end_xyzabc)
+        delta = end.inv() * target
+        distance_mm = float(np.linalg.norm(delta.translation)) / MM
+        angle_deg = float(np.degrees(delta.rotation.magnitude()))
+        tolerance = self._config
+        if not (
+            distance_mm <= tolerance.arrival_tolerance_mm
+            and angle_deg <= tolerance.arrival_tolerance_deg
+        ):
+            self._latch = MotionAborted(
+                f"{self.name} reports its end {distance_mm:.3f} mm and {angle_deg:.3f} deg "
+                "away from the target"
+            )
+            raise self._latch
+
+    async def _stop_before_leaving(self) -> None:
+        """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to
+        tell; the controller's dead man and its loss of the channel stop it then."""
+        self._latch = NotRearmed(f"{self.name}: a motion was given up")
+        if self._state.channel.connected:
+            await asyncio.shield(asyncio.ensure_future(self.stop()))
+
+    def _check_link(self) -> None:
+        for channel in (self._command.channel, self._state.channel):
+            if not channel.connected:
+                raise LinkLost(f"{channel} is not connected")
+
+    async def _close(self) -> None:
+        self._listening = False
+        self._command.fail(LinkLost(f"{self.name} was disconnected"))
+        await self._command.channel.close()
+        await self._state.close()
+
+    def _on_stopped(self) -> None:
+        """Standstill is confirmed: whatever ran has ended, even if its ABRT got lost."""
+        self._command.fail(MotionAborted(f"{self.name}: stop was requested (STOP)"))
+
+    def _on_command_lost(self, fault: LinkError) -> None:
+        self._latch = fault
+        self._command.fail(fault)
+
+    def _on_state_lost(self, fault: LinkError) -> None:
+        """Nobody sees the arm any more. The other channel goes too: the robot may have restarted
+        and be unable to come back as long as its old connection seems to live."""
+        self._on_command_lost(fault)
+        self._command.channel.drop(fault)

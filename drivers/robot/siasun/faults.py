@@ -1,0 +1,55 @@
+"""Where the controller's words and the sockets' errors become numbered faults of the cell."""
+
+from cellctl.errors.base import CellError
+from cellctl.errors.link import PortInUse
+from cellctl.errors.robot import (
+    ControllerFault,
+    MotionAborted,
+    MotionRejected,
+    NotRearmed,
+    RobotNotReady,
+)
+
+_REJECTIONS: dict[str, tuple[type[CellError], str]] = {
+    "SESSION": (MotionRejected, "command of another session"),
+    "SEQ": (MotionRejected, "sequence number out of order"),
+    "BUSY": (MotionRejected, "another motion is running"),
+    "LATCHED": (NotRearmed, "the controller's stop latch is set"),
+    "MODE": (RobotNotReady, "not in remote mode"),
+    "ESTOP": (RobotNotReady, "emergency stop is active"),
+    "DRIVES": (RobotNotReady, "drives are off"),
+    "ERROR": (ControllerFault, "controller error is active"),
+    "LIMIT": (MotionRejected, "joint limit"),
+    "REACH": (MotionRejected, "target out of reach"),
+    "SINGULAR": (MotionRejected, "path through a singularity"),
+    "SPEED": (MotionRejected, "speed or acceleration not allowed"),
+    "STEP": (MotionRejected, "step too long or turns too far"),
+    "LOAD": (MotionRejected, "load not allowed"),
+}
+
+_ABORTS: dict[str, tuple[type[CellError], str]] = {
+    "STOP": (MotionAborted, "stop was requested"),
+    "DEADMAN": (MotionAborted, "heartbeat of this PC stayed away"),
+    "LINK": (MotionAborted, "the robot lost one of its channels"),
+    "ESTOP": (MotionAborted, "emergency stop"),
+    "MODE": (MotionAborted, "operating mode was changed"),
+    "DRIVES": (MotionAborted, "drives went off"),
+    "ERROR": (ControllerFault, "controller error during the motion"),
+}
+
+
+def rejection(robot: str, reason: str) -> CellError:
+    """Fault of ``REJ,<seq>,<reason>``."""
+    fault, words = _REJECTIONS.get(reason, (MotionRejected, "reason unknown to this driver"))
+    return fault(f"{robot}: {words} ({reason})")
+
+
+def abortion(robot: str, reason: str) -> CellError:
+    """Fault of ``ABRT,<seq>,<reason>,…``."""
+    fault, words = _ABORTS.get(reason, (MotionAborted, "reason unknown to this driver"))
+    return fault(f"{robot}: {words} ({reason})")
+
+
+def cannot_listen(host: str, port: int, error: OSError) -> CellError:
+    """Fault of a listening socket that could not be had."""
+    return PortInUse(f"cannot listen on {host}:{port}: {error.strerror or error}")

@@ -1,0 +1,22 @@
+"""What both ends of an SJL/1 channel must agree on before anything else is said."""
+
+from drivers.robot.siasun.protocol import VERSION
+from drivers.robot.siasun.records import Hello
+
+HELLO_TIMEOUT_S = 2.0
+SESSIONS = 999_999
+
+
+def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tuple[str, str] | None:
+    """Why a hello cannot be accepted: the word for the robot and the facts; None when it can."""
+    deadman_ok = 0 < hello.deadman_ms <= max_deadman_s * 1000.0
+    checks = (
+        (hello.version == VERSION, "VERSION", f"job program speaks SJL/{hello.version}"),
+        (hello.channel == channel, "CHANNEL", f"channel {hello.channel} on the port of {channel}"),
+        (hello.robot == robot, "NAME", f"robot {hello.robot} on the port of {robot}"),
+        (hello.euler == "ZYX", "CONVENTION", f"angles are EUL={hello.euler}, not ZYX"),
+        (hello.unit == "MMDEG", "CONVENTION", f"units are {hello.unit}, not MMDEG"),
+        (deadman_ok, "DEADMAN", f"dead man {hello.deadman_ms} ms, limit {max_deadman_s:g} s"),
+        (hello.step_max_mm > 0.0, "STEPMAX", "job program allows no step"),
+    )
+    return next(((word, facts) for passed, word, facts in checks if not passed), None)

@@ -1,0 +1,171 @@
+"""The STA channel of one robot: newest state, heartbeat, silence watchdog, and stop."""
+
+import asyncio
+from collections.abc import Callable
+
+import numpy as np
+
+from cellctl.clock import now_s
+from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleData
+from cellctl.errors.robot import StopFailed
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.interfaces.robot import RobotMode, RobotState
+from drivers.robot.siasun import protocol
+from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.connection import SjlChannel
+from drivers.robot.siasun.records import Record, Status, StopDone
+
+BEATS_PER_DEADMAN = 4
+REPEAT_STOP_S = 0.3
+_MODES = {"MAN": RobotMode.MANUAL, "AUT": RobotMode.AUTOMATIC, "REM": RobotMode.REMOTE}
+
+
+class StateChannel:
+    """``on_stopped`` hears of confirmed standstill, ``on_lost`` of the end of a session."""
+
+    def __init__(
+        self,
+        robot: str,
+        config: SiasunConfig,
+        on_stopped: Callable[[], None],
+        on_lost: Callable[[LinkError], None],
+    ) -> None:
+        self.channel = SjlChannel(
+            "STA",
+            config.robot_name,
+            max_deadman_s=config.max_deadman_s,
+            on_up=self._up,
+            on_record=self._take,
+            on_lost=self._lost,
+        )
+        self._robot = robot
+        self._silence_s = config.silence_s
+        self._on_stopped = on_stopped
+        self._on_lost = on_lost
+        self._status: Status | None = None
+        self._time_s = 0.0
+        self._waiters: dict[asyncio.Future[None], Callable[[Status], bool]] = {}
+        self._stops: dict[asyncio.Future[None], int] = {}
+        self._abort_id = 0
+        self._beats = 0
+        self._timer: asyncio.TimerHandle | None = None
+
+    def newest(self, max_age_s: float) -> RobotState:
+        """The newest report in SI; ``LinkLost`` or ``StaleData`` when there is none to trust."""
+        if not self.channel.connected:
+            raise LinkLost(f"{self.channel} is not connected")
+        age_s = now_s() - self._time_s
+        if self._status is None or age_s > max_age_s:
+            facts = "none yet" if self._status is None else f"{age_s:.3f} s old"
+            raise StaleData(f"state of {self._robot}: {facts}, allowed {max_age_s:g} s")
+        return _to_state(self._status, self._time_s)
+
+    async def wait(self, condition: Callable[[Status], bool], timeout_s: float) -> None:
+        """Until a report that arrives from now on meets a condition; else ``StaleData``."""
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._waiters[future] = condition
+        try:
+            async with asyncio.timeout(timeout_s):
+                await future
+        except TimeoutError:
+            facts = f"{self._robot} did not report the expected state within {timeout_s:g} s"
+            raise StaleData(facts) from None
+        finally:
+            del self._waiters[future]
+
+    async def stop(self, timeout_s: float) -> None:
+        """Send ABORT and wait for STOPD, repeating the request; ``StopFailed`` without it."""
+        self._abort_id += 1
+        abort_id = self._abort_id
+        future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+        self._stops[future] = abort_id
+        try:
+            async with asyncio.timeout(timeout_s):
+                while not future.done():
+                    self.channel.send(protocol.abort(self.channel.session, abort_id))
+                    await asyncio.wait({future}, timeout=REPEAT_STOP_S)
+                await future
+        except TimeoutError:
+            facts = f"{self._robot} did not confirm standstill within {timeout_s:g} s"
+            raise StopFailed(facts) from None
+        except LinkError as error:
+            raise StopFailed(f"{self._robot}: {error.detail}") from error
+        finally:
+            del self._stops[future]
+
+    async def close(self) -> None:
+        """Drop the link; whoever waits gets ``LinkLost``."""
+        self._cancel_timer()
+        await self.channel.close()
+        self._fail(LinkLost(f"{self.channel} was disconnected"))
+
+    def _up(self) -> None:
+        self._status = None
+        self._time_s = now_s()
+        self._beat()
+
+    def _take(self, record: Record) -> None:
+        if isinstance(record, Status):
+            self._take_status(record)
+        elif isinstance(record, StopDone):
+            self._take_stop(record)
+        else:
+            raise ProtocolViolation(f"{self.channel}: {type(record).__name__} on this channel")
+
+    def _take_status(self, status: Status) -> None:
+        """A report that repeats its predecessor's count or clock is not news."""
+        last = self._status
+        if last is not None and (status.count <= last.count or status.robot_ms == last.robot_ms):
+            return
+        self._status, self._time_s = status, now_s()
+        for future, condition in self._waiters.items():
+            if not future.done() and condition(status):
+                future.set_result(None)
+
+    def _take_stop(self, record: StopDone) -> None:
+        if not 1 <= record.id <= self._abort_id:
+            raise ProtocolViolation(f"{self.channel}: STOPD {record.id} was never asked for")
+        for future, abort_id in self._stops.items():
+            if not future.done() and abort_id <= record.id:
+                future.set_result(None)
+        self._on_stopped()
+
+    def _lost(self, fault: LinkError) -> None:
+        self._cancel_timer()
+        self._fail(fault)
+        self._on_lost(fault)
+
+    def _fail(self, fault: LinkError) -> None:
+        for future in (*self._waiters, *self._stops):
+            if not future.done():
+                future.set_exception(fault)
+
+    def _beat(self) -> None:
+        """Heartbeat, and the watchdog over the robot's reports; calls itself again."""
+        silent_s = now_s() - self._time_s
+        if silent_s > self._silence_s:
+            self.channel.drop(LinkLost(f"{self.channel}: no report for {silent_s:.2f} s"))
+            return
+        self._beats += 1
+        self.channel.send(protocol.beat(self.channel.session, self._beats))
+        interval_s = self.channel.hello.deadman_ms / 1000.0 / BEATS_PER_DEADMAN
+        self._timer = asyncio.get_running_loop().call_later(interval_s, self._beat)
+
+    def _cancel_timer(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+
+
+def _to_state(status: Status, time_s: float) -> RobotState:
+    return RobotState(
+        time_s=time_s,
+        base_T_flange=pose_from_xyzabc(status.flange_xyzabc),
+        joints_rad=np.radians(status.joints_deg),
+        mode=_MODES[status.mode],
+        emergency_stop=status.emergency_stop,
+        drives_on=status.drives_on,
+        moving=status.moving,
+        stop_latched=status.latched,
+        error_code=status.error_code,
+        speed_override_ratio=status.override_percent / 100.0,
+    )

@@ -1,0 +1,200 @@
+"""The guard's GRD channel to a SIASUN robot: blocking sockets, no event loop, no arrays."""
+
+import contextlib
+import math
+import random
+import socket
+from typing import TypeGuard
+
+from cellctl.clock import now_s
+from cellctl.errors.link import (
+    ConnectTimeout,
+    LinkError,
+    LinkLost,
+    ProtocolViolation,
+    VersionMismatch,
+)
+from cellctl.interfaces.stop_channel import FlangeState, StopChannel
+from drivers.robot.siasun import faults, protocol
+from drivers.robot.siasun.config import SiasunStopChannelConfig
+from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
+from drivers.robot.siasun.records import Hello, Record, Status, StopDone
+
+_CHUNK_BYTES = 4096
+_READS_PER_POLL = 8
+
+
+class SiasunStopChannel(StopChannel):
+    """Listens while ``open`` runs, for one client; afterwards further callers are refused.
+
+    The stop request lies packed in memory before it is needed. Every request has a new number, so
+    that one after a re-arm is never taken for a repetition.
+    """
+
+    Config = SiasunStopChannelConfig
+
+    def __init__(self, config: SiasunStopChannelConfig) -> None:
+        self._config = config
+        self._session = random.randrange(SESSIONS)
+        self._socket: socket.socket | None = None
+        self._reader = protocol.RecordReader()
+        self._stops = 0
+        self._beats = 0
+        self._stop_record = b""
+        self._last: Status | None = None
+
+    def open(self) -> None:
+        """Wait for the controller's job; ``ConnectTimeout`` when it does not come."""
+        self.close()
+        host, port = self._config.listen_host, self._config.guard_port
+        deadline_s = now_s() + self._config.connect_timeout_s
+        try:
+            listener = socket.create_server((host, port), backlog=1)
+        except OSError as error:
+            raise faults.cannot_listen(host, port, error) from error
+        with listener:
+            while self._socket is None:
+                self._accept(listener, deadline_s)
+
+    def close(self) -> None:
+        """Drop the link. Idempotent."""
+        if self._socket is not None:
+            self._socket.close()
+            self._socket = None
+
+    def fileno(self) -> int:
+        """Descriptor of the connection, -1 while closed."""
+        return -1 if self._socket is None else self._socket.fileno()
+
+    def request_stop(self) -> None:
+        """Send ABORT now; a full or broken socket is ``LinkLost``."""
+        self._send(self._stop_record)
+        self._pack_stop()
+
+    def heartbeat(self) -> None:
+        """Send BEAT."""
+        self._beats += 1
+        self._send(protocol.beat(self._session, self._beats))
+
+    def poll(self) -> FlangeState | None:
+        """The newest report of those that arrived since the last call; None without one."""
+        if self._socket is None:
+            raise self._lost("not connected")
+        newest: Status | None = None
+        for _ in range(_READS_PER_POLL):
+            try:
+                data = self._socket.recv(_CHUNK_BYTES)
+            except BlockingIOError:
+                break
+            except OSError as error:
+                raise self._lost(str(error)) from error
+            if not data:
+                raise self._lost("closed by the robot")
+            self._reader.feed(data)
+            newest = self._read() or newest
+        return None if newest is None else _flange_state(newest, now_s())
+
+    def _read(self) -> Status | None:
+        """The newest report among the complete records; repeated ones are not news."""
+        newest: Status | None = None
+        try:
+            while (record := self._reader.next()) is not None:
+                if _is_news(record, self._last):
+                    newest = self._last = record
+        except ProtocolViolation:
+            self.close()
+            raise
+        return newest
+
+    def _accept(self, listener: socket.socket, deadline_s: float) -> None:
+        """Serve one caller. A caller that does not speak the protocol is sent away."""
+        listener.settimeout(self._left_s(deadline_s))
+        with contextlib.suppress(TimeoutError):
+            client, _ = listener.accept()
+            try:
+                self._greet(client, min(deadline_s, now_s() + HELLO_TIMEOUT_S))
+            except VersionMismatch:
+                client.close()
+                raise
+            except (LinkError, OSError):
+                client.close()
+
+    def _greet(self, client: socket.socket, deadline_s: float) -> None:
+        client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        reader = protocol.RecordReader()
+        while (hello := reader.next()) is None:
+            client.settimeout(self._left_s(deadline_s))
+            data = client.recv(_CHUNK_BYTES)
+            if not data:
+                raise self._lost("closed by the robot")
+            reader.feed(data)
+        if not isinstance(hello, Hello):
+            raise ProtocolViolation(f"{type(hello).__name__} before HELLO")
+        config = self._config
+        refused = refusal(hello, "GRD", config.robot_name, config.max_deadman_s)
+        if refused is not None:
+            word, facts = refused
+            client.sendall(protocol.refuse_hello(word))
+            raise VersionMismatch(f"{config.robot_name} GRD: {facts}")
+        self._session = self._session % SESSIONS + 1
+        client.sendall(protocol.accept_hello(self._session))
+        client.settimeout(0.0)
+        self._socket, self._reader, self._last = client, reader, None
+        self._stops = self._beats = 0
+        self._pack_stop()
+
+    def _pack_stop(self) -> None:
+        self._stops += 1
+        self._stop_record = protocol.abort(self._session, self._stops)
+
+    def _send(self, record: bytes) -> None:
+        if self._socket is None:
+            raise self._lost("not connected")
+        try:
+            sent = self._socket.send(record)
+        except OSError as error:
+            raise self._lost(str(error)) from error
+        if sent < len(record):
+            raise self._lost("the robot does not read")
+
+    def _left_s(self, deadline_s: float) -> float:
+        left_s = deadline_s - now_s()
+        if left_s <= 0.0:
+            name, timeout_s = self._config.robot_name, self._config.connect_timeout_s
+            raise ConnectTimeout(f"{name} GRD did not connect within {timeout_s:g} s")
+        return left_s
+
+    def _lost(self, facts: str) -> LinkLost:
+        self.close()
+        return LinkLost(f"{self._config.robot_name} GRD: {facts}")
+
+
+def _is_news(record: Record, last: Status | None) -> TypeGuard[Status]:
+    """A report that moves on from the last one. STOPD says nothing that reports do not say."""
+    if isinstance(record, StopDone):
+        return False
+    if not isinstance(record, Status):
+        raise ProtocolViolation(f"{type(record).__name__} on GRD")
+    return last is None or (record.count > last.count and record.robot_ms != last.robot_ms)
+
+
+def _flange_state(status: Status, time_s: float) -> FlangeState:
+    x_mm, y_mm, z_mm, a_deg, b_deg, c_deg = status.flange_xyzabc
+    return FlangeState(
+        time_s,
+        (x_mm / 1000.0, y_mm / 1000.0, z_mm / 1000.0),
+        rotation_from_abc(a_deg, b_deg, c_deg),
+        status.moving,
+        status.latched,
+    )
+
+
+def rotation_from_abc(a_deg: float, b_deg: float, c_deg: float) -> tuple[float, ...]:
+    """R = Rz(a) Ry(b) Rx(c), row by row."""
+    a, b, c = math.radians(a_deg), math.radians(b_deg), math.radians(c_deg)
+    ca, sa, cb, sb, cc, sc = (f(x) for x in (a, b, c) for f in (math.cos, math.sin))
+    return (
+        *(ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc),
+        *(sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc),
+        *(-sb, cb * sc, cb * cc),
+    )
