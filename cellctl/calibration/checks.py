@@ -22,7 +22,7 @@ class Check:
     @property
     def passed(self) -> bool:
         """False also for a value that is not a number."""
-        return self.value <= self.limit if self.side == "max" else self.value >= self.limit
+        return bool(self.value <= self.limit if self.side == "max" else self.value >= self.limit)
 
     def __str__(self) -> str:
         relation = "≤" if self.side == "max" else "≥"
@@ -33,8 +33,8 @@ class Check:
         """Plain data for the store."""
         return {
             "name": self.name,
-            "value": self.value,
-            "limit": self.limit,
+            "value": float(self.value),
+            "limit": float(self.limit),
             "unit": self.unit,
             "side": self.side,
             "passed": self.passed,

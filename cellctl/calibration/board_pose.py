@@ -1,0 +1,127 @@
+"""Pose of the target board P from its measured discs, weighted, with an outlier test."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.errors.calibration import BoardPoseInvalid
+from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose, skew
+from cellctl.interfaces.target_tracker import Target
+
+_MIN_DISCS = 4
+_OUTLIER_CHI2 = 25.0
+"""Squared normalised residual (3 coordinates) of a disc that does not belong: p below 2e-5."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoardPoint:
+    """One measured disc."""
+
+    name: str
+    position_m: Array
+    """Shape (3,), in the frame of the head."""
+    covariance_m2: Array
+    """Shape (3, 3)."""
+
+
+@dataclass(frozen=True, slots=True)
+class BoardPose:
+    """A board in the frame of a head."""
+
+    head_T_board: UncertainPose
+    residuals_m: Mapping[str, float]
+    """Distance of each used disc from its drawing."""
+    outliers: tuple[str, ...]
+    chi2_ratio: float
+    """Weighted squares over their expectation: 1 when the stated covariances are right."""
+
+    @property
+    def rms_m(self) -> float:
+        """Rms distance of the discs from their drawing."""
+        return float(np.sqrt(np.mean(np.square(list(self.residuals_m.values())))))
+
+
+def target_board_discs(pitch_x_m: float = 0.1, pitch_y_m: float = 0.08) -> dict[str, Array]:
+    """Drawing of board P: P1 to P9 row by row, x along a row, y across, P5 in the middle."""
+    return {
+        f"P{3 * row + column + 1}": np.array([(column - 1) * pitch_x_m, (row - 1) * pitch_y_m, 0.0])
+        for row in range(3)
+        for column in range(3)
+    }
+
+
+def points_from_targets(targets: Iterable[Target], names: Iterable[str]) -> list[BoardPoint]:
+    """The board's discs among the targets of the large-field head."""
+    wanted = set(names)
+    return [
+        BoardPoint(target.name, target.position_m, np.eye(3) * target.sigma_m**2)
+        for target in targets
+        if target.name in wanted
+    ]
+
+
+def fit_board(
+    drawing: Mapping[str, Array], points: Sequence[BoardPoint], *, disc_sigma_m: float = 5e-6
+) -> BoardPose:
+    """Pose of the board; ``disc_sigma_m`` is the drawing's own uncertainty per coordinate.
+
+    Raises ``BoardPoseInvalid`` with fewer than four discs, discs on a line, or an unknown name.
+    """
+    unknown = [point.name for point in points if point.name not in drawing]
+    if unknown:
+        raise BoardPoseInvalid(f"not on the board: {', '.join(unknown)}")
+    used, outliers = list(points), []
+    while True:
+        pose, residuals, squares, chi2_ratio = _fit(drawing, used, disc_sigma_m)
+        worst = int(np.argmax(squares))
+        if squares[worst] <= _OUTLIER_CHI2 * max(1.0, _typical(squares)):
+            break
+        outliers.append(used.pop(worst).name)
+    if len(outliers) > len(points) // 3:
+        raise BoardPoseInvalid(f"discs off their drawing: {', '.join(outliers)}")
+    distances = {
+        point.name: float(np.linalg.norm(residual))
+        for point, residual in zip(used, residuals, strict=True)
+    }
+    return BoardPose(pose, distances, tuple(outliers), chi2_ratio)
+
+
+def _fit(
+    drawing: Mapping[str, Array], points: Sequence[BoardPoint], disc_sigma_m: float
+) -> tuple[UncertainPose, Array, Array, float]:
+    """Pose, residuals (n, 3), their normalised squares (n,), and the reduced chi square."""
+    if len(points) < _MIN_DISCS:
+        names = ", ".join(point.name for point in points) or "none"
+        raise BoardPoseInvalid(f"{len(points)} discs, at least {_MIN_DISCS} needed: {names}")
+    on_board = np.stack([drawing[point.name] for point in points])
+    measured = np.stack([point.position_m for point in points])
+    if np.linalg.svd(on_board - on_board.mean(axis=0), compute_uv=False)[1] < 10 * MM:
+        raise BoardPoseInvalid("the discs lie on a line")
+    own = np.eye(3) * disc_sigma_m**2
+    weights = np.linalg.inv(np.stack([point.covariance_m2 + own for point in points]))
+    rotation, _ = Rotation.align_vectors(
+        measured - measured.mean(axis=0), on_board - on_board.mean(axis=0)
+    )
+    translation = measured.mean(axis=0) - rotation.apply(on_board.mean(axis=0))
+    for _ in range(5):
+        turned = rotation.apply(on_board)
+        jacobian = np.stack([np.hstack([np.eye(3), -skew(row[0])]) for row in turned[:, None]])
+        residuals = measured - turned - translation
+        normal = np.einsum("nki,nkl,nlj->ij", jacobian, weights, jacobian)
+        delta = np.linalg.solve(normal, np.einsum("nki,nkl,nl->i", jacobian, weights, residuals))
+        translation = translation + delta[:3]
+        rotation = Rotation.from_rotvec(delta[3:]) * rotation
+    residuals = measured - rotation.apply(on_board) - translation
+    squares = np.einsum("nk,nkl,nl->n", residuals, weights, residuals)
+    chi2_ratio = float(squares.sum() / (3 * len(points) - 6))
+    covariance = np.linalg.inv(normal) * max(1.0, chi2_ratio)
+    pose = UncertainPose(RigidTransform.from_components(translation, rotation), covariance)
+    return pose, residuals, squares, chi2_ratio
+
+
+def _typical(squares: Array) -> float:
+    """Median of the squares over its expectation for three coordinates."""
+    return float(np.median(squares)) / 2.37

@@ -1,0 +1,34 @@
+"""The weighted mean of several determinations of one pose."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.geometry.pose import Array, pose_error
+from cellctl.geometry.uncertain import UncertainPose
+
+
+def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
+    """Mean and reduced chi square (1 when the poses agree within their covariances; 0 for one).
+
+    The covariance grows with the chi square where that is above 1.
+    """
+    mean = poses[0].pose
+    if len(poses) == 1:
+        return poses[0], 0.0
+    weights = [np.linalg.inv(pose.covariance) for pose in poses]
+    covariance = np.linalg.inv(np.sum(weights, axis=0))
+    for _ in range(5):
+        deltas = [np.concatenate(pose_error(mean, pose.pose)) for pose in poses]
+        pulls = np.sum([w @ d for w, d in zip(weights, deltas, strict=True)], axis=0)
+        mean = _moved(mean, covariance @ pulls)
+    deltas = [np.concatenate(pose_error(mean, pose.pose)) for pose in poses]
+    squares = sum(float(d @ w @ d) for w, d in zip(weights, deltas, strict=True))
+    chi2_ratio = squares / (6 * (len(poses) - 1))
+    return UncertainPose(mean, covariance * max(1.0, chi2_ratio)), chi2_ratio
+
+
+def _moved(pose: RigidTransform, delta: Array) -> RigidTransform:
+    rotation = Rotation.from_rotvec(delta[3:]) * pose.rotation
+    return RigidTransform.from_components(pose.translation + delta[:3], rotation)
