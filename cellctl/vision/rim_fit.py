@@ -1,6 +1,6 @@
 """Maximum-likelihood fit of a rim to the grey values around it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,10 @@ _MAX_ITERATIONS = 25
 _CONVERGED_PX = 2e-4
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_STEP_PX = 0.7
+_MAX_DAMPING = 1e4
+_MAX_WALL_RATIO = 0.2
+_REWEIGHT = (1, 3, 6)
+_SETTLED_PX = 0.01
 _HUBER = 2.5
 _MIN_SCALE_GREY = 0.3
 """Rounding to 8 bit alone leaves this much."""
@@ -32,6 +36,7 @@ class RimFit:
     bic: float
     """Bayesian information criterion, to compare models on the same pixels."""
     converged: bool
+    pixels: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,79 +50,76 @@ class Light:
 def fit_rim(pixels: RimPixels, start: RimShape, light: Light) -> RimFit:
     """Fit shape and light jointly by robust Gauss-Newton steps from a start within 1–2 px."""
     px = _plane_units_per_px(pixels)
-    shape = start
     weights = np.ones(len(pixels.grey))
-    step_px = np.inf
-    cost = np.inf
-    damping = 1e-6
-    iteration = 0
-    solution = _solve(pixels, shape, light, weights, damping, px)
-    for iteration in range(_MAX_ITERATIONS):  # noqa: B007
-        candidate = _moved(shape, solution.step, px)
-        trial = _solve(pixels, candidate, light, weights, damping, px)
-        if trial.cost > solution.cost * (1.0 + 1e-9) and damping < 1e3:
+    best = _solve(pixels, start, light, weights)
+    damping, step_px = 1e-6, np.inf
+    for iteration in range(_MAX_ITERATIONS):
+        trial = _solve(pixels, _moved(best, damping, px), light, weights)
+        if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
-            solution = _solve(pixels, shape, light, weights, damping, px)
             continue
-        step_px = float(np.abs(candidate.vector[:3] - shape.vector[:3]).max() / px)
-        shape, damping = candidate, damping * 0.2
-        weights = _huber_weights(trial.residuals)
-        solution = _solve(pixels, shape, light, weights, damping, px)
+        step_px = float(np.abs(trial.shape.vector[:3] - best.shape.vector[:3]).max() / px)
+        best, damping = trial, damping * 0.2
         if step_px < _CONVERGED_PX:
             break
-    del cost
-    return _result(pixels, shape, solution, weights, converged=step_px < 10 * _CONVERGED_PX)
+        if iteration in _REWEIGHT or step_px < _SETTLED_PX:
+            weights = _huber_weights(best.residuals)
+            best = best.reweighted(weights)
+    return _result(pixels, best, converged=step_px < 10 * _CONVERGED_PX)
+
+
+def rim_cost(pixels: RimPixels, shape: RimShape, light: Light) -> float:
+    """Bayesian information criterion of a shape as it stands, with the best light for it."""
+    solution = _solve(pixels, shape, light, np.ones(len(pixels.grey)))
+    return _bic(solution)
 
 
 @dataclass(frozen=True, slots=True)
 class _Solution:
-    step: Array
+    """Best light for one shape, and what the next step needs."""
+
+    shape: RimShape
+    weights: Array
     residuals: Array
-    cost: float
-    normal: Array
-    """Normal matrix over light and shape, without damping."""
+    design: Array
+    """Columns: light, then shape, shape (n, lights + p)."""
     lights: int
     contrast_grey: float
 
+    @property
+    def cost(self) -> float:
+        return float(self.weights @ self.residuals**2)
 
-def _solve(
-    pixels: RimPixels, shape: RimShape, light: Light, weights: Array, damping: float, px: float
-) -> _Solution:
-    """Best light for a shape, and the Gauss-Newton step of the shape from there."""
+    def reweighted(self, weights: Array) -> "_Solution":
+        return replace(self, weights=weights)
+
+    def normal(self) -> Array:
+        return np.asarray(self.design.T @ (self.design * self.weights[:, None]))
+
+
+def _solve(pixels: RimPixels, shape: RimShape, light: Light, weights: Array) -> _Solution:
+    """Best light for a shape, by linear least squares, and the derivatives by light and shape."""
     image = rim_image(pixels, shape)
-    design, outside, wall = _light_columns(pixels, shape, image, light)
-    root = np.sqrt(weights)
-    weighted = design * root[:, None]
-    gram = weighted.T @ weighted
-    gram[np.diag_indices_from(gram)] += 1e-6 * (1.0 + np.diag(gram).max() * 1e-6)
-    levels = np.linalg.solve(gram, weighted.T @ (pixels.grey * root))
-    residuals = pixels.grey - design @ levels
+    columns, outside, wall = _light_columns(pixels, shape, image, light)
+    weighted = columns * weights[:, None]
+    gram = weighted.T @ columns
+    gram[np.diag_indices_from(gram)] += 1e-6 + 1e-9 * np.diag(gram).max()
+    levels = np.linalg.solve(gram, weighted.T @ pixels.grey)
     plate_grey = outside @ levels[: outside.shape[1]]
-    dark_grey = levels[-1]
+    dark_grey = float(levels[-1])
     if wall is None:
         by_shape = (plate_grey - dark_grey)[:, None] * image.outside_by_shape
     else:
         wall_grey = wall @ levels[outside.shape[1] : -1]
         by_shape = (plate_grey - wall_grey)[:, None] * image.outside_by_shape
         by_shape += (wall_grey - dark_grey)[:, None] * image.not_dark_by_shape
-    units = np.array([px, px, px, 1.0, 1.0][: by_shape.shape[1]])
-    if by_shape.shape[1] > 4:
-        units[4] = px / max(float(np.linalg.norm(shape.centre)), shape.radius)
-    full = np.hstack([weighted, by_shape * (units * root[:, None])])
-    normal = full.T @ full
-    damped = normal.copy()
-    damped[np.diag_indices_from(damped)] *= 1.0 + damping
-    damped[np.diag_indices_from(damped)] += 1e-9 * np.trace(normal) / len(normal)
-    delta = np.linalg.solve(damped, full.T @ (residuals * root))
-    lights = design.shape[1]
-    scale = np.concatenate([np.ones(lights), units])
     return _Solution(
-        delta[lights:] * units,
-        residuals,
-        float(weights @ residuals**2),
-        normal / np.outer(scale, scale),
-        lights,
-        float(np.mean(plate_grey)) - float(dark_grey),
+        shape,
+        weights,
+        pixels.grey - columns @ levels,
+        np.hstack([columns, by_shape]),
+        columns.shape[1],
+        float(np.mean(plate_grey)) - dark_grey,
     )
 
 
@@ -141,16 +143,19 @@ def _light_columns(
     return np.hstack([plate, wall * seen, dark]), outside, wall
 
 
-def _moved(shape: RimShape, step: Array, px: float) -> RimShape:
-    """The shape after a step, kept inside what is physically possible."""
-    limited = np.array(step)
+def _moved(solution: _Solution, damping: float, px: float) -> RimShape:
+    """The shape after a damped Gauss-Newton step, inside what is physically possible."""
+    normal = solution.normal()
+    size = np.sqrt(np.diag(normal)) + 1e-12
+    scaled = normal / np.outer(size, size)
+    scaled[np.diag_indices_from(scaled)] += damping + 1e-10
+    gradient = solution.design.T @ (solution.residuals * solution.weights)
+    step = (np.linalg.solve(scaled, gradient / size) / size)[solution.lights :]
     longest = float(np.abs(step[:3]).max()) / px
-    if longest > _MAX_STEP_PX:
-        limited *= _MAX_STEP_PX / longest
-    vector = shape.vector + limited
+    vector = solution.shape.vector + step * min(1.0, _MAX_STEP_PX / max(longest, 1e-12))
     vector[3] = np.clip(vector[3], *_BLUR_LIMITS_PX)
     if len(vector) > 4:
-        vector[4] = np.clip(vector[4], 0.0, 0.2)
+        vector[4] = np.clip(vector[4], 0.0, _MAX_WALL_RATIO)
     return RimShape.from_vector(vector)
 
 
@@ -167,23 +172,29 @@ def _plane_units_per_px(pixels: RimPixels) -> float:
     return float(np.sqrt(np.abs(np.mean(np.linalg.det(pixels.jacobian)))))
 
 
-def _result(
-    pixels: RimPixels, shape: RimShape, solution: _Solution, weights: Array, *, converged: bool
-) -> RimFit:
-    residuals, count = solution.residuals, len(pixels.grey)
-    sigma = max(_robust_sigma(residuals), _MIN_SCALE_GREY)
-    free = solution.lights + len(shape.vector)
-    variance = float(weights @ residuals**2) / max(float(weights.sum()) - free, 1.0)
-    size = np.sqrt(np.diag(solution.normal)) + 1e-12
-    scaled = solution.normal / np.outer(size, size)
+def _bic(solution: _Solution) -> float:
+    count = len(solution.residuals)
+    mean_square = solution.cost / float(solution.weights.sum())
+    free = solution.design.shape[1]
+    return count * float(np.log(max(mean_square, 1e-6))) + free * float(np.log(count))
+
+
+def _result(pixels: RimPixels, solution: _Solution, *, converged: bool) -> RimFit:
+    sigma = max(_robust_sigma(solution.residuals), _MIN_SCALE_GREY)
+    freedom = float(solution.weights.sum()) - solution.design.shape[1]
+    variance = solution.cost / max(freedom, 1.0)
+    normal = solution.normal()
+    size = np.sqrt(np.diag(normal)) + 1e-12
+    scaled = normal / np.outer(size, size)
     inverse = np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(size, size)
     geometry = slice(solution.lights, solution.lights + 3)
     return RimFit(
-        shape=shape,
+        shape=solution.shape,
         covariance=inverse[geometry, geometry] * variance,
         residual_grey=sigma,
         contrast_grey=solution.contrast_grey,
-        explained=float(np.mean(np.abs(residuals) < 3.0 * sigma)),
-        bic=count * float(np.log(np.mean(weights * residuals**2))) + free * float(np.log(count)),
+        explained=float(np.mean(np.abs(solution.residuals) < 3.0 * sigma)),
+        bic=_bic(solution),
         converged=converged,
+        pixels=len(pixels.grey),
     )

@@ -112,9 +112,7 @@ def rim_image(pixels: RimPixels, shape: RimShape) -> RimImage:
     return RimImage(outside, not_dark, outside_by_shape, not_dark_by_shape)
 
 
-def _blurred_step(
-    distance_px: Array, by_shape: Array, blur_px: float
-) -> tuple[Array, Array]:
+def _blurred_step(distance_px: Array, by_shape: Array, blur_px: float) -> tuple[Array, Array]:
     """Normal distribution function of the distance and its derivatives by the shape."""
     z = distance_px / blur_px
     density = np.exp(-0.5 * z * z) / (_SQRT_2PI * blur_px)

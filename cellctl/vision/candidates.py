@@ -1,0 +1,121 @@
+"""Where round things might be: gradient voting at reduced scale.
+
+Every edge pixel votes for centres along its gradient at the radii in question. Arcs vote as well
+as closed contours do, so a visible wall, a thread or a scratch across the rim does not hide a hole.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.stereo_camera import Image
+
+_MAX_EDGES = 30000
+_SUPPORT = 0.42
+"""Share of the circumference that must vote for a centre."""
+_NOISE_FACTOR = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A round feature, coarsely located."""
+
+    centre_px: Array
+    """Shape (2,)."""
+    radius_px: float
+    support: float
+    """Share of the circumference with an edge that points at the centre."""
+
+
+def find_candidates(
+    image: Image,
+    radii_px: tuple[float, float],
+    *,
+    bright: bool = False,
+    limit: int = 60,
+) -> list[Candidate]:
+    """Dark (or bright) discs with a radius in the given range, best supported first."""
+    shrink = _shrink(radii_px[0])
+    small = _reduced(image, shrink)
+    radii = _radii(radii_px[0] / shrink, radii_px[1] / shrink)
+    edges = _edges(small, bright=bright)
+    if edges is None:
+        return []
+    votes = _vote(small.shape, edges, radii)
+    found = _peaks(votes, radii, limit)
+    return [
+        Candidate((centre + 0.5) * shrink - 0.5, float(radius * shrink), support)
+        for centre, radius, support in found
+    ]
+
+
+def _shrink(smallest_radius_px: float) -> int:
+    """Largest reduction that leaves a radius of 4 px."""
+    for shrink in (4, 3, 2):
+        if smallest_radius_px / shrink >= 4.0:
+            return shrink
+    return 1
+
+
+def _reduced(image: Image, shrink: int) -> Array:
+    height, width = image.shape
+    size = (width // shrink, height // shrink)
+    cropped = image[: size[1] * shrink, : size[0] * shrink]
+    small = cv2.resize(cropped, size, interpolation=cv2.INTER_AREA) if shrink > 1 else cropped
+    return np.asarray(cv2.GaussianBlur(small.astype(np.float32), (0, 0), 0.8))
+
+
+def _radii(smallest: float, largest: float) -> Array:
+    count = max(2, int(np.ceil((largest - smallest) / 0.7)) + 1)
+    return np.linspace(smallest, largest, count)
+
+
+def _edges(small: Array, *, bright: bool) -> tuple[Array, Array, Array] | None:
+    """Positions, unit vectors towards the inside of a feature, and thinned by strength."""
+    gx = cv2.Sobel(small, cv2.CV_32F, 1, 0, scale=0.125)
+    gy = cv2.Sobel(small, cv2.CV_32F, 0, 1, scale=0.125)
+    strength = cv2.magnitude(gx, gy)
+    floor = max(_NOISE_FACTOR * float(np.median(strength)) * 0.6, 1.5)
+    rows, columns = np.nonzero(strength > floor)
+    if len(rows) == 0:
+        return None
+    value = strength[rows, columns]
+    if len(rows) > _MAX_EDGES:
+        keep = np.argpartition(value, -_MAX_EDGES)[-_MAX_EDGES:]
+        rows, columns, value = rows[keep], columns[keep], value[keep]
+    sign = 1.0 if bright else -1.0
+    inward = np.column_stack([gx[rows, columns], gy[rows, columns]]) * (sign / value)[:, None]
+    return np.column_stack([columns, rows]).astype(np.float32), inward, value
+
+
+def _vote(shape: tuple[int, ...], edges: tuple[Array, Array, Array], radii: Array) -> Array:
+    """Support in [0, ~1] for a centre at each pixel and radius, shape (len(radii), h, w)."""
+    positions, inward, _ = edges
+    height, width = shape
+    votes = np.zeros((len(radii), height, width), dtype=np.float32)
+    for index, radius in enumerate(radii):
+        centres = np.rint(positions + inward * radius).astype(np.int32)
+        inside = (centres >= 0).all(axis=1) & (centres[:, 0] < width) & (centres[:, 1] < height)
+        flat = centres[inside, 1] * width + centres[inside, 0]
+        counts = np.bincount(flat, minlength=height * width).reshape(height, width)
+        gathered = cv2.boxFilter(counts.astype(np.float32), -1, (3, 3), normalize=False)
+        # An edge is about two pixels wide, so a full circle gathers some 4 π r votes.
+        votes[index] = gathered / (4.0 * np.pi * radius)
+    return votes
+
+
+def _peaks(votes: Array, radii: Array, limit: int) -> list[tuple[Array, float, float]]:
+    best = votes.max(axis=0)
+    size = 2 * max(1, int(radii[0] * 0.5)) + 1
+    highest = cv2.dilate(best, np.ones((size, size), np.uint8))
+    rows, columns = np.nonzero((best >= highest) & (best > _SUPPORT))
+    order = np.argsort(-best[rows, columns])[:limit]
+    found = []
+    for row, column in zip(rows[order], columns[order], strict=True):
+        which = int(np.argmax(votes[:, row, column]))
+        found.append(
+            (np.array([column, row], dtype=float), float(radii[which]), float(best[row, column]))
+        )
+    return found

@@ -1,0 +1,244 @@
+"""Measure the named holes of a part in one stereo pair."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.vision import (
+    HoleAmbiguous,
+    HoleMissing,
+    ResidualsTooLarge,
+    VisionError,
+)
+from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.diagnose import fault_without_layout
+from cellctl.vision.features import Hole
+from cellctl.vision.image_checks import check_pair
+from cellctl.vision.layout import Assignment, Spot, assignments
+from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement, away_normal
+from cellctl.vision.paper import measure_pair_by_paper
+from cellctl.vision.registration import kabsch, on_a_line
+from cellctl.vision.rim import Rejection, Rim, View, coarse_rim, measure_rim
+from cellctl.vision.search import NEAR, WIDE, spots_anywhere, spots_near
+from cellctl.vision.stereo import epipolar_distances_px, midpoints, triangulate
+from cellctl.vision.stereo_head import StereoHead
+
+SEARCH_RADIUS_M = 12e-3
+LAYOUT_TOLERANCE_M = 0.3e-3
+"""Largest deviation of a measured hole from the drawing."""
+
+_COARSE_TOLERANCE_M = 2.5e-3
+_COARSE_REACH_PX, _FINE_REACH_PX = 7.0, 1.5
+_COARSE_EPIPOLAR_PX, _FINE_EPIPOLAR_PX = 2.5, 0.35
+_SIZE_AGREEMENT = 0.02
+_SAME_PLACE_M = 2e-3
+_MAX_TRIED = 6
+
+
+def measure_pair(
+    left: Image,
+    right: Image,
+    head: StereoHead,
+    holes: Sequence[Hole],
+    *,
+    camera_T_part: RigidTransform | None = None,
+    method: Method = "default",
+    search_radius_m: float = SEARCH_RADIUS_M,
+    layout_tolerance_m: float = LAYOUT_TOLERANCE_M,
+) -> PairMeasurement:
+    """Measure every hole of ``holes``, or raise the ``VisionError`` that says why not.
+
+    With ``camera_T_part`` (left camera) each hole is looked for within ``search_radius_m`` of its
+    predicted place, without it in the whole image. Nothing is guessed: a hole that is missing, or
+    that could be either of two features, is a fault.
+    """
+    check_pair(left, right, head)
+    if method == "paper":
+        return measure_pair_by_paper(
+            left, right, head, holes, camera_T_part=camera_T_part, search_radius_m=search_radius_m
+        )
+    found = _find(left, right, head, holes, camera_T_part, search_radius_m)
+    views = (View(left, head.left), View(right, head.right))
+    good: list[PairMeasurement] = []
+    faults: list[VisionError] = []
+    for assignment in found[:_MAX_TRIED]:
+        try:
+            good.append(_measure(views, head, holes, assignment, camera_T_part, layout_tolerance_m))
+        except VisionError as fault:
+            faults.append(fault)
+    if not good:
+        raise faults[0]
+    for other in good[1:]:
+        _refuse_ambiguity(good[0], other)
+    return good[0]
+
+
+def _find(
+    left: Image,
+    right: Image,
+    head: StereoHead,
+    holes: Sequence[Hole],
+    camera_T_part: RigidTransform | None,
+    search_radius_m: float,
+) -> list[Assignment]:
+    """Distinct assignments of features to holes, best first; a fault when there is none."""
+    spots: list[Spot] = []
+    for reach in (NEAR, WIDE):
+        if camera_T_part is None:
+            spots = spots_anywhere(head, left, right, holes, reach)
+        else:
+            spots = spots_near(head, left, right, holes, camera_T_part, search_radius_m)
+        found = assignments(
+            holes,
+            spots,
+            tolerance_m=_COARSE_TOLERANCE_M,
+            camera_T_part=camera_T_part,
+            search_radius_m=search_radius_m,
+        )
+        if found:
+            return _distinct(found)
+        if camera_T_part is not None:
+            break
+    raise fault_without_layout(head, left, right, holes, spots, camera_T_part, search_radius_m)
+
+
+def _distinct(found: Sequence[Assignment]) -> list[Assignment]:
+    """One of each group of assignments that put all holes at the same places."""
+    kept: list[Assignment] = []
+    for item in found:
+        apart = (np.abs(item.positions_m - other.positions_m).max() for other in kept)
+        if all(distance > _SAME_PLACE_M for distance in apart):
+            kept.append(item)
+    return kept
+
+
+def _measure(
+    views: tuple[View, View],
+    head: StereoHead,
+    holes: Sequence[Hole],
+    assignment: Assignment,
+    camera_T_part: RigidTransform | None,
+    tolerance_m: float,
+) -> PairMeasurement:
+    positions_m = assignment.positions_m
+    normal = _plane_normal(holes, positions_m, camera_T_part)
+    positions_m = _coarse_positions(views, head, holes, positions_m, normal)
+    _check_layout(holes, positions_m, tolerance_m + 0.5e-3)
+    normal = _plane_normal(holes, positions_m, camera_T_part)
+    measured = tuple(
+        _measure_hole(views, head, hole, position_m, normal)
+        for hole, position_m in zip(holes, positions_m, strict=True)
+    )
+    result = PairMeasurement("default", measured)
+    _check_layout(holes, result.positions_m, tolerance_m)
+    return result
+
+
+def _plane_normal(
+    holes: Sequence[Hole], positions_m: Array, camera_T_part: RigidTransform | None
+) -> Array:
+    """Normal of the holes' plane away from the head, from the best source there is."""
+    nominal = np.array([hole.position_m for hole in holes])
+    if not on_a_line(nominal):
+        return away_normal(kabsch(nominal, positions_m))
+    if camera_T_part is not None:
+        return away_normal(camera_T_part)
+    middle = positions_m.mean(axis=0)
+    return np.asarray(middle / np.linalg.norm(middle))
+
+
+def _coarse_positions(
+    views: tuple[View, View],
+    head: StereoHead,
+    holes: Sequence[Hole],
+    positions_m: Array,
+    normal: Array,
+) -> Array:
+    pixels = np.zeros((2, len(holes), 2))
+    for index, (hole, position_m) in enumerate(zip(holes, positions_m, strict=True)):
+        for camera, (view, place, away) in enumerate(_both(views, head, position_m, normal)):
+            found = coarse_rim(view, hole, place, away, _COARSE_REACH_PX)
+            if isinstance(found, Rejection):
+                raise HoleMissing(f"{hole.name} ({_side(camera)}): {found.reason}")
+            pixels[camera, index] = found
+    distances = np.diag(epipolar_distances_px(head, pixels[0], pixels[1]))
+    for hole, distance in zip(holes, distances, strict=True):
+        if distance > _COARSE_EPIPOLAR_PX:
+            raise HoleMissing(f"{hole.name}: left and right image disagree by {distance:.1f} px")
+    return midpoints(head, pixels[0], pixels[1])
+
+
+def _measure_hole(
+    views: tuple[View, View], head: StereoHead, hole: Hole, position_m: Array, normal: Array
+) -> HoleMeasurement:
+    rims: list[Rim] = []
+    for camera, (view, place, away) in enumerate(_both(views, head, position_m, normal)):
+        rim = measure_rim(view, hole, place, away, _FINE_REACH_PX)
+        if isinstance(rim, Rejection):
+            raise HoleMissing(f"{hole.name} ({_side(camera)}): {rim.reason}")
+        rims.append(rim)
+    left, right = rims
+    epipolar_px = float(
+        epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
+    )
+    if epipolar_px > _FINE_EPIPOLAR_PX:
+        raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
+    if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:
+        raise HoleMissing(f"{hole.name}: left and right image show rims of different size")
+    point = triangulate(
+        head, left.point_px, right.point_px, left.covariance_px2, right.covariance_px2
+    )
+    return HoleMeasurement(
+        name=hole.name,
+        kind=hole.kind,
+        left_px=left.point_px,
+        right_px=right.point_px,
+        left_covariance_px2=left.covariance_px2,
+        right_covariance_px2=right.covariance_px2,
+        position_m=point.position_m,
+        covariance_m2=point.covariance_m2,
+        left_ellipse=left.ellipse,
+        right_ellipse=right.ellipse,
+        diameter_m=hole.diameter_m * (left.size_ratio + right.size_ratio) / 2.0,
+        epipolar_px=epipolar_px,
+    )
+
+
+def _both(
+    views: tuple[View, View], head: StereoHead, position_m: Array, normal: Array
+) -> list[tuple[View, Array, Array]]:
+    """View, place and plane normal for the left and for the right camera."""
+    in_right = head.rotation @ position_m + head.translation_m
+    return [(views[0], position_m, normal), (views[1], in_right, head.rotation @ normal)]
+
+
+def _side(camera: int) -> str:
+    return ("left", "right")[camera]
+
+
+def _check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float) -> None:
+    nominal = np.array([hole.position_m for hole in holes])
+    if on_a_line(nominal):
+        wanted = np.linalg.norm(nominal - nominal[0], axis=1)
+        have = np.linalg.norm(positions_m - positions_m[0], axis=1)
+        misfits = np.abs(have - wanted)
+    else:
+        pose = kabsch(nominal, positions_m)
+        misfits = np.linalg.norm(positions_m - pose.apply(nominal), axis=1)
+    worst = int(np.argmax(misfits))
+    if misfits[worst] > tolerance_m:
+        raise ResidualsTooLarge(
+            f"{holes[worst].name} is {misfits[worst] / MM:.3f} mm off the drawing, "
+            f"allowed {tolerance_m / MM:.3f} mm"
+        )
+
+
+def _refuse_ambiguity(first: PairMeasurement, other: PairMeasurement) -> None:
+    for one, two in zip(first.holes, other.holes, strict=True):
+        distance_m = float(np.linalg.norm(one.position_m - two.position_m))
+        if distance_m > _SAME_PLACE_M / 4.0:
+            raise HoleAmbiguous(
+                f"{one.name} could be either of two features {distance_m / MM:.1f} mm apart"
+            )

@@ -1,0 +1,69 @@
+"""What a stereo pair yields: the values that the measurement functions share."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.ellipse import Ellipse
+from cellctl.vision.features import HoleKind
+
+Method = Literal["default", "paper"]
+Side = Literal["left", "right"]
+
+
+@dataclass(frozen=True, slots=True)
+class HoleMeasurement:
+    """One hole, measured by both cameras of a head."""
+
+    name: str
+    kind: HoleKind
+    left_px: Array
+    """Raw pixel, shape (2,). Default method: onto which the circle's centre projects. Paper's
+    method: centre of the ellipse."""
+    right_px: Array
+    left_covariance_px2: Array
+    """Shape (2, 2)."""
+    right_covariance_px2: Array
+    position_m: Array
+    """Shape (3,), in the left camera."""
+    covariance_m2: Array
+    """Shape (3, 3)."""
+    left_ellipse: Ellipse
+    right_ellipse: Ellipse
+    diameter_m: float
+    """As measured, mean of both cameras."""
+    epipolar_px: float
+    """Distance of the right point from the epipolar line of the left one."""
+
+
+@dataclass(frozen=True, slots=True)
+class PairMeasurement:
+    """The holes of one stereo pair, or of several averaged ones."""
+
+    method: Method
+    holes: tuple[HoleMeasurement, ...]
+    frames: int = 1
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names in the order of ``holes``."""
+        return tuple(hole.name for hole in self.holes)
+
+    @property
+    def positions_m(self) -> Array:
+        """Shape (n, 3)."""
+        return np.array([hole.position_m for hole in self.holes]).reshape(-1, 3)
+
+    @property
+    def covariances_m2(self) -> Array:
+        """Shape (n, 3, 3)."""
+        return np.array([hole.covariance_m2 for hole in self.holes]).reshape(-1, 3, 3)
+
+
+def away_normal(camera_T_part: RigidTransform) -> Array:
+    """Unit normal of a part's face, pointing away from the camera that sees it."""
+    normal: Array = -camera_T_part.rotation.apply([0.0, 0.0, 1.0])
+    return normal

@@ -1,0 +1,174 @@
+"""The paper's image steps (section 2.2.1), kept as the named baseline ``method="paper"``.
+
+(1) Smoothing, (2) Canny edges, (3) least-squares ellipse, (4) screening by area and perimeter; the
+raw centre of the ellipse is triangulated. Which ellipse is which hole the paper leaves open; the
+layout search of the default method is used for that.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.vision import HoleMissing
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.candidates import Candidate
+from cellctl.vision.ellipse import Ellipse
+from cellctl.vision.features import Hole
+from cellctl.vision.layout import Spot, assignments, pair_spots
+from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
+from cellctl.vision.search import WIDE, working_distance_m
+from cellctl.vision.stereo import epipolar_distances_px, triangulate
+from cellctl.vision.stereo_head import CameraModel, StereoHead
+
+CENTRE_SIGMA_PX = 0.03
+"""Scatter of these centres on clean holes; the method itself gives none."""
+
+_CANNY = (40.0, 120.0)
+_AREA_TOLERANCE, _PERIMETER_TOLERANCE = 0.25, 0.15
+_LAYOUT_TOLERANCE_M = 1.0e-3
+_EPIPOLAR_PX = 2.5
+
+
+@dataclass(frozen=True, slots=True)
+class _Found(Candidate):
+    ellipse: Ellipse
+
+
+def fitted_ellipses(image: Image) -> list[Ellipse]:
+    """Steps 1 to 3: every contour's least-squares ellipse in the raw image."""
+    smooth = cv2.GaussianBlur(image, (5, 5), 0)
+    edges = cv2.Canny(smooth, *_CANNY)
+    contours, _ = cv2.findContours(edges, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
+    found = []
+    for contour in contours:
+        if len(contour) < 20:
+            continue
+        (x, y), (first, second), angle_deg = cv2.fitEllipse(contour)
+        if not (np.isfinite([x, y, first, second]).all() and min(first, second) > 0):
+            continue
+        turn = 0.0 if first >= second else 90.0
+        axes = (max(first, second) / 2.0, min(first, second) / 2.0)
+        found.append(Ellipse(np.array([x, y]), axes, float(np.radians(angle_deg + turn))))
+    return found
+
+
+def measure_pair_by_paper(
+    left: Image,
+    right: Image,
+    head: StereoHead,
+    holes: Sequence[Hole],
+    *,
+    camera_T_part: RigidTransform | None,
+    search_radius_m: float,
+) -> PairMeasurement:
+    """Measure a pair by the paper's steps; raises ``HoleMissing`` when no layout fits."""
+    distance_m = working_distance_m(head)
+    depth_m = (WIDE[0] * distance_m, WIDE[1] * distance_m)
+    if camera_T_part is not None:
+        expected = camera_T_part.apply(np.array([hole.position_m for hole in holes]))[:, 2]
+        depth_m = (float(expected.min()) - search_radius_m, float(expected.max()) + search_radius_m)
+    ellipses = [fitted_ellipses(image) for image in (left, right)]
+    spots: list[Spot] = []
+    for bright in (False, True):
+        group = [hole for hole in holes if (hole.kind == "disc") == bright]
+        screened = [
+            _screened(found, camera, group, depth_m)
+            for found, camera in zip(ellipses, (head.left, head.right), strict=True)
+        ]
+        spots += pair_spots(
+            head,
+            screened[0],
+            screened[1],
+            bright=bright,
+            epipolar_px=_EPIPOLAR_PX,
+            depth_m=depth_m,
+        )
+    spots = [spot for spot in spots if _right_size(spot, holes)]
+    found = assignments(
+        holes,
+        spots,
+        tolerance_m=_LAYOUT_TOLERANCE_M,
+        camera_T_part=camera_T_part,
+        search_radius_m=search_radius_m,
+    )
+    if not found:
+        raise HoleMissing("no arrangement of the ellipses that pass the screening fits the drawing")
+    pairs = zip(holes, found[0].spots, strict=True)
+    return PairMeasurement("paper", tuple(_hole(head, hole, spot) for hole, spot in pairs))
+
+
+def _screened(
+    ellipses: Sequence[Ellipse],
+    camera: CameraModel,
+    holes: Sequence[Hole],
+    depth_m: tuple[float, float],
+) -> list[Candidate]:
+    """Step 4: area and perimeter as a circle of one of the diameters would have them."""
+    focal = float(camera.camera_matrix[0, 0])
+    kept: list[Candidate] = []
+    for ellipse in ellipses:
+        for diameter_m in {hole.diameter_m for hole in holes}:
+            near, far = (focal * diameter_m / 2.0 / depth for depth in depth_m)
+            area_ok = (
+                np.pi * far**2 * (1 - _AREA_TOLERANCE)
+                < ellipse.area_px2
+                < np.pi * near**2 * (1 + _AREA_TOLERANCE)
+            )
+            perimeter_ok = (
+                2 * np.pi * far * (1 - _PERIMETER_TOLERANCE)
+                < ellipse.perimeter_px
+                < 2 * np.pi * near * (1 + _PERIMETER_TOLERANCE)
+            )
+            if area_ok and perimeter_ok:
+                radius_px = float(np.sqrt(ellipse.area_px2 / np.pi))
+                kept.append(_Found(ellipse.centre_px, radius_px, 1.0, ellipse))
+                break
+    return kept
+
+
+def _right_size(spot: Spot, holes: Sequence[Hole]) -> bool:
+    return any(abs(spot.diameter_m / hole.diameter_m - 1.0) < 0.12 for hole in holes)
+
+
+def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
+    left, right = spot.left, spot.right
+    assert isinstance(left, _Found) and isinstance(right, _Found)
+    covariance = np.eye(2) * CENTRE_SIGMA_PX**2
+    point = triangulate(head, left.centre_px, right.centre_px, covariance, covariance)
+    epipolar = epipolar_distances_px(head, left.centre_px[None], right.centre_px[None])
+    return HoleMeasurement(
+        name=hole.name,
+        kind=hole.kind,
+        left_px=left.centre_px,
+        right_px=right.centre_px,
+        left_covariance_px2=covariance,
+        right_covariance_px2=covariance,
+        position_m=point.position_m,
+        covariance_m2=point.covariance_m2,
+        left_ellipse=left.ellipse,
+        right_ellipse=right.ellipse,
+        diameter_m=spot.diameter_m,
+        epipolar_px=float(epipolar[0, 0]),
+    )
+
+
+def paper_frame(points_m: Array) -> RigidTransform:
+    """Frame on six holes (section 2.2.1), shape (6, 3) in the order P1…P6, in one camera's frame.
+
+    Plane through all points by least squares, points projected on it, origin at P1'', x along
+    P1''→P5'', z the plane's normal towards the camera, y right-handed.
+    """
+    middle = points_m.mean(axis=0)
+    normal = np.linalg.svd(points_m - middle)[2][2]
+    normal = normal if normal @ middle < 0 else -normal
+    flat = points_m - np.outer((points_m - middle) @ normal, normal)
+    along = flat[4] - flat[0]
+    along /= np.linalg.norm(along)
+    matrix = np.eye(4)
+    matrix[:3, :3] = np.column_stack([along, np.cross(normal, along), normal])
+    matrix[:3, 3] = flat[0]
+    return RigidTransform.from_matrix(matrix)

@@ -1,0 +1,62 @@
+"""Rigid registration of measured points on their nominal positions, weighted by covariance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skew
+
+
+@dataclass(frozen=True, slots=True)
+class Registration:
+    """``camera_T_part`` that carries nominal points onto measured ones."""
+
+    pose: RigidTransform
+    residuals_m: Array
+    """Measured minus fitted, shape (n, 3), camera frame."""
+    gain: Array
+    """Derivative of the pose (order of ``UncertainPose``) by the measured points, (6, 3n)."""
+    chi2: float
+    """Weighted sum of squared residuals, for 3n - 6 degrees of freedom."""
+
+
+def kabsch(nominal_m: Array, measured_m: Array) -> RigidTransform:
+    """Unweighted least-squares pose for at least three points that are not on a line."""
+    nominal_mean, measured_mean = nominal_m.mean(axis=0), measured_m.mean(axis=0)
+    u, _, vt = np.linalg.svd((measured_m - measured_mean).T @ (nominal_m - nominal_mean))
+    sign = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
+    rotation = u @ sign @ vt
+    return RigidTransform.from_components(
+        measured_mean - rotation @ nominal_mean, Rotation.from_matrix(rotation)
+    )
+
+
+def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Registration:
+    """Generalised least squares; ``covariances_m2`` has shape (n, 3, 3)."""
+    pose = kabsch(nominal_m, measured_m)
+    weights = np.linalg.inv(covariances_m2)
+    gain = np.zeros((6, 3 * len(nominal_m)))
+    for _ in range(4):
+        turned = pose.rotation.apply(nominal_m)
+        residuals = measured_m - turned - pose.translation
+        design = np.stack([np.hstack([np.eye(3), -skew(point)]) for point in turned])
+        weighted = np.einsum("nij,njk->nik", weights, design)
+        normal = np.einsum("nij,nik->jk", design, weighted)
+        gain = np.linalg.solve(normal, np.concatenate(list(weighted)).T)
+        step = gain @ residuals.ravel()
+        pose = RigidTransform.from_components(
+            pose.translation + step[:3], Rotation.from_rotvec(step[3:]) * pose.rotation
+        )
+    residuals = measured_m - pose.apply(nominal_m)
+    chi2 = float(np.einsum("ni,nij,nj->", residuals, weights, residuals))
+    return Registration(pose, residuals, gain, chi2)
+
+
+def on_a_line(points_m: Array) -> bool:
+    """Whether points, shape (n, 3), fail to span a plane."""
+    if len(points_m) < 3:
+        return True
+    spread = np.linalg.svd(points_m - points_m.mean(axis=0), compute_uv=False)
+    return bool(spread[1] < 0.05 * spread[0])

@@ -1,0 +1,106 @@
+"""Two rays to a point: epipolar distance, triangulation and its covariance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skew
+from cellctl.vision.camera import distort_jacobian, project, undistort
+from cellctl.vision.stereo_head import StereoHead
+
+
+@dataclass(frozen=True, slots=True)
+class StereoPoint:
+    """A point seen by both cameras."""
+
+    position_m: Array
+    """Shape (3,), in the left camera."""
+    covariance_m2: Array
+    """Shape (3, 3)."""
+    epipolar_px: float
+    """Weighted misfit of the two image points, in standard deviations (one degree of freedom)."""
+
+
+def essential_matrix(rotation: Array, translation: Array) -> Array:
+    """E = [t]× R, with ``x_rightᵀ E x_left = 0`` for normalised rays (paper, table 1)."""
+    return skew(translation) @ rotation
+
+
+def fundamental_matrix(head: StereoHead) -> Array:
+    """F ∝ K_right⁻ᵀ E K_left⁻¹ for undistorted pixels, shape (3, 3), scaled to F[2, 2] = 1."""
+    essential = essential_matrix(head.rotation, head.translation_m)
+    fundamental = (
+        np.linalg.inv(head.right.camera_matrix).T
+        @ essential
+        @ np.linalg.inv(head.left.camera_matrix)
+    )
+    return np.asarray(fundamental / fundamental[2, 2])
+
+
+def epipolar_distances_px(head: StereoHead, left_px: Array, right_px: Array) -> Array:
+    """Distance of each right point from the epipolar line of each left point, shape (n, m)."""
+    left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
+    right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
+    lines = left @ essential_matrix(head.rotation, head.translation_m).T
+    lines /= np.linalg.norm(lines[:, :2], axis=1)[:, None]
+    return np.asarray(np.abs(lines @ right.T) * head.right.camera_matrix[0, 0])
+
+
+def midpoints(head: StereoHead, left_px: Array, right_px: Array) -> Array:
+    """Points half-way between the two rays of each pair, shape (n, 3), left camera, m."""
+    left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
+    right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
+    origin = -head.rotation.T @ head.translation_m
+    right = right @ head.rotation
+    ll, rr, lr = (left**2).sum(1), (right**2).sum(1), (left * right).sum(1)
+    lo, ro = left @ origin, right @ origin
+    determinant = ll * rr - lr**2
+    along_left = (rr * lo - lr * ro) / determinant
+    along_right = (lr * lo - ll * ro) / determinant
+    return np.asarray((left * along_left[:, None] + origin + right * along_right[:, None]) / 2.0)
+
+
+def triangulate(
+    head: StereoHead,
+    left_px: Array,
+    right_px: Array,
+    left_covariance_px2: Array,
+    right_covariance_px2: Array,
+) -> StereoPoint:
+    """Maximum-likelihood point for two image points with covariances."""
+    point = midpoints(head, left_px[None], right_px[None])[0]
+    weight = np.zeros((4, 4))
+    weight[:2, :2] = np.linalg.inv(left_covariance_px2)
+    weight[2:, 2:] = np.linalg.inv(right_covariance_px2)
+    for _ in range(3):
+        residual, jacobian = _reprojection(head, point, left_px, right_px)
+        normal = jacobian.T @ weight @ jacobian
+        point = point + np.linalg.solve(normal, jacobian.T @ weight @ residual)
+    residual, jacobian = _reprojection(head, point, left_px, right_px)
+    normal = jacobian.T @ weight @ jacobian
+    misfit = float(np.sqrt(max(residual @ weight @ residual, 0.0)))
+    return StereoPoint(point, np.linalg.inv(normal), misfit)
+
+
+def _reprojection(
+    head: StereoHead, point: Array, left_px: Array, right_px: Array
+) -> tuple[Array, Array]:
+    in_right = head.rotation @ point + head.translation_m
+    seen = np.concatenate(
+        [project(head.left, point[None])[0], project(head.right, in_right[None])[0]]
+    )
+    jacobian = np.vstack(
+        [
+            distort_jacobian(head.left, point[:2] / point[2]) @ _perspective(point),
+            distort_jacobian(head.right, in_right[:2] / in_right[2])
+            @ _perspective(in_right)
+            @ head.rotation,
+        ]
+    )
+    return np.concatenate([left_px, right_px]) - seen, jacobian
+
+
+def _perspective(point: Array) -> Array:
+    x, y, z = point
+    return np.array([[1.0 / z, 0.0, -x / z**2], [0.0, 1.0 / z, -y / z**2]])
