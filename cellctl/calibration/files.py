@@ -109,20 +109,25 @@ def write_calibration(
     stored = StoredCalibration(
         kind, result.to_record(), made, valid_until, f"cellctl {__version__}", serial_number
     )
+    write_stored(folder, stored)
+    return stored
+
+
+def write_stored(folder: Path, stored: StoredCalibration) -> None:
+    """Write ``<kind>.json`` whole or not at all."""
     envelope = {
-        "kind": kind,
+        "kind": stored.kind,
         "id": stored.id,
-        "made": made.astimezone(UTC).isoformat(),
-        "valid_until": valid_until.astimezone(UTC).isoformat(),
+        "made": stored.made.astimezone(UTC).isoformat(),
+        "valid_until": stored.valid_until.astimezone(UTC).isoformat(),
         "software": stored.software,
-        "serial_number": serial_number,
+        "serial_number": stored.serial_number,
         "record": stored.record,
     }
     folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f".{kind}.json.new"
+    draft = folder / f".{stored.kind}.json.new"
     draft.write_text(json.dumps(envelope, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    draft.replace(folder / f"{kind}.json")
-    return stored
+    draft.replace(folder / f"{stored.kind}.json")
 
 
 def read_calibration(folder: Path, kind: str) -> StoredCalibration:
