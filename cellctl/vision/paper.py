@@ -136,7 +136,8 @@ def _right_size(spot: Spot, holes: Sequence[Hole]) -> bool:
 
 def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
     left, right = spot.left, spot.right
-    assert isinstance(left, _Found) and isinstance(right, _Found)
+    if not (isinstance(left, _Found) and isinstance(right, _Found)):
+        raise TypeError("spots of this method carry their ellipse")
     covariance = np.eye(2) * CENTRE_SIGMA_PX**2
     point = triangulate(head, left.centre_px, right.centre_px, covariance, covariance)
     epipolar = epipolar_distances_px(head, left.centre_px[None], right.centre_px[None])

@@ -1,0 +1,154 @@
+"""``cellctl measure``: measure the holes of one stereo pair of image files."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import cv2
+import numpy as np
+import typer
+
+from cellctl.errors.vision import (
+    HoleAmbiguous,
+    HoleMissing,
+    ImageFileInvalid,
+    TooFewHoles,
+    VisionError,
+)
+from cellctl.geometry.pose import MM
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.features import FeatureFile, Hole, read_features
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method, PairMeasurement
+from cellctl.vision.part_pose import PartPose, part_pose
+from cellctl.vision.picture import annotate
+from cellctl.vision.registration import on_a_line
+from cellctl.vision.stereo_head import read_stereo_head
+
+EXIT_REFUSED = 1
+EXIT_NOT_FOUND = 3
+
+
+def measure(
+    calibration: Annotated[Path, typer.Option(help="Stereo calibration (JSON).")],
+    features: Annotated[Path, typer.Option(help="Feature file (TOML).")],
+    left: Annotated[Path, typer.Option(help="Left image file, 8 bit.")],
+    right: Annotated[Path, typer.Option(help="Right image file, 8 bit.")],
+    out: Annotated[Path | None, typer.Option(help="Write the result here, not to stdout.")] = None,
+    method: Annotated[str, typer.Option(help="default or paper.")] = "default",
+    picture: Annotated[Path | None, typer.Option(help="Write an annotated picture (PNG).")] = None,
+    head: Annotated[int, typer.Option(help="Only holes of head 1 or 2; 0 for all.")] = 0,
+) -> None:
+    """Measure the named holes of a feature file in a stereo pair.
+
+    Exit code 3 when a hole is missing or ambiguous, 1 for any other reason to refuse.
+    """
+    try:
+        stereo_head = read_stereo_head(calibration)
+        holes = _holes(read_features(features), head)
+        images = read_image(left), read_image(right)
+        result = measure_pair(*images, stereo_head, holes, method=_method(method))
+        pose = _pose(result, holes)
+    except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
+        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        raise typer.Exit(EXIT_NOT_FOUND) from fault
+    except VisionError as fault:
+        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        raise typer.Exit(EXIT_REFUSED) from fault
+    text = json.dumps(measurement_to_json(result, pose), indent=2)
+    if picture is not None:
+        _write_picture(picture, images, result)
+    if out is None:
+        typer.echo(text)
+    else:
+        out.write_text(text + "\n", encoding="utf-8")
+
+
+def read_image(path: Path) -> Image:
+    """An 8 bit grey image from a file; raises ``ImageFileInvalid``."""
+    try:
+        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    except OSError as error:
+        raise ImageFileInvalid(f"{path}: {error.strerror or error}") from error
+    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
+    if image is None:
+        raise ImageFileInvalid(f"{path}: not an image")
+    if image.ndim == 3 and image.dtype == np.uint8:
+        image = cv2.cvtColor(
+            image, cv2.COLOR_BGR2GRAY if image.shape[2] == 3 else cv2.COLOR_BGRA2GRAY
+        )
+    if image.ndim != 2 or image.dtype != np.uint8:
+        raise ImageFileInvalid(f"{path}: needs 8 bit grey values, has {image.dtype}")
+    return np.asarray(image, dtype=np.uint8)
+
+
+def measurement_to_json(result: PairMeasurement, pose: PartPose | None) -> dict[str, Any]:
+    """The result as plain data: pixels, mm, mm², and for the pose mm and rad."""
+    data: dict[str, Any] = {
+        "method": result.method,
+        "holes": {
+            hole.name: {
+                "kind": hole.kind,
+                "left_px": hole.left_px.tolist(),
+                "right_px": hole.right_px.tolist(),
+                "left_covariance_px2": hole.left_covariance_px2.tolist(),
+                "right_covariance_px2": hole.right_covariance_px2.tolist(),
+                "position_mm": (hole.position_m / MM).tolist(),
+                "covariance_mm2": (hole.covariance_m2 / MM**2).tolist(),
+                "diameter_mm": hole.diameter_m / MM,
+                "epipolar_px": hole.epipolar_px,
+            }
+            for hole in result.holes
+        },
+        "camera_T_part": None,
+        "covariance": None,
+    }
+    if pose is None:
+        return data
+    matrix = np.array(pose.pose.pose.as_matrix())
+    matrix[:3, 3] /= MM
+    units = np.array([MM, MM, MM, 1.0, 1.0, 1.0])
+    data["camera_T_part"] = matrix.tolist()
+    data["covariance"] = (pose.pose.covariance / np.outer(units, units)).tolist()
+    data["covariance_order"] = ["x_mm", "y_mm", "z_mm", "rx_rad", "ry_rad", "rz_rad"]
+    data["residuals_mm"] = {
+        name: (residual / MM).tolist()
+        for name, residual in zip(pose.names, pose.residuals_m, strict=True)
+    }
+    data["outliers"] = list(pose.outliers)
+    return data
+
+
+def _holes(features: FeatureFile, head: int) -> tuple[Hole, ...]:
+    if head == 0:
+        return features.holes
+    if head not in {1, 2}:
+        raise typer.BadParameter("--head is 1 or 2")
+    holes = features.seen_by(1 if head == 1 else 2)
+    if not holes:
+        raise typer.BadParameter(f"the feature file has no list head_{head}")
+    return holes
+
+
+def _method(name: str) -> Method:
+    if name == "default":
+        return "default"
+    if name == "paper":
+        return "paper"
+    raise typer.BadParameter("--method is default or paper")
+
+
+def _pose(result: PairMeasurement, holes: tuple[Hole, ...]) -> PartPose | None:
+    """The part's pose by registration where the holes span a plane, whatever the image method."""
+    if on_a_line(np.array([hole.position_m for hole in holes])):
+        return None
+    limit_m = 2.0 * MM if result.method == "paper" else 0.5 * MM
+    return part_pose(result, None, None, holes, residual_limit_m=limit_m)
+
+
+def _write_picture(path: Path, images: tuple[Image, Image], result: PairMeasurement) -> None:
+    both = np.hstack([annotate(images[0], result, "left"), annotate(images[1], result, "right")])
+    done, data = cv2.imencode(".png", both)
+    if not done:
+        raise ImageFileInvalid(f"{path}: picture could not be encoded")
+    path.write_bytes(data.tobytes())

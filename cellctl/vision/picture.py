@@ -1,0 +1,124 @@
+"""Pictures for people: what was found, drawn into the image it was found in."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.ellipse import Ellipse
+from cellctl.vision.measurement import HoleMeasurement, PairMeasurement, Side
+
+Picture = NDArray[np.uint8]
+
+_GREEN, _YELLOW, _RED, _BLACK = (60, 220, 60), (0, 220, 255), (60, 60, 255), (0, 0, 0)
+_SHIFT = 5
+_INSET_PX, _INSET_ZOOM_SPAN = 360, 1.5
+_RESIDUAL_SCALE_PX_PER_MM = 2000.0
+
+
+def annotate(
+    image: Image,
+    measurement: PairMeasurement,
+    side: Side,
+    residuals_px: Sequence[Array] | None = None,
+) -> Picture:
+    """Fitted ellipses, centres and names on the image, with a magnified inset of each hole.
+
+    ``residuals_px``, shape (2,) per hole, are drawn as arrows, magnified; see ``residual_arrows``.
+    """
+    picture = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR)
+    for index, hole in enumerate(measurement.holes):
+        ellipse, centre = _of(hole, side)
+        _draw_ellipse(picture, ellipse, 1.0, np.zeros(2), 2)
+        _cross(picture, centre, 12)
+        corner = centre + np.array([1.0, -1.0]) * (ellipse.semi_axes_px[0] + 12)
+        _label(picture, f"{hole.name} {hole.diameter_m / MM:.2f}", corner, 1.1)
+        if residuals_px is not None:
+            _arrow(picture, centre, residuals_px[index])
+    _insets(picture, image, measurement, side)
+    return np.asarray(picture, dtype=np.uint8)
+
+
+def residual_arrows(residuals_m: Array) -> list[Array]:
+    """Arrows in px for residuals in the camera's axes, shape (n, 3): 1 µm becomes 2 px."""
+    return [residual[:2] / MM * _RESIDUAL_SCALE_PX_PER_MM for residual in residuals_m]
+
+
+def _of(hole: HoleMeasurement, side: Side) -> tuple[Ellipse, Array]:
+    if side == "left":
+        return hole.left_ellipse, hole.left_px
+    return hole.right_ellipse, hole.right_px
+
+
+def _insets(picture: Picture, image: Image, measurement: PairMeasurement, side: Side) -> None:
+    """Magnified holes along the lower edge, with the ellipse one pixel thin."""
+    height, width = image.shape
+    for index, hole in enumerate(measurement.holes):
+        left = index * (_INSET_PX + 8)
+        if left + _INSET_PX > width or height < _INSET_PX:
+            return
+        ellipse, centre = _of(hole, side)
+        half = int(np.ceil(ellipse.semi_axes_px[0] * _INSET_ZOOM_SPAN)) + 2
+        x0, y0 = (int(value) - half for value in np.rint(centre))
+        if x0 < 0 or y0 < 0 or x0 + 2 * half + 1 > width or y0 + 2 * half + 1 > height:
+            continue
+        cut = image[y0 : y0 + 2 * half + 1, x0 : x0 + 2 * half + 1]
+        zoom = _INSET_PX / cut.shape[0]
+        inset = cv2.cvtColor(
+            cv2.resize(cut, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_NEAREST),
+            cv2.COLOR_GRAY2BGR,
+        )
+        # Nearest-neighbour zoom puts the middle of pixel (0, 0) at (zoom - 1) / 2.
+        offset = np.array([x0, y0]) - (zoom - 1.0) / (2.0 * zoom)
+        _draw_ellipse(inset, ellipse, zoom, offset, 1)
+        _cross(inset, (centre - offset) * zoom, 8)
+        _label(inset, hole.name, np.array([8.0, 26.0]), 0.8)
+        picture[height - _INSET_PX :, left : left + _INSET_PX] = inset
+
+
+def _draw_ellipse(
+    picture: Picture, ellipse: Ellipse, zoom: float, offset: Array, thickness: int
+) -> None:
+    points = (ellipse.points(120) - offset) * zoom
+    fixed = np.rint(points * (1 << _SHIFT)).astype(np.int32)
+    cv2.polylines(
+        picture,
+        [fixed[:, None]],
+        isClosed=True,
+        color=_GREEN,
+        thickness=thickness,
+        lineType=cv2.LINE_AA,
+        shift=_SHIFT,
+    )
+
+
+def _cross(picture: Picture, centre: Array, size: int) -> None:
+    x, y = np.rint(centre * (1 << _SHIFT)).astype(int)
+    arm = size << _SHIFT
+    for start, end in (((x - arm, y), (x + arm, y)), ((x, y - arm), (x, y + arm))):
+        cv2.line(
+            picture,
+            (int(start[0]), int(start[1])),
+            (int(end[0]), int(end[1])),
+            _YELLOW,
+            1,
+            cv2.LINE_AA,
+            _SHIFT,
+        )
+
+
+def _arrow(picture: Picture, centre: Array, residual_px: Array) -> None:
+    start, end = np.rint(centre).astype(int), np.rint(centre + residual_px).astype(int)
+    cv2.arrowedLine(
+        picture, (int(start[0]), int(start[1])), (int(end[0]), int(end[1])), _RED, 3, cv2.LINE_AA
+    )
+
+
+def _label(picture: Picture, text: str, corner: Array, scale: float) -> None:
+    place = (int(corner[0]), int(corner[1]))
+    font = cv2.FONT_HERSHEY_SIMPLEX
+    cv2.putText(picture, text, place, font, scale, _BLACK, 6, cv2.LINE_AA)
+    cv2.putText(picture, text, place, font, scale, _YELLOW, 2, cv2.LINE_AA)
