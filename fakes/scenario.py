@@ -12,6 +12,9 @@ from pydantic import BaseModel, ConfigDict
 
 Pose = tuple[float, float, float, float, float, float]
 """x, y, z in mm and A, B, C in degrees with R = Rz(A) Ry(B) Rx(C)."""
+RobotName = Literal["main", "aux_1", "aux_2"]
+HeadName = Literal["head_1", "head_2"]
+Channel = Literal["CMD", "STA", "GRD"]
 Six = tuple[float, float, float, float, float, float]
 Pair = tuple[float, float]
 
@@ -44,7 +47,7 @@ class Robot(Section):
     """An arm and its controller."""
 
     name: str
-    ports: dict[Literal["CMD", "STA", "GRD"], int]
+    ports: dict[Channel, int]
     chain_mm: Chain
     limits_deg: tuple[Pair, Pair, Pair, Pair, Pair, Pair]
     rated_deg_s: Six
@@ -87,7 +90,7 @@ class Parts(Section):
     deck_thickness_spread_mm: float
     frame_mm_deg: Pose
     frame_displacement: Spread
-    flange_T_deck_mm_deg: Pose  # noqa: N815
+    flange_T_deck_mm_deg: Pose
     grip: Spread
     hole_sigma_mm: float
     """Machining error of a hole's position, each coordinate."""
@@ -105,6 +108,8 @@ class Payload(Section):
     gripper_kg: float
     deck_kg: float
     com_in_sensor_mm: tuple[float, float, float]
+    gripper_com_in_sensor_mm: tuple[float, float, float]
+    """Without the deck."""
     inertia_kg_m2: tuple[float, float, float]
     """About the centre of mass, gripper, fixture and deck together."""
     stiffness_n_m: tuple[float, float, float]
@@ -127,7 +132,7 @@ class Contact(Section):
 class ForceSensor(Section):
     """Six-axis sensor between flange and gripper."""
 
-    flange_T_sensor_mm_deg: Pose  # noqa: N815
+    flange_T_sensor_mm_deg: Pose
     mounting_sigma_deg: float
     range_n: float
     range_nm: float
@@ -147,8 +152,8 @@ class Head(Section):
     """A small-field head on an auxiliary robot."""
 
     port: int
-    robot: Literal["aux_1", "aux_2"]
-    flange_T_head_mm_deg: Pose  # noqa: N815
+    robot: RobotName
+    flange_T_head_mm_deg: Pose
     mounting: Spread
     sees: tuple[str, str, str]
 
@@ -215,15 +220,16 @@ class Chessboard(Section):
     size_mm: Pair
     bow_spread_mm: float
     distance_mm: Pair
-    offset_mm: Pair
+    """From the middle between the cameras."""
     tilt_deg: float
+    turn_rad: float
 
 
 class LargeField(Section):
     """Head that measures targets, above the cell."""
 
     port: int
-    base_T_head_mm_deg: Pose  # noqa: N815
+    base_T_head_mm_deg: Pose
     placement: Spread
     noise_mm: float
     target_sigma_mm: float
@@ -240,19 +246,19 @@ class Scenario(Section):
 
     sensor_port: int
     control_port: int
-    robots: dict[Literal["main", "aux_1", "aux_2"], Robot]
+    robots: dict[RobotName, Robot]
     parts: Parts
     payload: Payload
     contact: Contact
     force_sensor: ForceSensor
-    heads: dict[Literal["head_1", "head_2"], Head]
+    heads: dict[HeadName, Head]
     cameras: Cameras
     rendering: Rendering
     target_board: TargetBoard
     chessboard: Chessboard
     large_field: LargeField
-    taught: dict[str, dict[str, Pose]]
-    """Flange poses (B for the main robot, own base for the others) behind ``python -m fakes taught``."""
+    taught: dict[RobotName, dict[str, Pose]]
+    """Flange poses in the base of the main robot, by robot and name."""
 
 
 def load(path: Path) -> Scenario:

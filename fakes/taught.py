@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from fakes.scenario import Scenario
+from fakes.scenario import RobotName, Scenario
 from fakes.world.arm import forward, inverse, nominal_links
 from fakes.world.frames import from_written, to_written
 
@@ -26,7 +26,7 @@ def taught(scenario: Scenario) -> dict[str, Any]:
     }
 
 
-def _robot(scenario: Scenario, name: Any) -> dict[str, Any]:
+def _robot(scenario: Scenario, name: RobotName) -> dict[str, Any]:
     robot = scenario.robots[name]
     cell_T_base = from_written(robot.base_mm_deg)
     joints = np.deg2rad(robot.home_deg)

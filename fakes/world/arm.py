@@ -10,6 +10,7 @@ outward, its x axis down at zero.
 
 from dataclasses import dataclass
 from itertools import product
+from math import acos, atan2, cos, hypot, sin, tau
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -22,7 +23,7 @@ _FLANGE = Rotation.from_euler("y", 90, degrees=True)
 _SINGULAR_RAD = np.deg2rad(0.5)
 
 
-class Unreachable(ValueError):
+class OutOfReachError(ValueError):
     """The wrist centre lies outside the arm's reach."""
 
 
@@ -49,7 +50,7 @@ def nominal_links(chain: Chain) -> Links:
 def perturbed_links(
     chain: Chain, rng: np.random.Generator, sigma_m: float, sigma_rad: float, joint_rad: float
 ) -> Links:
-    """The chain as it was built. The base frame is defined by the real first axis, so link 0 is exact."""
+    """The chain as it was built. The real first axis defines the base, so link 0 is exact."""
     nominal = nominal_links(chain)
     matrices = nominal.matrices.copy()
     for index in range(1, 7):
@@ -62,7 +63,7 @@ def perturbed_links(
 
 def forward_matrix(links: Links, joints_rad: Array) -> Array:
     """base_T_flange as a 4x4 matrix."""
-    result = links.matrices[0]
+    result: Array = links.matrices[0]
     angles = joints_rad + links.joint_offsets_rad
     cosines, sines = np.cos(angles).tolist(), np.sin(angles).tolist()
     for index, (c, s) in enumerate(zip(cosines, sines, strict=True)):
@@ -87,23 +88,21 @@ def forward(links: Links, joints_rad: Array) -> RigidTransform:
 def inverse(chain: Chain, base_T_flange: RigidTransform, near_rad: Array) -> Array:
     """Joint angles of the nominal chain, of all solutions the one nearest to ``near_rad``.
 
-    Raises ``Unreachable``. Does not look at joint limits.
+    Raises ``OutOfReachError``. Does not look at joint limits.
     """
-    wrist = base_T_flange.apply(np.array([0.0, 0.0, -chain.d6 * MM]))
-    base_R_forearm_zero = base_T_flange.rotation * _FLANGE.inv()
-    best, best_distance = None, np.inf
-    for shoulder, elbow in product((1, -1), (1, -1)):
-        arm = _arm_angles(chain, wrist, shoulder, elbow)
-        if arm is None:
-            continue
-        for wrist_angles in _wrist_angles(arm, base_R_forearm_zero, near_rad):
-            joints = _nearest_turn(np.array([*arm, *wrist_angles]), near_rad)
-            gap = float(np.abs(joints - near_rad).max())
-            if gap < best_distance:
-                best, best_distance = joints, gap
-    if best is None:
-        raise Unreachable("the wrist centre is out of reach")
-    return best
+    rotation = base_T_flange.rotation.as_matrix()
+    wrist_mm = (base_T_flange.translation / MM - chain.d6 * rotation[:, 2]).tolist()
+    tool = (rotation @ _FLANGE.as_matrix().T).tolist()
+    near = near_rad.tolist()
+    solutions = [
+        _nearest_turn([*arm, *wrist], near)
+        for shoulder, elbow in product((1, -1), (1, -1))
+        if (arm := _arm_angles(chain, wrist_mm, shoulder, elbow)) is not None
+        for wrist in _wrist_angles(arm, tool, near[5])
+    ]
+    if not solutions:
+        raise OutOfReachError("the wrist centre is out of reach")
+    return np.array(min(solutions, key=lambda joints: _gap(joints, near)))
 
 
 def singular(joints_rad: Array) -> bool:
@@ -112,39 +111,40 @@ def singular(joints_rad: Array) -> bool:
 
 
 def _arm_angles(
-    chain: Chain, wrist: Array, shoulder: int, elbow: int
+    chain: Chain, wrist_mm: list[float], shoulder: int, elbow: int
 ) -> tuple[float, float, float] | None:
-    x, y, z = wrist / MM
-    q1 = np.arctan2(shoulder * y, shoulder * x)
-    out, up = shoulder * np.hypot(x, y) - chain.a1, z - chain.d1
-    forearm, reach = np.hypot(chain.d4, chain.elbow), np.hypot(out, up)
+    x, y, z = wrist_mm
+    q1 = atan2(shoulder * y, shoulder * x)
+    out, up = shoulder * hypot(x, y) - chain.a1, z - chain.d1
+    forearm, reach = hypot(chain.d4, chain.elbow), hypot(out, up)
     cosine = (reach**2 - chain.a2**2 - forearm**2) / (2 * chain.a2 * forearm)
     if abs(cosine) > 1:
         return None
-    bend = elbow * np.arccos(cosine)
-    lift = np.arctan2(up, out)
-    q2 = -lift - np.arctan2(forearm * np.sin(bend), chain.a2 + forearm * np.cos(bend))
-    return float(q1), float(q2), float(bend + np.arctan2(chain.elbow, chain.d4))
+    bend = elbow * acos(cosine)
+    q2 = -atan2(up, out) - atan2(forearm * sin(bend), chain.a2 + forearm * cos(bend))
+    return q1, q2, bend + atan2(chain.elbow, chain.d4)
 
 
 def _wrist_angles(
-    arm: tuple[float, float, float], base_R_tool: Rotation, near_rad: Array
+    arm: tuple[float, float, float], tool: list[list[float]], near_q6: float
 ) -> list[tuple[float, float, float]]:
-    q1, q2, q3 = arm
-    base_R_forearm = Rotation.from_euler("ZY", [q1, q2 + q3])
-    rest = (base_R_forearm.inv() * base_R_tool).as_matrix()
-    bend = np.arctan2(np.hypot(rest[0, 1], rest[0, 2]), rest[0, 0])
-    if abs(np.sin(bend)) < 1e-9:
-        q6 = float(near_rad[5])
-        turn = np.arctan2(rest[2, 1], rest[1, 1])
-        return [(float(turn - q6), float(bend), q6)]
-    solutions = []
-    for sign in (1, -1):
-        q4 = np.arctan2(sign * rest[1, 0], -sign * rest[2, 0])
-        q6 = np.arctan2(sign * rest[0, 1], sign * rest[0, 2])
-        solutions.append((float(q4), float(sign * bend), float(q6)))
-    return solutions
+    """A4, A5, A6 from forearm_R_tool = Rx(A4) Ry(A5) Rx(A6)."""
+    c1, s1, c23, s23 = cos(arm[0]), sin(arm[0]), cos(arm[1] + arm[2]), sin(arm[1] + arm[2])
+    axes = ((c1 * c23, s1 * c23, -s23), (-s1, c1, 0.0), (c1 * s23, s1 * s23, c23))
+    (xx, xy, xz), (yx, yy, _), (zx, zy, _) = (
+        [sum(axis[i] * tool[i][column] for i in range(3)) for column in range(3)] for axis in axes
+    )
+    bend = atan2(hypot(xy, xz), xx)
+    if abs(sin(bend)) < 1e-9:
+        return [(atan2(zy, yy) - near_q6, bend, near_q6)]
+    return [
+        (atan2(sign * yx, -sign * zx), sign * bend, atan2(sign * xy, sign * xz)) for sign in (1, -1)
+    ]
 
 
-def _nearest_turn(joints: Array, near: Array) -> Array:
-    return joints + 2 * np.pi * np.round((near - joints) / (2 * np.pi))
+def _nearest_turn(joints: list[float], near: list[float]) -> list[float]:
+    return [q + tau * round((n - q) / tau) for q, n in zip(joints, near, strict=True)]
+
+
+def _gap(joints: list[float], near: list[float]) -> float:
+    return max(abs(q - n) for q, n in zip(joints, near, strict=True))

@@ -28,7 +28,8 @@ def to_written(pose: RigidTransform) -> list[float]:
 def displacement(translation_m: ArrayLike, rotation_rad: ArrayLike) -> RigidTransform:
     """Small displacement: a translation and a rotation vector."""
     return RigidTransform.from_components(
-        np.asarray(translation_m, dtype=float), Rotation.from_rotvec(rotation_rad)
+        np.asarray(translation_m, dtype=float),
+        Rotation.from_rotvec(np.asarray(rotation_rad, dtype=float)),
     )
 
 

@@ -1,0 +1,226 @@
+"""What a controller's job programs decide, without I/O: records and times in, records out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fakes.faults import FaultBoard
+from fakes.scenario import Channel
+from fakes.wire.sjl_controller_records import RecordError, integer, number, pose_fields
+from fakes.world.frames import MM, from_written
+from fakes.world.robot import RefusedMotionError, RobotArm
+
+Record = list[str]
+Outbox = list[tuple[Channel, Record]]
+
+_FIELDS = {"MOVJ": 10, "MOVL": 11, "STEP": 10, "REARM": 3}
+_EMERGENCY_LATENCY_S = 0.02
+
+
+@dataclass(slots=True)
+class Link:
+    """One channel while it is open."""
+
+    session: int
+    beat_s: float
+    last_seq: int = 0
+
+
+@dataclass(slots=True)
+class _Motion:
+    seq: int
+    begun_s: float
+    reason: str | None = None
+    """Why it is being stopped."""
+
+
+@dataclass(slots=True)
+class Controller:
+    """State of one controller: links, latch, panel, the motion that is under way."""
+
+    arm: RobotArm
+    faults: FaultBoard
+    links: dict[Channel, Link] = field(default_factory=dict)
+    lost: set[Channel] = field(default_factory=set)
+    """Channels that were open and have not come back."""
+    latched: bool = False
+    _motion: _Motion | None = None
+    _stops: list[tuple[Channel, int]] = field(default_factory=list)
+
+    # -- panel --------------------------------------------------------------------------------
+    @property
+    def emergency_stop(self) -> bool:
+        """The button is pressed."""
+        return self.faults.active("emergency_stop") is not None
+
+    @property
+    def mode(self) -> str:
+        """MAN, AUT or REM."""
+        if self.faults.active("manual_mode"):
+            return "MAN"
+        return "AUT" if self.faults.active("automatic_mode") else "REM"
+
+    @property
+    def drives(self) -> bool:
+        """The drives have power."""
+        return not (self.emergency_stop or self.faults.active("drives_off"))
+
+    @property
+    def error_code(self) -> int:
+        """The vendor's error number."""
+        fault = self.faults.active("vendor_error")
+        return int(fault.number("code", 4001)) if fault else 0
+
+    # -- links --------------------------------------------------------------------------------
+    def opened(self, channel: Channel, session: int, time_s: float) -> None:
+        """A channel was accepted by the PC."""
+        self.links[channel] = Link(session, time_s)
+        self.lost.discard(channel)
+
+    def closed(self, channel: Channel, time_s: float) -> None:
+        """A channel is gone: stop and latch."""
+        if self.links.pop(channel, None) is None:
+            return
+        self.lost.add(channel)
+        self._stops = [stop for stop in self._stops if stop[0] != channel]
+        self._halt(time_s, "LINK")
+
+    # -- records ------------------------------------------------------------------------------
+    def command(self, fields: Record, time_s: float) -> Outbox:
+        """A record on CMD; raises ``RecordError``."""
+        word = fields[0]
+        if _FIELDS.get(word) != len(fields):
+            raise RecordError(f"not a command: {fields}")
+        session, seq = integer(fields[1]), integer(fields[2])
+        values = [number(text) for text in fields[3:]]
+        link = self.links["CMD"]
+        if session != link.session:
+            return [("CMD", ["REJ", str(seq), "SESSION"])]
+        if seq <= link.last_seq:
+            return [("CMD", ["DUP", str(seq)])]
+        if seq != link.last_seq + 1:
+            return [("CMD", ["REJ", str(seq), "SEQ"])]
+        link.last_seq = seq
+        if self.faults.use("never_ack"):
+            return []
+        act: Callable[[int, float], Outbox] = (
+            self._rearm if word == "REARM" else lambda s, t: self._move(word, s, values, t)
+        )
+        try:
+            return act(seq, time_s)
+        except RefusedMotionError as refusal:
+            return [("CMD", ["REJ", str(seq), refusal.reason])]
+
+    def supervise(self, channel: Channel, fields: Record, time_s: float) -> Outbox:
+        """A record on STA or GRD; raises ``RecordError``."""
+        if len(fields) != 3 or fields[0] not in {"BEAT", "ABORT"}:
+            raise RecordError(f"not a heartbeat or stop: {fields}")
+        session, count = integer(fields[1]), integer(fields[2])
+        if fields[0] == "BEAT":
+            link = self.links[channel]
+            if session == link.session:
+                link.beat_s = time_s
+            return []
+        if self.faults.use("ignore_stop"):
+            return []
+        self._stops.append((channel, count))
+        self._halt(time_s, "STOP")
+        return []
+
+    def tick(self, time_s: float) -> Outbox:
+        """What has become due: dead man, panel, end of a motion, end of a stop."""
+        self._supervise_links(time_s)
+        self._supervise_panel(time_s)
+        if self.arm.moving(time_s):
+            return []
+        pose = pose_fields(self.arm.encoder_pose(time_s))
+        out: Outbox = []
+        motion, self._motion = self._motion, None
+        if motion is not None and not self.faults.use("never_done"):
+            seq, reason = str(motion.seq), motion.reason or "ERROR"
+            ended = ["ABRT", seq, reason] if self.arm.cut_short else ["DONE", seq]
+            out.append(("CMD", [*ended, *pose]))
+        out += [(channel, ["STOPD", str(number), *pose]) for channel, number in self._stops]
+        self._stops = []
+        return [(channel, record) for channel, record in out if channel in self.links]
+
+    # -- inside -------------------------------------------------------------------------------
+    def _rearm(self, seq: int, time_s: float) -> Outbox:
+        if self.emergency_stop:
+            raise RefusedMotionError("ESTOP")
+        if self.lost or self._stops or (self.latched and self.arm.moving(time_s)):
+            raise RefusedMotionError("LATCHED")
+        if self._motion is not None:
+            raise RefusedMotionError("BUSY")
+        self.latched = False
+        pose = pose_fields(self.arm.encoder_pose(time_s))
+        return [("CMD", ["ACK", str(seq)]), ("CMD", ["DONE", str(seq), *pose])]
+
+    def _move(self, word: str, seq: int, values: list[float], time_s: float) -> Outbox:
+        self._check_ready()
+        rejected = self.faults.use("reject")
+        if rejected:
+            raise RefusedMotionError(rejected.text("reason", "LIMIT"))
+        self.arm.override_percent = 0 if self.faults.active("override_zero") else 100
+        if word == "MOVJ":
+            self.arm.start_joint(time_s, np.deg2rad(values[:6]), values[6])
+        else:
+            target = from_written(values[:6])
+            if word == "STEP":
+                self.arm.check_step(time_s, target)
+            acceleration = values[7] if word == "MOVL" else 10 * values[6]
+            self.arm.start_linear(time_s, target, values[6] * MM, acceleration * MM)
+        self._motion = _Motion(seq, time_s)
+        return [("CMD", ["ACK", str(seq)])]
+
+    def _check_ready(self) -> None:
+        refusals = {
+            "BUSY": self._motion is not None,
+            "ESTOP": self.emergency_stop,
+            "MODE": self.mode != "REM",
+            "DRIVES": not self.drives,
+            "ERROR": self.error_code != 0,
+            "LATCHED": self.latched or bool(self.lost) or "STA" not in self.links,
+        }
+        for reason, applies in refusals.items():
+            if applies:
+                raise RefusedMotionError(reason)
+
+    def _halt(self, time_s: float, reason: str, *, latency_s: float | None = None) -> None:
+        self.latched = True
+        slow = self.faults.active("stop_latency")
+        if latency_s is None and slow:
+            latency_s = slow.number("latency_s", 0.5)
+        if self._motion is not None:
+            self._motion.reason = self._motion.reason or reason
+        if self.arm.moving(time_s):
+            self.arm.stop(time_s, latency_s=latency_s)
+
+    def _supervise_links(self, time_s: float) -> None:
+        deadman_s = self.arm.settings.deadman_ms / 1000
+        for channel, link in self.links.items():
+            if channel != "CMD" and time_s - link.beat_s > deadman_s and not self.latched:
+                self._halt(time_s, "DEADMAN")
+
+    def _supervise_panel(self, time_s: float) -> None:
+        if self._motion is None:
+            self.latched = self.latched or self.emergency_stop
+            return
+        elapsed_s = time_s - self._motion.begun_s
+        pressed = self.faults.active("emergency_stop_mid_move")
+        if pressed and elapsed_s >= pressed.number("after_s", 0.2):
+            self.faults.clear("emergency_stop_mid_move")
+            self.faults.inject("emergency_stop")
+        if self.emergency_stop:
+            self._halt(time_s, "ESTOP", latency_s=_EMERGENCY_LATENCY_S)
+        elif self.mode != "REM":
+            self._halt(time_s, "MODE")
+        elif not self.drives:
+            self._halt(time_s, "DRIVES", latency_s=_EMERGENCY_LATENCY_S)
+        elif self.error_code:
+            self._halt(time_s, "ERROR")
+        abort = self.faults.active("abort")
+        if abort and elapsed_s >= abort.number("after_s", 0.2):
+            self.faults.use("abort")
+            self._halt(time_s, abort.text("reason", "ERROR"))

@@ -1,0 +1,139 @@
+"""An arm in motion: what its encoders say and where its flange truly is."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from fakes.scenario import Robot
+from fakes.world.arm import OutOfReachError, forward, forward_matrix, nominal_links, singular
+from fakes.world.frames import MM, Array, distance, stream
+from fakes.world.motion import JointPath, LinearPath, Path, Profile
+from fakes.world.truth import RobotTruth
+from fakes.world.wander import Wander
+
+STEP_ANGLE_MAX_RAD = np.deg2rad(0.5)
+_JUMP_RAD = np.deg2rad(45.0)
+"""Between two knots of a linear path: more than this is a passage near a singularity."""
+
+
+class RefusedMotionError(Exception):
+    """The controller refuses a motion; ``reason`` is its word on the wire."""
+
+    def __init__(self, reason: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+
+class RobotArm:
+    """Kinematics and motion of one arm. Every method takes the time, which never runs backwards."""
+
+    def __init__(self, settings: Robot, truth: RobotTruth, seed: int) -> None:
+        self.settings = settings
+        self.truth = truth
+        self._nominal = nominal_links(settings.chain_mm)
+        self._limits = np.deg2rad(np.array(settings.limits_deg))
+        self._rated = np.deg2rad(np.array(settings.rated_deg_s))
+        sigma = np.repeat(
+            [settings.repeatability_mm * MM / 3, np.deg2rad(settings.repeatability_deg) / 3], 3
+        )
+        rng = stream(seed, "repeatability", settings.name)
+        self._wander = Wander(rng, sigma, settings.correlation_mm * MM)
+        home = np.deg2rad(np.array(settings.home_deg))
+        self._path: Path = JointPath(home, home, self._rated)
+        self._profile = Profile(0.0, 0.0, 1.0, 1.0)
+        self._travelled_m = 0.0
+        self.override_percent = 100
+        self._cell_T_base = truth.cell_T_base.as_matrix()
+
+    # -- commands -----------------------------------------------------------------------------
+    def start_joint(self, time_s: float, target_rad: Array, percent: float) -> None:
+        """Begin a joint motion; raises ``RefusedMotionError``."""
+        if not 1 <= percent <= 100:
+            raise RefusedMotionError("SPEED")
+        self._check_limits(target_rad[np.newaxis])
+        path = JointPath(self.joints(time_s), target_rad, self._rated)
+        self._begin(time_s, path, percent / 100, 1 / self.settings.ramp_s)
+
+    def start_linear(
+        self, time_s: float, target: RigidTransform, speed_m_s: float, acceleration_m_s2: float
+    ) -> None:
+        """Begin a linear motion; raises ``RefusedMotionError``."""
+        allowed = 0 < speed_m_s <= self.settings.speed_max_mm_s * MM and acceleration_m_s2 > 0
+        if not allowed:
+            raise RefusedMotionError("SPEED")
+        near = self.joints(time_s)
+        try:
+            path = LinearPath(self.settings.chain_mm, self.encoder_pose(time_s), target, near)
+        except OutOfReachError as error:
+            raise RefusedMotionError("REACH") from error
+        jumps = np.abs(np.diff(path.knots, axis=0)).max() > _JUMP_RAD
+        if jumps or any(singular(knot) for knot in path.knots):
+            raise RefusedMotionError("SINGULAR")
+        self._check_limits(path.knots)
+        self._begin(time_s, path, speed_m_s, acceleration_m_s2)
+
+    def check_step(self, time_s: float, target: RigidTransform) -> None:
+        """Refuse a step that is longer than this controller allows."""
+        distance_m, angle_rad = distance(self.encoder_pose(time_s), target)
+        limit_m = self.settings.step_max_mm * MM
+        if distance_m > limit_m + 1e-9 or angle_rad > STEP_ANGLE_MAX_RAD:
+            raise RefusedMotionError("STEP")
+
+    def stop(self, time_s: float, *, latency_s: float | None = None) -> None:
+        """Brake on the path after the controller's latency; the motion goes on until then."""
+        if latency_s is None:
+            latency_s = self.settings.stop_latency_ms / 1000
+        braking = 1 / self.settings.ramp_s
+        if isinstance(self._path, LinearPath):
+            braking = self.settings.stop_deceleration_mm_s2 * MM
+        self._profile = self._profile.stopped_from(time_s + latency_s, braking)
+
+    # -- state --------------------------------------------------------------------------------
+    def moving(self, time_s: float) -> bool:
+        """True until standstill."""
+        return time_s < self._profile.end_s
+
+    @property
+    def standstill_s(self) -> float:
+        """When the present motion ends or ended."""
+        return self._profile.end_s
+
+    @property
+    def cut_short(self) -> bool:
+        """True when the last motion was braked before its target."""
+        return self._profile.cut_short
+
+    def joints(self, time_s: float) -> Array:
+        """Joint angles of the encoders, shape (6,)."""
+        return self._path.joints(self._profile.at(time_s))
+
+    def encoder_pose(self, time_s: float) -> RigidTransform:
+        """base_T_flange as the controller believes it."""
+        return forward(self._nominal, self.joints(time_s))
+
+    def flange_matrix(self, time_s: float) -> Array:
+        """True cell_T_flange as a 4x4 matrix."""
+        along = self._profile.at(time_s)
+        base_T_flange = forward_matrix(self.truth.links, self._path.joints(along))
+        return self._cell_T_base @ base_T_flange @ self._wander.matrix(self._travel(along))
+
+    def flange(self, time_s: float) -> RigidTransform:
+        """True cell_T_flange."""
+        return RigidTransform.from_matrix(self.flange_matrix(time_s))
+
+    def _begin(self, time_s: float, path: Path, speed: float, acceleration: float) -> None:
+        if self.override_percent <= 0:
+            raise RefusedMotionError("SPEED")
+        self._travelled_m = self._travel(self._profile.at(time_s))
+        start_s = time_s + self.settings.start_latency_ms / 1000
+        speed *= self.override_percent / 100
+        self._path, self._profile = path, Profile(start_s, path.length, speed, acceleration)
+
+    def _travel(self, along: float) -> float:
+        if self._path.length == 0:
+            return self._travelled_m
+        return self._travelled_m + self._path.travel_m * along / self._path.length
+
+    def _check_limits(self, joints_rad: Array) -> None:
+        inside = (joints_rad >= self._limits[:, 0]) & (joints_rad <= self._limits[:, 1])
+        if not inside.all():
+            raise RefusedMotionError("LIMIT")

@@ -1,0 +1,115 @@
+"""Gripper, fixture and deck as one mass that hangs from the flange by springs, and what it touches.
+
+State: deflection of the centre of mass from where the flange would carry it, and its rate, each
+x, y, z (m) and rotation vector (rad) in tool axes. Contacts are one-sided springs with dampers in
+given directions. With the set of closed contacts constant over a substep the motion is linear, so
+each set has its own exact propagator: stable at any stiffness, and no energy is made.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm
+
+from fakes.scenario import Payload
+from fakes.world.frames import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Contacts:
+    """Possible contact points: Jacobian rows (n, 6) of their gaps, stiffness and damping (n,)."""
+
+    jacobian: Array
+    stiffness_n_m: Array
+    damping_n_s_m: Array
+
+    @classmethod
+    def none(cls) -> "Contacts":
+        """Nothing to touch."""
+        return cls(np.zeros((0, 6)), np.zeros(0), np.zeros(0))
+
+
+class Suspension:
+    """Integrates the payload between two times of the world's clock."""
+
+    def __init__(self, payload: Payload, mass_kg: float, contacts: Contacts) -> None:
+        self.mass = np.array([mass_kg] * 3 + list(payload.inertia_kg_m2))
+        self.stiffness = np.array(
+            [*payload.stiffness_n_m, *payload.rotational_stiffness_nm_rad], dtype=float
+        )
+        self.damping = 2 * payload.damping_ratio * np.sqrt(self.stiffness * self.mass)
+        self.contacts = contacts
+        self.state = np.zeros(12)
+        self.normal_forces = np.zeros(len(contacts.stiffness_n_m))
+        self._propagators: dict[tuple[bytes, float], tuple[Array, Array]] = {}
+
+    @property
+    def deflection(self) -> Array:
+        """Displacement of the payload in tool axes, shape (6,)."""
+        return self.state[:6]
+
+    @property
+    def rate(self) -> Array:
+        """Its rate, shape (6,)."""
+        return self.state[6:]
+
+    @property
+    def resting(self) -> bool:
+        """True when nothing moves any more, to well below a nanometre."""
+        return bool(np.abs(self.state[6:]).max() < 1e-9 and np.abs(self.state[:6]).max() < 1e-9)
+
+    @property
+    def spring_wrench(self) -> Array:
+        """Force and torque of the payload on the sensor without gravity, about the CoM."""
+        return np.asarray(self.stiffness * self.state[:6] + self.damping * self.state[6:])
+
+    def energy(self, gaps: Array) -> float:
+        """Kinetic and elastic energy with the flange at rest (J)."""
+        reach = np.minimum(gaps + self.contacts.jacobian @ self.deflection, 0.0)
+        elastic = self.stiffness @ self.deflection**2 + self.contacts.stiffness_n_m @ reach**2
+        return float(0.5 * (elastic + self.mass @ self.rate**2))
+
+    def free(self, step_s: float, wrench: Array) -> None:
+        """Advance with nothing in reach."""
+        transition, response = self._propagator(None, step_s)
+        self.state = transition @ self.state + response @ wrench
+
+    def touch(self, step_s: float, gaps: Array, gap_rates: Array, wrench: Array) -> None:
+        """Advance with contacts in reach; ``gaps`` at the start, without deflection."""
+        contacts = self.contacts
+        closed = self._forces(gaps, gap_rates) > 0
+        if closed.any():
+            rows, stiffness = contacts.jacobian[closed], contacts.stiffness_n_m[closed]
+            middle = gaps[closed] + 0.5 * step_s * gap_rates[closed]
+            push = stiffness * middle + contacts.damping_n_s_m[closed] * gap_rates[closed]
+            wrench = wrench - push @ rows
+        transition, response = self._propagator(closed, step_s)
+        self.state = transition @ self.state + response @ wrench
+        self.normal_forces = self._forces(gaps + step_s * gap_rates, gap_rates)
+
+    def _forces(self, gaps: Array, gap_rates: Array) -> Array:
+        """Normal forces: closed contacts push, and never pull."""
+        contacts = self.contacts
+        depth = -(gaps + contacts.jacobian @ self.deflection)
+        approach = -(gap_rates + contacts.jacobian @ self.rate)
+        force = contacts.stiffness_n_m * depth + contacts.damping_n_s_m * approach
+        return np.where(depth > 0, np.maximum(force, 0.0), 0.0)
+
+    def _propagator(
+        self, closed: "np.ndarray[tuple[int], np.dtype[np.bool_]] | None", step_s: float
+    ) -> tuple[Array, Array]:
+        key = (b"" if closed is None or not closed.any() else closed.tobytes(), step_s)
+        if key not in self._propagators:
+            stiffness, damping = np.diag(self.stiffness), np.diag(self.damping)
+            if key[0]:
+                rows = self.contacts.jacobian[closed]
+                stiffness = stiffness + rows.T * self.contacts.stiffness_n_m[closed] @ rows
+                damping = damping + rows.T * self.contacts.damping_n_s_m[closed] @ rows
+            system = np.zeros((18, 18))
+            system[:6, 6:12] = np.eye(6)
+            system[6:12, :6] = -stiffness / self.mass[:, np.newaxis]
+            system[6:12, 6:12] = -damping / self.mass[:, np.newaxis]
+            system[6:12, 12:] = np.diag(1 / self.mass)
+            exact = expm(system * step_s)
+            self._propagators[key] = (exact[:12, :12], exact[:12, 12:])
+        return self._propagators[key]
