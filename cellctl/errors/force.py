@@ -6,7 +6,12 @@ from cellctl.errors.base import CellError, Reaction
 
 
 class ForceError(CellError):
-    """Force sensing or mating left its window."""
+    """Force sensing or mating left its window; may carry the force curve up to the fault."""
+
+    def __init__(self, detail: str = "", curve: object | None = None) -> None:
+        super().__init__(detail)
+        self.curve = curve
+        """``cellctl.force.curve.ForceCurve`` of the attempt, or None when none was recorded."""
 
 
 class SensorSilent(ForceError):
@@ -101,12 +106,7 @@ class FlangePoseStale(ForceError):
 
 
 class MatingFault(ForceError):
-    """A fault of the mating step; carries the force curve up to the fault."""
-
-    def __init__(self, detail: str = "", curve: object | None = None) -> None:
-        super().__init__(detail)
-        self.curve = curve
-        """Force curve of the attempt as the guard recorded it, or None when none was recorded."""
+    """A fault that the mating step itself raises."""
 
 
 class NotSettled(MatingFault):
@@ -196,15 +196,6 @@ class MatingPlanInvalid(MatingFault):
     cause = "Recipe or commissioning figures that do not fit together, or a wrong start pose."
     remedy = "See the contradiction in the detail; correct recipe or commissioning."
     reaction = Reaction.STOP
-
-
-class MatingInterrupted(MatingFault):
-    """A device failed during mating; the first fault is its cause (``__cause__``)."""
-
-    number = 529
-    text = "Mating was interrupted by a device fault"
-    cause = "See the first fault in the detail."
-    remedy = "Remove that fault; inspect the contact before the next attempt."
 
 
 class PayloadFileInvalid(ForceError):

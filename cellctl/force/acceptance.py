@@ -19,8 +19,12 @@ class PayloadLimits:
     hold_out_n_m: float = 2.0
     mass_ratio: float = 0.02
     inclination_rad: float = float(np.deg2rad(0.5))
-    crosstalk_ratio: float = 0.01
-    """Cross-talk of the sensor; in a narrow cone it looks like so many radians of inclination."""
+    crosstalk_ratio: float = 0.06
+    """What cross-talk of the sensor may add to mass (ratio) and inclination (rad) in a narrow cone.
+
+    There the weight is known from small changes of the lateral force, and 1 % cross-talk between
+    forces and torques at full scale moves it by 1.5 % and 1.3° (one sigma). It does no harm to
+    the compensation, which hold-out poses test."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,14 +83,13 @@ def rigid_checks(
 ) -> tuple[Check, ...]:
     """Mass against CAD, where it is known, and the inclination of the base."""
     rigid = identification.rigid
-    limit_rad = limits.inclination_rad
-    if not identification.excitation.wide:
-        limit_rad += 2.0 * limits.crosstalk_ratio
+    allowance = 0.0 if identification.excitation.wide else limits.crosstalk_ratio
     checks = []
     if expected_mass_kg is not None:
         error_percent = 100.0 * (rigid.mass_kg / expected_mass_kg - 1.0)
-        checks.append(Check("mass against CAD", error_percent, 100.0 * limits.mass_ratio, "%"))
+        limit_percent = 100.0 * (limits.mass_ratio + allowance)
+        checks.append(Check("mass against CAD", error_percent, limit_percent, "%"))
     for name, value in (("U", rigid.inclination_u_rad), ("V", rigid.inclination_v_rad)):
-        value_deg, limit_deg = float(np.rad2deg(value)), float(np.rad2deg(limit_rad))
-        checks.append(Check(f"inclination {name}", value_deg, limit_deg, "°"))
+        value_deg, limit_deg = np.rad2deg([value, limits.inclination_rad + allowance])
+        checks.append(Check(f"inclination {name}", float(value_deg), float(limit_deg), "°"))
     return tuple(checks)

@@ -20,10 +20,11 @@ class ApproachFigures:
 
     stop_latency_s: float
     """From the stop request on the wire to standstill at low speed, upper bound."""
-    robot_stiffness_n_m: float
-    """Arm, sensor and gripper in series, along the approach, upper bound."""
+    stiffness_n_m: float
+    """Arm and contact in series, along the approach: what force grows with when the arm moves on;
+    upper bound."""
     contact_stiffness_n_m: float
-    """Deck on frame, upper bound."""
+    """Deck on frame alone, upper bound: what an impact meets."""
     moving_mass_kg: float
     """What hangs behind the arm's compliance and meets the contact."""
     deceleration_m_s2: float
@@ -35,11 +36,6 @@ class ApproachFigures:
     touch: Cusum
     tare_uncertainty_n: float
     """What tare, drift and pose may leave on the force reading."""
-
-    @property
-    def stiffness_n_m(self) -> float:
-        """Arm and contact in series: what force grows with when the arm moves on."""
-        return series(self.robot_stiffness_n_m, self.contact_stiffness_n_m)
 
     @property
     def delay_s(self) -> float:
@@ -134,29 +130,32 @@ def contact_window(
     expected_m: float,
     *,
     sigma_m: float,
-    coverage: float = 4.0,
+    coverage: float,
+    least_half_m: float,
+    greatest_half_m: float,
+    tilt_m: float,
     margin_m: float,
-    greatest_past_m: float,
 ) -> ContactWindow:
-    """Window of ±coverage·sigma plus ``margin_m`` around the expected contact.
+    """Window of ±coverage·sigma around the expected contact of the middle of the face.
 
-    ``sigma_m`` joins all sources (see ``contact_sigma``); ``margin_m`` is what the arm may overrun
-    at the end of the fast travel. Raises ``MatingPlanInvalid`` when the window asks for a target
-    further past the expected contact than ``greatest_past_m``, or reaches back to the stand-off.
+    ``sigma_m`` joins all sources (see ``contact_sigma``); ``tilt_m`` is how much earlier the
+    leading edge touches; ``margin_m`` is kept between fast travel and window. Raises
+    ``MatingPlanInvalid`` when contact is known too badly or too near.
     """
-    half_m = coverage * sigma_m
-    if half_m > greatest_past_m:
+    half_m = max(coverage * sigma_m, least_half_m)
+    if half_m > greatest_half_m:
         raise MatingPlanInvalid(
-            f"contact is known to ±{half_m * 1e3:.3f} mm ({coverage:g} sigma) only, targets may "
-            f"lie {greatest_past_m * 1e3:.3f} mm past it at most"
+            f"contact is known to ±{half_m * 1e3:.3f} mm only ({coverage:g} sigma), the window "
+            f"may be ±{greatest_half_m * 1e3:.3f} mm wide at most"
         )
-    clear_m = expected_m - half_m - margin_m
+    earliest_m = expected_m - half_m - tilt_m
+    clear_m = earliest_m - margin_m
     if clear_m <= 0.0:
         raise MatingPlanInvalid(
             f"expected contact after {expected_m * 1e3:.3f} mm leaves no clear travel before its "
             f"window of ±{half_m * 1e3:.3f} mm"
         )
-    return ContactWindow(expected_m, expected_m - half_m, expected_m + half_m, clear_m)
+    return ContactWindow(expected_m, earliest_m, expected_m + half_m, clear_m)
 
 
 def contact_sigma(*sigmas_m: float) -> float:

@@ -11,7 +11,8 @@ Stability: the error e = F_ref − F obeys e' = (1 − T k/(S + M/T + T k_hat)) 
 changing sign when ``k ≤ k_hat + S/T + M/T²``, and is stable up to twice that; explicit Euler has
 no k_hat in the denominator and needs S > T k/2. With k_hat an upper bound of the stiffness the
 force never overshoots, whatever T is. k_hat then falls towards what the steps have shown plus a
-margin, by no more than half a step, and rises at once.
+margin, by no more than half a step, and rises at once. Contact may stiffen while it closes, so a
+second bound does not trust k_hat: no step may pass ``ceiling_n`` even at the upper bound of k.
 """
 
 from dataclasses import dataclass, replace
@@ -34,14 +35,14 @@ class CreepLaw:
     period_s: float
     """T: the time one step takes altogether."""
     stiffness_n_m: float
-    """Upper bound of arm and contact in series: the first k_hat."""
+    """Upper bound of arm and contact in series."""
     greatest_step_m: float
     smallest_step_m: float
     """Below this a step tells less than its noise; also the controller's resolution."""
     force_sigma_n: float
     """Standard deviation of a reading at standstill."""
-    greatest_rise_n: float
-    """No step may be expected to raise the force by more than this."""
+    ceiling_n: float
+    """No step towards the frame may pass this force, whatever the steps before have shown."""
     stiffness_margin_ratio: float = 1.25
     """k_hat stays this much above the stiffness that the steps have shown."""
 
@@ -57,9 +58,14 @@ class CreepState:
     steps: int = 0
 
 
-def begin(law: CreepLaw, force_n: float, travel_m: float) -> CreepState:
-    """State at first contact."""
-    return CreepState(law.stiffness_n_m, force_n, travel_m)
+def begin(
+    law: CreepLaw, force_n: float, travel_m: float, shown_n_m: float | None = None
+) -> CreepState:
+    """State before the first step; ``shown_n_m``: stiffness that an earlier creep has shown."""
+    stiffness = law.stiffness_n_m
+    if shown_n_m is not None:
+        stiffness = min(stiffness, law.stiffness_margin_ratio * shown_n_m)
+    return CreepState(stiffness, force_n, travel_m)
 
 
 def done(law: CreepLaw, state: CreepState) -> bool:
@@ -72,8 +78,8 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
     error_n = law.reference_n - state.force_n
     resistance = law.damping_n_s_m + law.mass_kg / law.period_s
     step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
-    bound_m = min(law.greatest_step_m, law.greatest_rise_n / state.stiffness_n_m)
-    step_m = float(np.clip(step_m, -bound_m, bound_m))
+    furthest_m = max(law.ceiling_n - state.force_n, 0.0) / law.stiffness_n_m
+    step_m = float(np.clip(step_m, -law.greatest_step_m, min(law.greatest_step_m, furthest_m)))
     if abs(step_m) < law.smallest_step_m:
         step_m = float(np.copysign(law.smallest_step_m, error_n))
     return step_m

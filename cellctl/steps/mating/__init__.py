@@ -1,0 +1,1 @@
+"""The phases of a force-limited mating and what they share."""

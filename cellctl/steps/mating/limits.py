@@ -1,0 +1,60 @@
+"""What the guard watches in each phase, and which fault a trip is."""
+
+from cellctl.errors.base import CellError
+from cellctl.errors.force import LateralLoad, MatingOverforce
+from cellctl.guard.limits import CusumTouch, GuardLimits, Six
+from cellctl.guard.report import GuardTrip
+from cellctl.steps.mating.settings import MatingSettings
+
+RAW_MARGIN_N = 12.0
+"""A single sample may exceed a filtered limit by its noise."""
+_ALONG = 2
+
+
+def travel_limits(settings: MatingSettings) -> GuardLimits:
+    """Fast travel: nothing but inertia may be felt, in any direction."""
+    return _limits(settings, settings.fast_limit_n, min(settings.fast_limit_n, 25.0))
+
+
+def touch_limits(settings: MatingSettings) -> GuardLimits:
+    """Guarded travel: stop at the touch, and at the limits of contact if that fails."""
+    touch = CusumTouch(settings.touch.drift_n, settings.touch.threshold_n)
+    return _limits(settings, settings.abort_force_n, settings.max_lateral_n, touch)
+
+
+def contact_limits(settings: MatingSettings) -> GuardLimits:
+    """Creep, hold and relaxing."""
+    return _limits(settings, settings.abort_force_n, settings.max_lateral_n)
+
+
+def fault_of(trip: GuardTrip, settings: MatingSettings) -> CellError:
+    """The fault of a trip that ends an attempt."""
+    if trip.force and trip.component == _ALONG:
+        return MatingOverforce(f"abort limit {settings.abort_force_n:.0f} N: {trip}")
+    if trip.force:
+        return LateralLoad(str(trip))
+    return trip.fault()
+
+
+def _limits(
+    settings: MatingSettings, along_n: float, across_n: float, touch: CusumTouch | None = None
+) -> GuardLimits:
+    moment_n_m = settings.max_moment_n_m
+    filtered: Six = (across_n, across_n, along_n, moment_n_m, moment_n_m, moment_n_m)
+    raw_moment_n_m = moment_n_m + RAW_MARGIN_N / 2.0
+    raw: Six = (
+        across_n + RAW_MARGIN_N,
+        across_n + RAW_MARGIN_N,
+        along_n + RAW_MARGIN_N,
+        raw_moment_n_m,
+        raw_moment_n_m,
+        raw_moment_n_m,
+    )
+    return GuardLimits(
+        raw=raw,
+        filtered=filtered,
+        touch=touch,
+        filter_s=settings.filter_delay_s,
+        stale_s=settings.stale_s,
+        flange_age_s=settings.flange_age_s,
+    )

@@ -1,0 +1,156 @@
+"""A mating plan: every figure of one attempt, derived before anything moves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.force import MatingPlanInvalid
+from cellctl.force.approach import (
+    ApproachFigures,
+    ApproachSpeed,
+    ContactWindow,
+    advance,
+    approach_speed,
+    contact_sigma,
+    contact_window,
+    segment_length,
+)
+from cellctl.force.creep import CreepLaw
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.steps.mating.settings import MatingSettings
+
+READING_BAND_N = 2.0
+"""The creep ends this far inside the window of the final force: tare and noise must not decide."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatingPlan:
+    """One attempt, from the stand-off to the seat."""
+
+    base_T_flange: RigidTransform
+    """The stand-off, where the robot must be standing."""
+    flange_T_deck: RigidTransform
+    flange_T_sensor: RigidTransform
+    settings: MatingSettings
+    window: ContactWindow
+    speed: ApproachSpeed
+    segment_m: float
+    """Longest single move of the slow travel: bounded force even if a stop is never obeyed."""
+    creep: CreepLaw
+    release: CreepLaw
+
+    def pose_at(self, travel_m: float) -> RigidTransform:
+        """Flange after so much travel along −Z_D (eq. 18 for a pure translation)."""
+        return advance(self.base_T_flange, self.flange_T_deck, travel_m)
+
+    def travel_of(self, base_T_flange: RigidTransform) -> float:
+        """Travel along −Z_D (m) of a reported pose."""
+        along = (self.base_T_flange * self.flange_T_deck).rotation.apply([0.0, 0.0, -1.0])
+        moved = base_T_flange.translation - self.base_T_flange.translation
+        return float(moved @ along)
+
+    @property
+    def end_of_travel_m(self) -> float:
+        """No commanded target lies beyond."""
+        return self.window.expected_m + self.settings.greatest_past_m
+
+
+def plan_mating(
+    *,
+    base_T_flange: RigidTransform,
+    flange_T_deck: RigidTransform,
+    flange_T_sensor: RigidTransform,
+    M_T_D: UncertainPose,
+    deck_thickness_m: float,
+    over_travel_m: float,
+    settings: MatingSettings,
+) -> MatingPlan:
+    """Derive window, speed, segment and creep from the measured deck pose at the stand-off.
+
+    ``deck_thickness_m`` is D1 (contact when Z_D reaches it), ``over_travel_m`` D3, the hard end.
+    Raises ``MatingPlanInvalid``.
+    """
+    window = _window(M_T_D, deck_thickness_m, settings)
+    if settings.greatest_past_m > over_travel_m:
+        raise MatingPlanInvalid("targets may not lie further past contact than D3")
+    figures = ApproachFigures(
+        stop_latency_s=settings.stop_latency_s,
+        stiffness_n_m=settings.stiffness_n_m,
+        contact_stiffness_n_m=settings.contact_stiffness_n_m,
+        moving_mass_kg=settings.moving_mass_kg,
+        deceleration_m_s2=settings.deceleration_m_s2,
+        stale_s=settings.stale_s,
+        filter_delay_s=settings.filter_delay_s,
+        sample_period_s=settings.sample_period_s,
+        touch=settings.touch,
+        tare_uncertainty_n=settings.tare_uncertainty_n,
+    )
+    segment_m = segment_length(figures, limit_n=settings.abort_force_n)
+    return MatingPlan(
+        base_T_flange=base_T_flange,
+        flange_T_deck=flange_T_deck,
+        flange_T_sensor=flange_T_sensor,
+        settings=settings,
+        window=window,
+        speed=approach_speed(figures, allowed_peak_n=settings.touch_peak_n),
+        segment_m=min(segment_m, settings.greatest_segment_m),
+        creep=_creep(settings),
+        release=_release(settings),
+    )
+
+
+def _window(
+    M_T_D: UncertainPose, deck_thickness_m: float, settings: MatingSettings
+) -> ContactWindow:
+    half_x, half_y = settings.half_size_m
+    sigma = M_T_D.sigma
+    sigma_m = contact_sigma(
+        sigma[2],
+        settings.thickness_sigma_m,
+        settings.travel_sigma_m,
+        half_x * sigma[4],
+        half_y * sigma[3],
+    )
+    rx, ry, _ = np.abs(M_T_D.pose.rotation.as_rotvec())
+    return contact_window(
+        float(M_T_D.pose.translation[2]) - deck_thickness_m,
+        sigma_m=sigma_m,
+        coverage=settings.coverage,
+        least_half_m=settings.least_window_m,
+        greatest_half_m=min(settings.window_m, settings.greatest_past_m),
+        tilt_m=float(half_x * ry + half_y * rx),
+        margin_m=settings.clear_margin_m,
+    )
+
+
+def _creep(settings: MatingSettings) -> CreepLaw:
+    low = settings.target_force_n + READING_BAND_N
+    high = settings.abort_force_n - 2.0 * READING_BAND_N
+    if high - low < READING_BAND_N:
+        raise MatingPlanInvalid(
+            f"target {settings.target_force_n:.0f} N and abort {settings.abort_force_n:.0f} N "
+            "leave no window for the final force"
+        )
+    return _law(settings, low, high)
+
+
+def _release(settings: MatingSettings) -> CreepLaw:
+    band = min(READING_BAND_N, (settings.release_high_n - settings.release_low_n) / 4.0)
+    return _law(settings, settings.release_low_n + band, settings.release_high_n - band)
+
+
+def _law(settings: MatingSettings, low_n: float, high_n: float) -> CreepLaw:
+    return CreepLaw(
+        reference_n=(low_n + high_n) / 2.0,
+        done_low_n=low_n,
+        done_high_n=high_n,
+        damping_n_s_m=settings.creep_damping_n_s_m,
+        mass_kg=settings.creep_mass_kg,
+        period_s=settings.step_period_s,
+        stiffness_n_m=settings.stiffness_n_m,
+        greatest_step_m=settings.greatest_step_m,
+        smallest_step_m=settings.smallest_step_m,
+        force_sigma_n=settings.force_sigma_n,
+        ceiling_n=settings.ceiling_n,
+    )

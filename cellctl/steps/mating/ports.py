@@ -1,0 +1,45 @@
+"""What mating needs from the guard: the part of its client that this step uses."""
+
+from typing import Protocol
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.guard.limits import GuardLimits
+from cellctl.guard.report import Curve, GuardSample, GuardTrip, TareResult
+
+
+class GuardPort(Protocol):
+    """The guard as mating sees it; ``cellctl.guard.client.GuardClient`` in the cell."""
+
+    @property
+    def trip(self) -> GuardTrip | None:
+        """The latched trip, or None."""
+        ...
+
+    def latest(self) -> GuardSample:
+        """The newest sample."""
+        ...
+
+    def samples(self, since_s: float) -> Curve:
+        """All samples after a time."""
+        ...
+
+    async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
+        """From now on give wrenches in this frame."""
+        ...
+
+    async def tare(self, duration_s: float) -> TareResult:
+        """Average so long and take that as zero."""
+        ...
+
+    async def arm(self, limits: GuardLimits) -> None:
+        """Watch these limits from now on."""
+        ...
+
+    async def disarm(self) -> None:
+        """Watch no force limits."""
+        ...
+
+    async def acknowledge(self) -> None:
+        """Release a latched trip."""
+        ...

@@ -1,0 +1,94 @@
+"""What a mating reports while it runs and when it ends."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from cellctl.force.approach import ApproachSpeed, ContactWindow
+from cellctl.force.commissioning import StiffnessEstimate
+from cellctl.force.curve import CurveStatistics, ForceCurve
+from cellctl.force.seat import SeatVerdict
+from cellctl.geometry.pose import Array
+
+
+class MatingPhase(Enum):
+    """Where a mating is."""
+
+    TARE = "tare at stand-off"
+    FAST = "fast travel"
+    SLOW = "guarded travel"
+    CREEP = "creep to force"
+    HOLD = "hold"
+    RELEASE = "relax"
+    BACK_OFF = "back off"
+    ENDED = "ended"
+
+
+@dataclass(frozen=True, slots=True)
+class MatingProgress:
+    """Told to the caller at every phase and step."""
+
+    phase: MatingPhase
+    travel_m: float
+    force_n: float
+    """Along the approach; NaN before the tare."""
+    message: str = ""
+    curve: ForceCurve | None = None
+    """With ``ENDED`` only, also when the mating failed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """Mean wrench at standstill."""
+
+    time_s: float
+    travel_m: float
+    wrench: Array
+    """Shape (6,), deck frame."""
+    sigma: Array
+    """Shape (6,): scatter of the samples."""
+
+    @property
+    def force_n(self) -> float:
+        """Along the approach; positive when the frame pushes back."""
+        return float(self.wrench[2])
+
+
+@dataclass(frozen=True, slots=True)
+class Tare:
+    """What compensation left at the stand-off, in the deck frame."""
+
+    mean: Array
+    sigma: Array
+
+
+class MatingOutcome(Enum):
+    """How an attempt ended that raised no fault."""
+
+    SEATED = "seated"
+    FALSE_SEAT = "false seat"
+
+
+@dataclass(frozen=True, slots=True)
+class MatingResult:
+    """One attempt. Everything a record needs, without another look at the devices."""
+
+    outcome: MatingOutcome
+    window: ContactWindow
+    speed: ApproachSpeed
+    segment_m: float
+    tare: Tare
+    touch_travel_m: float
+    """Where the touch was detected."""
+    touch_force_n: float
+    """Standstill reading after the touch stop."""
+    creep: tuple[Reading, ...]
+    """Readings of the creep, oldest first."""
+    stiffness: StiffnessEstimate | None
+    """From the creep, where it had enough steps."""
+    hold: Reading
+    verdict: SeatVerdict
+    released: Reading | None
+    """After relaxing; None for a false seat."""
+    curve: ForceCurve
+    statistics: CurveStatistics
+    duration_s: float

@@ -1,0 +1,96 @@
+"""What a recipe and the commissioning say about mating, in SI."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cellctl.force.detectors import Cusum
+from cellctl.force.seat import SeatLimits
+
+
+@dataclass(frozen=True, slots=True)
+class MatingSettings:
+    """Constants of a mating. Measured figures have no default."""
+
+    stop_latency_s: float
+    """Upper bound from the stop-latency procedure."""
+    stiffness_n_m: float
+    """Arm and contact in series, upper bound."""
+    contact_stiffness_n_m: float = 1e7
+    """Deck on frame alone, upper bound: only the impact term needs it."""
+    moving_mass_kg: float = 200.0
+    deceleration_m_s2: float = 0.1
+    """The least deceleration of a stop."""
+
+    target_force_n: float = 35.0
+    """F_t of the paper: complete at or above it."""
+    abort_force_n: float = 45.0
+    """Filtered force at which the guard stops the robot."""
+    limit_force_n: float = 50.0
+    """True contact force that must never be exceeded."""
+    touch_peak_n: float = 35.0
+    """Predicted peak of the first touch at the chosen approach speed."""
+    tare_uncertainty_n: float = 1.5
+    force_sigma_n: float = 0.3
+    """Standard deviation of a reading at standstill."""
+    touch: Cusum = field(default_factory=Cusum)
+    sample_period_s: float = 1e-3
+    stale_s: float = 5e-3
+    """Silence of the sensor after which the guard stops."""
+    flange_age_s: float = 0.1
+    """Age of the flange pose at which the guard stops."""
+    filter_delay_s: float = 5e-3
+
+    fast_speed_m_s: float = 5e-3
+    acceleration_m_s2: float = 0.02
+    fast_limit_n: float = 20.0
+    """Filtered force that ends the fast travel: inertia at ``acceleration_m_s2`` and no more."""
+    greatest_past_m: float = 5e-4
+    """No commanded target lies further past the expected contact."""
+    window_m: float = 3e-4
+    """Greatest half width of the contact window."""
+    least_window_m: float = 1e-4
+    coverage: float = 4.0
+    """Half width of the contact window in standard deviations."""
+    clear_margin_m: float = 1e-4
+    """Slow travel begins this much before the window."""
+    travel_sigma_m: float = 1e-5
+    """Relative accuracy of the arm over the stand-off distance."""
+    thickness_sigma_m: float = 1.2e-5
+    half_size_m: tuple[float, float] = (0.5, 0.25)
+    """Half length and half width of the mating face: tilt makes an edge touch first."""
+    greatest_segment_m: float = 4e-4
+    """Below the step limit of the controller."""
+
+    settle_s: float = 0.5
+    settle_timeout_s: float = 5.0
+    settle_sigma: tuple[float, float] = (3.0, 0.6)
+    """Scatter of force (N) and moment (N·m) that counts as steady."""
+    plausible: tuple[float, float] = (80.0, 40.0)
+    """Untared force (N) and moment (N·m) at the stand-off that compensation can leave."""
+    tare_s: float = 0.5
+
+    creep_damping_n_s_m: float = 5e4
+    creep_mass_kg: float = 20.0
+    step_period_s: float = 0.6
+    step_speed_m_s: float = 2e-4
+    step_settle_s: float = 0.15
+    """Lets the hanging mass calm down before a reading."""
+    reading_s: float = 0.2
+    smallest_step_m: float = 1e-6
+    greatest_step_m: float = 1e-4
+    ceiling_n: float = 43.0
+    """No creep step may reach beyond, even at the upper bound of the stiffness."""
+    max_creep_steps: int = 40
+    hold_s: float = 0.5
+    release_low_n: float = 10.0
+    release_high_n: float = 20.0
+
+    seat: SeatLimits = field(default_factory=SeatLimits)
+    max_lateral_n: float = 25.0
+    max_moment_n_m: float = 25.0
+    back_off_m: float = 2e-3
+    back_off_speed_m_s: float = 1e-3
+    stand_off_tolerance: tuple[float, float] = (2e-4, float(np.deg2rad(0.02)))
+    """Distance (m) and angle (rad) the robot may be away from the planned stand-off."""
+    travel_timeout_s: float = 60.0
