@@ -69,3 +69,12 @@ class StaleData(LinkError):
     text = "Data from a device is too old"
     cause = "The device stopped sending although its connection stands."
     remedy = "Check the device's program and load; then Clear and Reset."
+
+
+class DeviceFault(LinkError):
+    """A device answered, but with a fault of its own."""
+
+    number = 208
+    text = "Device reports a fault of its own"
+    cause = "See the device's words in the detail."
+    remedy = "Put the device in order as its maker says; then Clear and Reset."
