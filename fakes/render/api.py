@@ -18,7 +18,7 @@
   centre of its ellipse.
 - ``RenderOptions()`` looks like a machined plate; ``RenderOptions.clean(noise_grey=2.0)`` gives
   even light, dark holes without visible walls and no texture; any field can be set by name:
-  ``light_gradient_per_m``, ``wall_grey``, ``texture_grey``, ``clutter``, …
+  ``light_gradient_per_m``, ``wall_grey``, ``texture_grey``, ``scratches_per_m2``, …
 - Blur and gain belong to the lens: ``nominal_head(blur_px=…)`` or ``LensTruth.blur_px``.
 - Several frames of an unmoved scene: ``clean = clean_pair(…)`` once (float32, no noise, not
   rounded), then ``expose(clean, options, rng)`` for each; only the noise differs.
@@ -42,6 +42,7 @@ from fakes.render.nominal import (
 )
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pair as _clean_pair
+from fakes.render.picture import scene_objects
 from fakes.render.sensor import Grey, exposed
 from fakes.render.truth import hole_centres_m, project_hole_centres, project_rims
 from fakes.world.scene import CameraScene, StereoTruth
@@ -104,9 +105,3 @@ def render_scene(scene: CameraScene, options: RenderOptions = _DEFAULT) -> tuple
     objects = scene_objects(scene)
     clean = _clean_pair(scene.stereo, objects, options, scene.light_seed)
     return expose(clean, options, np.random.default_rng(scene.noise_seed))
-
-
-def scene_objects(scene: CameraScene) -> tuple[SceneObject, ...]:
-    """What is there to be seen."""
-    candidates = (scene.frame, scene.deck, scene.target_board, scene.chessboard)
-    return tuple(item for item in candidates if item is not None)

@@ -20,7 +20,12 @@ MarkKind = Literal["stain", "punch", "spot"]
 _SHIFT: Final = 5
 _CLEARANCE_M: Final = 1.5e-3
 """Least distance of a false circle from a hole's outer rim."""
-_PER_M2: Final = {"scratch": 260, "stain": 70, "punch": 60, "spot": 30}
+_KINDS: Final[tuple[tuple[MarkKind, float, tuple[float, float], tuple[float, float]], ...]] = (
+    ("stain", 0.45, (2e-3, 7e-3), (-0.14, -0.04)),
+    ("punch", 0.35, (0.6e-3, 1.6e-3), (0.25, 0.5)),
+    ("spot", 0.20, (2.2e-3, 3.3e-3), (-0.5, -0.25)),
+)
+"""Share of all false circles, radius, relative change of the grey."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,19 +49,13 @@ class Scratch:
 
 @lru_cache(maxsize=8)
 def marks_of(
-    seed: int, size_m: tuple[float, float], holes: tuple[SceneHole, ...], density: float
+    seed: int, size_m: tuple[float, float], holes: tuple[SceneHole, ...], per_m2: float
 ) -> tuple[Mark, ...]:
     """False circles of a part, clear of its holes."""
     rng = np.random.default_rng([seed, 21])
-    area = size_m[0] * size_m[1] * density
     places: list[Mark] = []
-    kinds: tuple[tuple[MarkKind, tuple[float, float], tuple[float, float]], ...] = (
-        ("stain", (2e-3, 7e-3), (-0.14, -0.04)),
-        ("punch", (0.6e-3, 1.6e-3), (0.25, 0.5)),
-        ("spot", (2.2e-3, 3.3e-3), (-0.5, -0.25)),
-    )
-    for kind, radii_m, strengths in kinds:
-        for _ in range(round(area * _PER_M2[kind])):
+    for kind, share, radii_m, strengths in _KINDS:
+        for _ in range(round(size_m[0] * size_m[1] * per_m2 * share)):
             radius_m, strength = float(rng.uniform(*radii_m)), float(rng.uniform(*strengths))
             place = rng.uniform(-0.5, 0.5, 2) * size_m
             if _is_clear(place, radius_m, holes):
@@ -66,11 +65,11 @@ def marks_of(
 
 
 @lru_cache(maxsize=8)
-def scratches_of(seed: int, size_m: tuple[float, float], density: float) -> tuple[Scratch, ...]:
+def scratches_of(seed: int, size_m: tuple[float, float], per_m2: float) -> tuple[Scratch, ...]:
     """Scratches of a part: nearly straight, anywhere, over rims too."""
     rng = np.random.default_rng([seed, 22])
     lines = []
-    for _ in range(round(size_m[0] * size_m[1] * density * _PER_M2["scratch"])):
+    for _ in range(round(size_m[0] * size_m[1] * per_m2)):
         along = np.linspace(-0.5, 0.5, 9) * rng.gamma(2.0, 9e-3)
         bend = rng.normal(0, 2.0) * along**2
         angle = rng.vonmises(0, 0.7) if rng.random() < 0.6 else rng.uniform(0, np.pi)
@@ -85,10 +84,8 @@ def draw_clutter(
     view: View, image: Image, plate: ScenePlate, options: RenderOptions, light_azimuth: float
 ) -> None:
     """Change the face of ``plate`` in ``image`` by what it has met in its life."""
-    if options.clutter <= 0:
-        return
     _draw_scratches(view, image, plate, options)
-    for mark in marks_of(plate.seed, plate.size_m, plate.holes, options.clutter):
+    for mark in marks_of(plate.seed, plate.size_m, plate.holes, options.false_circles_per_m2):
         factor = _mark_patch(view, plate, mark, light_azimuth)
         if factor is not None:
             factor.lay_over(image)
@@ -98,7 +95,7 @@ def _draw_scratches(view: View, image: Image, plate: ScenePlate, options: Render
     pose = plate.camera_T_part
     lines: dict[float, list[NDArray[np.int32]]] = {}
     limits = np.array(view.size_px)
-    for scratch in scratches_of(plate.seed, plate.size_m, options.clutter):
+    for scratch in scratches_of(plate.seed, plate.size_m, options.scratches_per_m2):
         points = np.column_stack([scratch.points_m, np.zeros(len(scratch.points_m))])
         in_view = (view.view_T_head * pose).apply(points)
         if np.abs(in_view[:, :2] / in_view[:, 2:]).max() > 0.5:

@@ -23,7 +23,10 @@ CHAMFER: Final = 1.12
 THREAD_PITCH_M: Final = 0.8e-3
 _CREST: Final = 0.84
 """Diameter over the thread's crests, of the bore."""
+_TURNS: Final = 7
+"""More are too deep to be seen."""
 _WALL_FADE_M: Final = 7e-3
+_THREAD_FADE_M: Final = 3e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,16 +158,17 @@ def _thread(
     """
     angle = np.arctan2(rays.y, rays.x)
     turn = (angle + np.pi) / (2 * np.pi)
-    lit = 0.7 - 0.3 * np.cos(angle - azimuth)
-    radius_m = hole.diameter_m / 2
-    for number in range(7):
-        depth = THREAD_PITCH_M * (number - 0.5 + turn)
-        full = np.clip(depth / (1.5 * THREAD_PITCH_M), 0.0, 1.0)
-        inner = radius_m * (1 - (1 - _CREST) * full)
-        depth = np.maximum(depth, 0.0)
-        flank = coverage(rays.radius(depth) - inner)
-        tone = lit * np.exp(-depth / 2.5e-3) * (0.55 + 0.45 * (rays.radius(depth) < radius_m))
-        level = options.dark_grey + (options.thread_grey - options.dark_grey) * tone
+    lit = 0.75 - 0.25 * np.cos(angle - azimuth)
+    root_m = hole.diameter_m / 2
+    for number in range(_TURNS):
+        depth = np.maximum(THREAD_PITCH_M * (number - 0.5 + turn), 0.0)
+        full = np.minimum(depth / (1.5 * THREAD_PITCH_M), 1.0)
+        crest_m = root_m * (1 - (1 - _CREST) * full)
+        radius = rays.radius(depth)
+        flank = coverage(radius - crest_m)
+        height = np.clip((root_m - radius) / (root_m * (1 - _CREST)), 0.0, 1.0)
+        tone = lit * height * np.exp(-depth / _THREAD_FADE_M)
+        level = options.thread_root_grey + (options.thread_grey - options.thread_root_grey) * tone
         grey += visible * flank * level
         visible = visible * (1 - flank)
     return visible

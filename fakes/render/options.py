@@ -13,14 +13,15 @@ class RenderOptions:
     """Background behind parts and boards."""
     dark_grey: float = 18.0
     """Bottom of a hole."""
-    wall_grey: float = 62.0
+    wall_grey: float = 70.0
     """Hole wall at its rim; falls off with depth."""
     cone_grey: float = 118.0
     """Countersink and chamfer, mean over the azimuth."""
     cone_contrast: float = 0.35
     """Relative brightness variation of a countersink with the azimuth."""
-    thread_grey: float = 80.0
-    """Flanks of a thread near the rim."""
+    thread_grey: float = 105.0
+    """Crests and lit flanks of a thread near the rim."""
+    thread_root_grey: float = 24.0
     white_grey: float = 190.0
     """Paper of boards and discs of the target board."""
     black_grey: float = 32.0
@@ -28,8 +29,9 @@ class RenderOptions:
 
     texture_grey: float = 4.0
     """Standard deviation of the brushed finish, of the plate's grey."""
-    clutter: float = 1.0
-    """Density of scratches, stains and punch marks; 0 for none."""
+    scratches_per_m2: float = 120.0
+    false_circles_per_m2: float = 60.0
+    """Stains, punch marks and blots; about a tenth of it is in one image."""
 
     light_gradient_per_m: float = 0.9
     """Relative change of the light along its direction."""
@@ -60,9 +62,11 @@ class RenderOptions:
         even = cls(
             wall_grey=cls().dark_grey,
             thread_grey=cls().dark_grey,
+            thread_root_grey=cls().dark_grey,
             cone_contrast=0.0,
             texture_grey=0.0,
-            clutter=0.0,
+            scratches_per_m2=0.0,
+            false_circles_per_m2=0.0,
             light_gradient_per_m=0.0,
             light_ripple=0.0,
             gloss=0.0,

@@ -11,6 +11,7 @@ from fakes.render.options import RenderOptions
 from fakes.render.plate import draw_plate
 from fakes.render.sensor import blurred
 from fakes.world.scene import (
+    CameraScene,
     SceneChessboard,
     ScenePlate,
     SceneTargetBoard,
@@ -53,3 +54,9 @@ def clean_picture(
     if far_to_near:
         image *= light_field(view, pose_of(far_to_near[-1]), light_seed, options).astype(np.float32)
     return blurred(image, view.lens.blur_px)
+
+
+def scene_objects(scene: CameraScene) -> tuple[SceneObject, ...]:
+    """What is there to be seen."""
+    candidates = (scene.frame, scene.deck, scene.target_board, scene.chessboard)
+    return tuple(item for item in candidates if item is not None)

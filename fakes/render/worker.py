@@ -1,0 +1,94 @@
+"""Rendering in a process of its own, so that the world keeps its real time.
+
+The worker keeps the clean pictures of the last scenes: another exposure of an unmoved scene costs
+noise only.
+"""
+
+import multiprocessing
+import os
+import signal
+import zlib
+from collections import OrderedDict
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any, Final
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from fakes.render.canvas import Image
+from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
+from fakes.render.options import RenderOptions
+from fakes.render.picture import clean_pair, scene_objects
+from fakes.render.sensor import exposed
+from fakes.world.scene import CameraScene
+
+_KEPT_SCENES: Final = 3
+_kept: "OrderedDict[Any, tuple[Image, Image]]" = OrderedDict()
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A stereo pair, ready for the wire."""
+
+    width: int
+    height: int
+    payload: bytes
+    """Left then right, rows from the top."""
+    crc: int
+
+
+def make_pool(workers: int = 1) -> ProcessPoolExecutor:
+    """Processes for ``render_frame``; shut the pool down when the servers have stopped."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by the children's numpy
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(workers, mp_context=context, initializer=_initialise)
+
+
+def render_frame(
+    scene: CameraScene, options: RenderOptions, faults: frozenset[str] = frozenset()
+) -> Frame:
+    """One exposure; ``faults`` are names of ``SCENE_FAULTS`` and ``PICTURE_FAULTS``."""
+    for name in _in_order(SCENE_FAULTS, faults):
+        scene = SCENE_FAULTS[name](scene)
+    pair = _clean(scene, options)
+    for name in _in_order(PICTURE_FAULTS, faults):
+        pair = PICTURE_FAULTS[name](pair)
+    rng = np.random.default_rng(scene.noise_seed)
+    payload = b"".join(exposed(picture, options, rng).tobytes() for picture in pair)
+    height, width = pair[0].shape
+    return Frame(width, height, payload, zlib.crc32(payload))
+
+
+def fingerprint(value: Any) -> Any:
+    """A hashable value that is equal for equal scenes."""
+    if isinstance(value, RigidTransform):
+        return value.as_matrix().tobytes()
+    if isinstance(value, tuple):
+        return tuple(fingerprint(item) for item in value)
+    if is_dataclass(value):
+        return tuple(fingerprint(getattr(value, field.name)) for field in fields(value))
+    return value
+
+
+def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, Image]:
+    unmoved = replace(scene, time_s=0.0, noise_seed=0)
+    key = fingerprint((unmoved, options))
+    pair = _kept.pop(key, None)
+    if pair is None:
+        pair = clean_pair(scene.stereo, scene_objects(scene), options, scene.light_seed)
+    _kept[key] = pair
+    while len(_kept) > _KEPT_SCENES:
+        _kept.popitem(last=False)
+    return pair
+
+
+def _in_order(known: Iterable[str], wanted: frozenset[str]) -> list[str]:
+    return [name for name in known if name in wanted]
+
+
+def _initialise() -> None:
+    cv2.setNumThreads(1)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent shuts the pool down
