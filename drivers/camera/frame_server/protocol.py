@@ -66,16 +66,18 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
     """The header of the reply to a request; ``ProtocolViolation`` when any field does not fit."""
     if len(data) != HEADER_BYTES:
         raise ProtocolViolation(f"header of {len(data)} bytes")
-    fields = _HEADER.unpack(data)
-    magic, version, status, echoed = fields[:4]
-    pixel_format, length, crc, own_crc = fields[10:]
+    magic, version, status, echoed, frame_id, time_us, exposure_us, *rest = _HEADER.unpack(data)
+    width, height, images, pixel_format, length, crc, own_crc = rest
     if own_crc != zlib.crc32(data[:-4]):
         raise ProtocolViolation("header CRC does not match")
     if magic != b"CFSR" or version != VERSION:
         raise ProtocolViolation(f"magic {magic!r}, version {version}")
     if status not in {known.value for known in Status}:
         raise ProtocolViolation(f"unknown status {status}")
-    header = Header(Status(status), echoed, *fields[4:10], length, crc)
+    header = Header(
+        *(Status(status), echoed, frame_id, time_us, exposure_us),
+        *(width, height, images, length, crc),
+    )
     if echoed != request_id:
         raise ProtocolViolation(f"reply to request {echoed} instead of {request_id}")
     _check_size(header, command, pixel_format)
