@@ -1,0 +1,52 @@
+"""What the pictures of all calibrations share."""
+
+import io
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cellctl.calibration.checks import Check
+
+GOOD, BAD = "tab:green", "tab:red"
+
+
+def new_figure(width: float = 12.0, height: float = 8.0) -> Figure:
+    """A figure that needs no display and leaves no global state."""
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def title(figure: Figure, text: str, *, passed: bool) -> None:
+    """Heading with the verdict."""
+    verdict = "passed" if passed else "NOT PASSED"
+    figure.suptitle(f"{text}: {verdict}", color=GOOD if passed else BAD)
+
+
+def list_checks(axes: Axes, checks: Sequence[Check], warnings: Sequence[str]) -> None:
+    """The figures against their limits and the warnings, as text."""
+    axes.axis("off")
+    step = 0.95 / max(len(checks) + len(warnings), 8)
+    for line, check in enumerate(checks):
+        color = GOOD if check.passed else BAD
+        axes.text(0.0, 0.98 - line * step, str(check), color=color, va="top", fontsize=9)
+    for line, warning in enumerate(warnings, start=len(checks)):
+        text = f"! {warning}"
+        axes.text(
+            0.0, 0.98 - line * step, text, color="tab:orange", va="top", fontsize=9, wrap=True
+        )
+
+
+def bars(axes: Axes, names: Sequence[str], values: Sequence[float], unit: str) -> None:
+    """One bar a name, labelled below, or by number when there are many."""
+    axes.bar(range(len(values)), values, color="tab:blue")
+    axes.set_ylabel(unit)
+    axes.grid(visible=True, axis="y", alpha=0.3)
+    if len(names) <= 40:
+        axes.set_xticks(range(len(names)), names, rotation=90, fontsize=7)
+
+
+def as_png(figure: Figure) -> bytes:
+    """The picture as a file's content."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=110)
+    return buffer.getvalue()

@@ -1,0 +1,71 @@
+"""Closed-form hand-eye solution after Park and Martin, and the checks that need no solution.
+
+With ``turn_i`` = base_T_flange (eye in hand) or its inverse (eye to hand) every pose obeys
+``turn_i · X · camera_T_board_i = Z``. For two poses that is AX = XB (CG = GD) with
+A = turn_j^-1 · turn_i and B = camera_T_board_j · camera_T_board_i^-1.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
+from cellctl.geometry.pose import Array
+
+MIN_POSES = 4
+_MIN_TURN_RAD, _MAX_TURN_RAD = np.radians(3), np.radians(170)
+_MIN_SPREAD_RAD = np.radians(5)
+_MAX_ANGLE_DIFFERENCE_RAD = np.radians(1)
+
+
+def closed_form(
+    turns: Sequence[RigidTransform], camera_T_board: Sequence[RigidTransform]
+) -> tuple[RigidTransform, RigidTransform, Array]:
+    """X, Z and the spread of the turns (rad rms along the three principal directions, falling).
+
+    Raises ``PosesNotDiverse`` or ``RobotCameraMismatch``.
+    """
+    if len(turns) < MIN_POSES:
+        raise PosesNotDiverse(f"{len(turns)} poses, at least {MIN_POSES} needed")
+    robot, camera = _motions(turns, camera_T_board)
+    alpha = np.stack([motion.rotation.as_rotvec() for motion in robot])
+    beta = np.stack([motion.rotation.as_rotvec() for motion in camera])
+    angles = np.linalg.norm(alpha, axis=1)
+    off = float(np.median(np.abs(angles - np.linalg.norm(beta, axis=1))))
+    if off > _MAX_ANGLE_DIFFERENCE_RAD:
+        raise RobotCameraMismatch(
+            f"robot and camera turn by angles that differ by {np.degrees(off):.1f}° (median)"
+        )
+    spread = np.linalg.svd(alpha, compute_uv=False) / np.sqrt(len(alpha))
+    if spread[1] < _MIN_SPREAD_RAD:
+        raise PosesNotDiverse(
+            f"the flange turns about one direction only; across it {np.degrees(spread[1]):.1f}° rms"
+        )
+    rotation, _ = Rotation.align_vectors(alpha, beta)
+    matrices = np.concatenate([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
+    knowns = np.concatenate(
+        [rotation.apply(b.translation) - a.translation for a, b in zip(robot, camera, strict=True)]
+    )
+    translation = np.linalg.lstsq(matrices, knowns, rcond=None)[0]
+    x = RigidTransform.from_components(translation, rotation)
+    z = [turn * x * pose for turn, pose in zip(turns, camera_T_board, strict=True)]
+    mean_rotation = Rotation.concatenate([pose.rotation for pose in z]).mean()
+    mean_translation = np.median([pose.translation for pose in z], axis=0)
+    return x, RigidTransform.from_components(mean_translation, mean_rotation), spread
+
+
+def _motions(
+    turns: Sequence[RigidTransform], camera_T_board: Sequence[RigidTransform]
+) -> tuple[list[RigidTransform], list[RigidTransform]]:
+    """A and B for all pairs of poses that turn enough, but not by nearly half a turn."""
+    robot, camera = [], []
+    for i, j in combinations(range(len(turns)), 2):
+        a = turns[j].inv() * turns[i]
+        if _MIN_TURN_RAD <= a.rotation.magnitude() <= _MAX_TURN_RAD:
+            robot.append(a)
+            camera.append(camera_T_board[j] * camera_T_board[i].inv())
+    if len(robot) < 3:
+        raise PosesNotDiverse("fewer than three pairs of poses turn by 3° or more")
+    return robot, camera
