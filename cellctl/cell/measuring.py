@@ -16,7 +16,8 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.vision.average import average
 from cellctl.vision.features import FeatureFile, Hole
-from cellctl.vision.measure import Method, PairMeasurement, measure_pair
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.part_pose import PartPose, part_pose
 from cellctl.vision.stereo_head import StereoHead
 
@@ -54,14 +55,23 @@ class PartMeasurement:
     """Main robot, as reported while the images were taken."""
 
     @property
+    def own(self) -> UncertainPose:
+        """The pose with the uncertainty of the hole measurements alone."""
+        return UncertainPose(self.c1_T_part, self.pose.own_covariance)
+
+    @property
     def c1_T_part(self) -> RigidTransform:
         """The pose alone."""
         return self.pose.pose.pose
 
     @property
     def sigma_mm_deg(self) -> Array:
-        """Standard deviations x, y, z in mm and rx, ry, rz in degrees."""
-        sigma = self.pose.pose.sigma
+        """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the holes alone.
+
+        Frame and deck are measured through the same C1_T_C2: its error cancels between them and is
+        no part of the uncertainty that the loop is judged by.
+        """
+        sigma = np.sqrt(np.diag(self.pose.own_covariance))
         return np.concatenate([sigma[:3] / MM, np.degrees(sigma[3:])])
 
 
@@ -110,7 +120,7 @@ class PartMeasurer:
     ) -> tuple[tuple[StereoPair, StereoPair], tuple[PairMeasurement, PairMeasurement]]:
         stations = self._cell.heads
         models = (self._geometry.head_1, self._geometry.head_2)
-        holes = (features.of_head(1), features.of_head(2))
+        holes = (features.seen_by(1), features.seen_by(2))
         results = await asyncio.gather(
             *(
                 self._grab_and_find(station, model, hole, prediction)
@@ -148,10 +158,7 @@ class PartMeasurer:
         base_T_flange: RigidTransform,
     ) -> PartMeasurement:
         heads = (average([one for one, _ in taken]), average([two for _, two in taken]))
-        # Frame and deck are measured through the same C1_T_C2, so its error cancels between them
-        # and must not be counted in the uncertainty that the loop is judged by.
-        c1_T_c2 = UncertainPose.exact(self._geometry.c1_T_c2.pose)
-        pose = part_pose(*heads, c1_T_c2, features.holes, self._method)
+        pose = part_pose(*heads, self._geometry.c1_T_c2, features.holes, self._method)
         return PartMeasurement(pose, heads, pairs, len(taken), base_T_flange)
 
     def _check_heads(self) -> None:

@@ -1,10 +1,10 @@
 """What the cell is doing now, for the PLC, the log and the record. Written by steps, read by the daemon."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from cellctl.cell.step import Step
-from cellctl.geometry.pose import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,10 +13,11 @@ class Progress:
 
     step: Step = Step.NONE
     iteration: int = 0
-    error_mm_deg: tuple[float, ...] = (0.0,) * 6
+    error_mm_deg: tuple[float, ...] = (math.nan,) * 6
     """x, y, z in mm, rx, ry, rz in degrees of the deck against its target."""
-    force_peaks: tuple[float, ...] = (0.0,) * 6
+    force_peaks: tuple[float, ...] = (math.nan,) * 6
     """Greatest magnitude per component in the deck frame, N and N·m."""
+    force_limit_n: float = math.nan
     message: str = ""
 
 
@@ -39,7 +40,3 @@ class ProgressBoard:
         for observer in self.observers:
             observer(self.current)
 
-
-def error_tuple(translation_mm: Array, rotation_deg: Array) -> tuple[float, ...]:
-    """The six numbers of ``Progress.error_mm_deg``."""
-    return (*map(float, translation_mm), *map(float, rotation_deg))

@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from cellctl.config.base import Section
+from cellctl.config.base import JointsDeg, Section
 from cellctl.config.devices import Device, Force, Heads, Robots
 from cellctl.config.recipe import Recipe
 
@@ -28,6 +28,8 @@ class Procedures(Section):
     """Inner corners of the calibration chessboard, columns x rows."""
     square_mm: Annotated[float, Field(gt=0, le=100)] = 25.0
     stereo_views: Annotated[int, Field(ge=8, le=100)] = 24
+    base_frame_joints_deg: JointsDeg
+    """Main robot, middle of both arcs: station empty, targets seen by the large-field head."""
     circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
     circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0
     tracker_frames: Annotated[int, Field(ge=1, le=200)] = 20
@@ -49,7 +51,7 @@ class CellConfig(Section):
     heads: Heads
     tracker: Device
     force: Force
-    procedures: Procedures = Procedures()
+    procedures: Procedures
     recipes: Annotated[tuple[Recipe, ...], Field(min_length=1)]
 
     def devices(self) -> dict[str, Device]:

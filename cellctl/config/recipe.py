@@ -70,5 +70,7 @@ class Recipe(Section):
     station_tolerance_mm: Annotated[float, Field(gt=0, le=100)] = 15.0
     """A frame or deck measured farther than this from its nominal place is refused."""
     station_tolerance_deg: Annotated[float, Field(gt=0, le=20)] = 3.0
+    seated_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.2
+    """Lateral offset at a pin hole that the seated deck may have."""
     compensation: Compensation = Compensation()
     mating: Mating

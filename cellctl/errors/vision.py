@@ -180,3 +180,23 @@ class CorrectionLimitReached(VisionError):
     text = "Too many corrections without reaching the threshold"
     cause = "Robot repeatability or measurement noise near the size of the threshold."
     remedy = "See the error by iteration in the report; check robot and calibration."
+
+
+class PartMisplaced(VisionError):
+    """A part was measured far from where the recipe puts it."""
+
+    number = 451
+    text = "A part is not where it should be"
+    cause = "Frame set down wrongly, deck gripped wrongly, wrong recipe, or a wrong calibration."
+    remedy = "Look at the picture; set the part down again or check the recipe."
+    reaction = Reaction.STOP
+
+
+class SeatedOffPosition(VisionError):
+    """The mated deck is not where it should be."""
+
+    number = 452
+    text = "The seated deck is off its position"
+    cause = "The deck slipped while it was pressed, or the last measurement was wrong."
+    remedy = "Check the pin holes with plug gauges; do not fasten before the cause is known."
+    reaction = Reaction.STOP

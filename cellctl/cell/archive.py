@@ -1,0 +1,34 @@
+"""The run store behind one thread: writes keep their order and never block the event loop."""
+
+import asyncio
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Concatenate, ParamSpec, TypeVar
+
+from cellctl.records.store import RunStore
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+class Archive:
+    """Awaitable access to the run store; faults of the store come back unchanged."""
+
+    def __init__(self, path: Path) -> None:
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="archive")
+        self._store: RunStore = self._thread.submit(RunStore, path).result()
+
+    async def do(
+        self, call: Callable[Concatenate[RunStore, P], R], *args: P.args, **kwargs: P.kwargs
+    ) -> R:
+        """Call a method of the store: ``await archive.do(RunStore.add_alarm, …)``."""
+        loop = asyncio.get_running_loop()
+        return await loop.run_in_executor(
+            self._thread, lambda: call(self._store, *args, **kwargs)
+        )
+
+    def close(self) -> None:
+        """Finish pending writes and close the store."""
+        self._thread.submit(self._store.close).result()
+        self._thread.shutdown(wait=True)

@@ -1,0 +1,112 @@
+"""The cell's calibrations on disk: stored by procedures, demanded by production."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+from cellctl import __version__
+from cellctl.calibration.board_transfer import BoardPlacement
+from cellctl.calibration.files import (
+    KINDS,
+    CalibrationSet,
+    StoredCalibration,
+    read_calibration,
+    read_calibration_set,
+    write_stored,
+)
+from cellctl.clock import utc_now
+from cellctl.errors import CellError
+from cellctl.errors.calibration import CalibrationExpired, CalibrationRecordInvalid
+from cellctl.force.compensation import Compensation
+from cellctl.procedures.payload_result import compensation_from_document
+
+PAYLOAD = "payload"
+ALL_KINDS = (*KINDS, PAYLOAD)
+SHOWN = (("head_1", "head_2"), ("base_frame",), ("board_transfer",), (PAYLOAD,))
+"""Groups whose remaining validity the line sees."""
+
+
+@dataclass(frozen=True, slots=True)
+class Calibrations:
+    """Everything production needs, valid at the moment it was read."""
+
+    geometry: CalibrationSet
+    compensation: Compensation
+    ids: Mapping[str, str]
+    """Identity of every record by kind."""
+
+
+@dataclass(slots=True)
+class CalibrationFolder:
+    """Reads and writes the folder; also keeps what two procedures hand to each other."""
+
+    path: Path
+    placements: dict[str, BoardPlacement] = field(default_factory=dict)
+    """Target board before head_1 and head_2, waiting for both to be there."""
+    _seen: tuple[float, tuple[float, ...]] | None = None
+
+    def read(self, planned: timedelta) -> Calibrations:
+        """All calibrations; raises when one is missing, damaged or expires within ``planned``."""
+        until = utc_now() + planned
+        geometry = read_calibration_set(self.path, now=until)
+        payload = read_calibration(self.path, PAYLOAD)
+        if payload.valid_until <= until:
+            raise CalibrationExpired(f"{PAYLOAD} ({payload.valid_until:%Y-%m-%d})")
+        try:
+            compensation = compensation_from_document(dict(payload.record))
+        except (KeyError, TypeError, ValueError) as error:
+            raise CalibrationRecordInvalid(f"{PAYLOAD}: {error!r}") from error
+        return Calibrations(geometry, compensation, {**geometry.ids, PAYLOAD: payload.id})
+
+    def store(
+        self, kind: str, record: Mapping[str, Any], serial_number: str, valid_for: timedelta
+    ) -> StoredCalibration:
+        """Put a record that passed into the folder, in place of the one before."""
+        now = utc_now()
+        plain = json.loads(json.dumps(record))  # as it will be read back
+        stored = StoredCalibration(
+            kind, plain, now, now + valid_for, f"cellctl {__version__}", serial_number
+        )
+        write_stored(self.path, stored)
+        self._seen = None
+        return stored
+
+    def fault(self, planned: timedelta) -> CellError | None:
+        """Why production may not start, or None."""
+        try:
+            self.read(planned)
+        except CellError as error:
+            return error
+        return None
+
+    def validity_h(self) -> tuple[float, float, float, float]:
+        """Hours left: heads, base frame, board transfer, payload; 0 when not valid.
+
+        Reads the files again only when one of them has changed.
+        """
+        stamp = max((path.stat().st_mtime for path in self.path.glob("*.json")), default=0.0)
+        now = utc_now()
+        if self._seen is None or self._seen[0] != stamp:
+            ends = tuple(self._end(kind) for kind in ALL_KINDS)
+            self._seen = stamp, ends
+        ends_s = dict(zip(ALL_KINDS, self._seen[1], strict=True))
+        hours = [
+            max(0.0, (min(ends_s[kind] for kind in group) - now.timestamp()) / 3600)
+            for group in SHOWN
+        ]
+        return hours[0], hours[1], hours[2], hours[3]
+
+    def all_valid(self) -> bool:
+        """True when every calibration has time left."""
+        return min(self.validity_h()) > 0
+
+    def _end(self, kind: str) -> float:
+        try:
+            stored = read_calibration(self.path, kind)
+        except CellError:
+            return 0.0  # not valid is what the line is told; production raises the fault itself
+        return stored.valid_until.timestamp() if stored.passed or kind == PAYLOAD else 0.0
+

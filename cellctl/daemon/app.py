@@ -1,0 +1,98 @@
+"""Start, supervise and end the daemon."""
+
+import asyncio
+import json
+import signal
+import sys
+from contextlib import AsyncExitStack
+from pathlib import Path
+
+from cellctl import log
+from cellctl.cell.archive import Archive
+from cellctl.cell.devices import Cell
+from cellctl.config import CellConfig, load_cell
+from cellctl.daemon.notify import notify
+from cellctl.daemon.supervision import supervise
+from cellctl.daemon.unit import Unit
+from cellctl.packml.command import Command
+from cellctl.packml.state import State
+from cellctl.plc.port import PlcPort
+
+_log = log.get(__name__)
+
+ABORT_TIMEOUT_S = 20.0
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
+    """Run one cell until a signal; returns the exit code.
+
+    Raises the numbered fault when the cell cannot be started. However it ends, motion is
+    stopped, an open run is closed as aborted and no child process is left.
+    """
+    config = _with_port(load_cell(cell_file), modbus_port)
+    stop = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    for number in SIGNALS:
+        loop.add_signal_handler(number, stop.set)
+    async with AsyncExitStack() as stack:
+        archive = Archive(data_dir or Path(config.data_dir))
+        stack.callback(archive.close)
+        cell = Cell(config, cell_file.parent)
+        stack.callback(cell.workers.close)
+        unit = Unit(cell, archive)
+        await unit.open()
+        port = PlcPort(config.plc, unit.take, unit.line_lost, previous_seq=None)
+        unit.attach(port)
+        stack.push_async_callback(port.stop)
+        await port.start()  # first of all: a second daemon must not take over the robots
+        stack.push_async_callback(cell.disconnect)
+        if not await _connect(cell, stop):
+            return 0
+        stack.push_async_callback(_abort, unit)
+        _ready(config, port)
+        async with asyncio.TaskGroup() as tasks:
+            watcher = tasks.create_task(supervise(cell, unit, port))
+            await stop.wait()
+            _log.info("asked to end")
+            notify("STOPPING=1")
+            watcher.cancel()
+    _log.info("ended")
+    return 0
+
+
+async def _connect(cell: Cell, stop: asyncio.Event) -> bool:
+    """Connect the devices, unless a signal comes first."""
+    connecting = asyncio.create_task(cell.connect())
+    stopping = asyncio.create_task(stop.wait())
+    await asyncio.wait({connecting, stopping}, return_when=asyncio.FIRST_COMPLETED)
+    stopping.cancel()
+    if not connecting.done():
+        connecting.cancel()
+        await asyncio.gather(connecting, return_exceptions=True)
+        return False
+    connecting.result()
+    return True
+
+
+async def _abort(unit: Unit) -> None:
+    """Stop motion and close the run, whatever the unit is doing."""
+    machine = unit.machine
+    if machine.state not in (State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED):
+        await machine.command(Command.ABORT)
+        await machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+    await machine.close()
+
+
+def _ready(config: CellConfig, port: PlcPort) -> None:
+    _log.info("ready", cell=config.name, modbus_port=port.port)
+    notify(f"READY=1\nSTATUS=ready, Modbus TCP on port {port.port}")
+    json.dump({"ready": True, "cell": config.name, "modbus_port": port.port}, sys.stdout)
+    print(flush=True)
+
+
+def _with_port(config: CellConfig, modbus_port: int | None) -> CellConfig:
+    if modbus_port is None:
+        return config
+    plc = config.plc.model_copy(update={"port": modbus_port})
+    return config.model_copy(update={"plc": plc})

@@ -1,0 +1,39 @@
+"""What every calibration procedure is given, and what it gives back."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cellctl.cell.calibrations import CalibrationFolder
+from cellctl.cell.devices import Cell
+from cellctl.cell.job import SafePoint
+from cellctl.cell.progress import ProgressBoard
+
+
+@dataclass(frozen=True, slots=True)
+class ProcedureContext:
+    """Devices, earlier calibrations and the place to tell of progress."""
+
+    cell: Cell
+    calibrations: CalibrationFolder
+    board: ProgressBoard
+    safe_point: SafePoint
+
+    async def progress(self, done: int, total: int, message: str) -> None:
+        """Tell how far it is, and obey a pending Hold."""
+        self.board.update(iteration=done, message=f"{message} {done} of {total}")
+        await self.safe_point()
+
+
+@dataclass(frozen=True, slots=True)
+class ProcedureOutcome:
+    """A result on its way to the store."""
+
+    item: str
+    """Name of the calibration item, for example ``head_1``."""
+    record: Mapping[str, Any]
+    passed: bool
+    warnings: tuple[str, ...]
+    picture_png: bytes | None
+    serial_number: str
+    """Of the instrument that was calibrated."""

@@ -1,0 +1,74 @@
+"""Procedures 101 and 102: calibrate a stereo head on the chessboard (paper 2.1.1)."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.board import BoardView, CalibrationBoard
+from cellctl.calibration.board_images import ImagePair, detect_view
+from cellctl.calibration.stereo import calibrate_stereo
+from cellctl.calibration.stereo_picture import stereo_picture
+from cellctl.cell.devices import HeadStation
+from cellctl.errors.calibration import BoardNotFound
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.procedures.views import stereo_views
+
+WORKING_DISTANCE_M = 0.5
+
+
+async def calibrate_head(context: ProcedureContext, station: HeadStation) -> ProcedureOutcome:
+    """Swing the head about the board, find its corners in every pair, solve, and drive back."""
+    settings = context.cell.config.procedures
+    columns, rows = (int(number) for number in settings.board.split("x"))
+    board = CalibrationBoard(columns, rows, settings.square_mm * MM)
+    await station.robot.move_joint(
+        np.radians(station.config.measuring_joints_deg),
+        speed_ratio=station.config.speed_percent / 100,
+    )
+    poses = _flange_poses(station, settings.stereo_views)
+    views: list[BoardView] = []
+    image_size = (0, 0)
+    for number, base_T_flange in enumerate(poses, start=1):
+        await context.progress(number, len(poses), f"{station.name}: view")
+        await _move(station, base_T_flange)
+        pair = await station.camera.grab()
+        image_size = (pair.left.shape[1], pair.left.shape[0])
+        view = await context.cell.workers.run(
+            detect_view, ImagePair(f"view {number}", pair.left, pair.right), board
+        )
+        if view is not None:
+            views.append(view)
+    await _move(station, poses[0])
+    if not views:
+        raise BoardNotFound(f"{station.name} sees a board of {board} in none of {len(poses)} views")
+    result = await context.cell.workers.run(calibrate_stereo, views, board, image_size)
+    return ProcedureOutcome(
+        item=station.name,
+        record=result.to_record(),
+        passed=result.passed,
+        warnings=result.warnings,
+        picture_png=stereo_picture(result),
+        serial_number=await station.camera.serial_number(),
+    )
+
+
+def _flange_poses(station: HeadStation, count: int) -> list[RigidTransform]:
+    """Targets of the flange: the present pose first, then around the middle of both fields."""
+    base_T_flange = station.robot.state().base_T_flange
+    flange_T_head = pose_from_xyzabc(station.config.flange_T_head)
+    toe_in_rad = flange_T_head.rotation.magnitude()
+    # The head is mounted turned by half its toe-in, so that the bisector of its axes is the flange's.
+    pivot_m = WORKING_DISTANCE_M / np.cos(toe_in_rad) * np.array([0.0, 0.0, 1.0])
+    head_T_flange = flange_T_head.inv()
+    return [
+        base_T_flange * flange_T_head * head_T_view * head_T_flange
+        for head_T_view in stereo_views(count, pivot_m)
+    ]
+
+
+async def _move(station: HeadStation, base_T_flange: RigidTransform) -> None:
+    await station.robot.move_linear(
+        base_T_flange,
+        speed_m_s=station.config.linear_speed_mm_s * MM,
+        acceleration_m_s2=station.config.linear_acceleration_mm_s2 * MM,
+    )

@@ -1,0 +1,68 @@
+"""Step 40: measure and correct until every component is within its threshold (paper 2.3)."""
+
+import numpy as np
+
+from cellctl.geometry.pose import MM
+from cellctl.steps.run import AssemblyRun, in_mm_deg
+from cellctl.vision.compensation import (
+    CorrectionLimits,
+    Judgement,
+    check_correction,
+    check_progress,
+    check_uncertainty,
+    flange_target,
+    judge,
+    next_target,
+    uncertain_deck_in_frame,
+)
+
+
+async def compensate(run: AssemblyRun) -> None:
+    """Iterate to the thresholds of the recipe, or raise what keeps it from converging."""
+    settings = run.recipe.compensation
+    limits = CorrectionLimits(
+        max_corrections=settings.max_iterations,
+        translation_m=settings.max_correction_mm * MM,
+        rotation_rad=float(np.radians(settings.max_correction_deg)),
+    )
+    history: list[Judgement] = []
+    while True:
+        await run.safe_point()
+        judgement = await measure_error(run, len(history) + 1)
+        history.append(judgement)
+        if judgement.converged:
+            return
+        check_progress(history, run.thresholds, limits)
+        check_correction(judgement.error, limits)
+        await _correct(run)
+
+
+async def measure_error(run: AssemblyRun, iteration: int) -> Judgement:
+    """Measure the deck at the stand-off and judge it against the target (eq. 9, 10, 16)."""
+    assert run.c1_T_M is not None
+    assert run.base_T_flange is not None
+    assert run.flange_T_deck is not None
+    predicted = run.base_T_c1.inv() * run.base_T_flange * run.flange_T_deck
+    measurement = await run.measure(run.deck_features, predicted)
+    run.M_T_D = uncertain_deck_in_frame(run.c1_T_M, measurement.own)
+    judgement = judge(run.target_M_T_D, run.M_T_D, run.thresholds)
+    check_uncertainty(judgement, run.thresholds, measurement.frames)
+    run.board.update(
+        iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist())
+    )
+    await run.journal.iteration(iteration, judgement, measurement)
+    return judgement
+
+
+async def _correct(run: AssemblyRun) -> None:
+    """Equations 11 to 15: command the deck anew from what was measured."""
+    assert run.c1_T_M is not None
+    assert run.M_T_D is not None
+    assert run.flange_T_deck is not None
+    rule = "default" if run.recipe.compensation.rule == "compose" else "paper"
+    commanded = next_target(run.commanded[-1], run.target_M_T_D, run.M_T_D.pose, rule)
+    run.commanded.append(commanded)
+    run.base_T_flange = flange_target(
+        run.base_T_c1, run.c1_T_M.pose, commanded, run.flange_T_deck
+    )
+    await run.move_flange(run.base_T_flange)

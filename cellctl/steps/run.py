@@ -1,0 +1,93 @@
+"""What the steps of one assembly hand to each other."""
+
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.calibrations import Calibrations
+from cellctl.cell.devices import Cell
+from cellctl.cell.job import SafePoint
+from cellctl.cell.measuring import PartMeasurement, PartMeasurer
+from cellctl.cell.progress import ProgressBoard
+from cellctl.config.recipe import Recipe
+from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.steps.journal import Journal
+from cellctl.vision.compensation import Thresholds, target_M_T_D
+from cellctl.vision.features import FeatureFile
+
+SHARE_OF_ONE_PART = 1 / np.sqrt(2)
+"""Frame and deck contribute alike to the uncertainty of the deck in the frame."""
+
+
+@dataclass(slots=True)
+class AssemblyRun:
+    """One deck on one frame. The measured poses are filled in step by step."""
+
+    cell: Cell
+    recipe: Recipe
+    calibrations: Calibrations
+    frame_features: FeatureFile
+    deck_features: FeatureFile
+    board: ProgressBoard
+    journal: Journal
+    safe_point: SafePoint
+    measurer: PartMeasurer
+    c1_T_M: UncertainPose | None = None
+    """The frame, with the uncertainty of its own measurement."""
+    flange_T_deck: RigidTransform | None = None
+    M_T_D: UncertainPose | None = None
+    """The deck as last measured."""
+    base_T_flange: RigidTransform | None = None
+    """Commanded flange pose behind ``M_T_D``."""
+    commanded: list[RigidTransform] = field(default_factory=list)
+    """Every ``M_T_D`` commanded so far."""
+
+    @property
+    def target_M_T_D(self) -> RigidTransform:
+        """Equation 5."""
+        return target_M_T_D(
+            self.recipe.deck_thickness_mm * MM, self.recipe.stand_off_mm * MM
+        )
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """Equation 16."""
+        settings = self.recipe.compensation
+        return Thresholds(settings.threshold_mm * MM, float(np.radians(settings.threshold_deg)))
+
+    @property
+    def base_T_c1(self) -> RigidTransform:
+        """Head I at its measuring pose."""
+        return self.calibrations.geometry.base_T_c1.pose
+
+    async def measure(self, features: FeatureFile, c1_T_part: RigidTransform) -> PartMeasurement:
+        """Measure a part near a predicted pose, as certainly as the loop needs it."""
+        settings, thresholds = self.recipe.compensation, self.thresholds
+        wanted = thresholds.vector * thresholds.uncertainty_share * SHARE_OF_ONE_PART
+        return await self.measurer.measure(
+            features,
+            c1_T_part,
+            frames=settings.frames,
+            max_frames=settings.max_frames,
+            wanted_sigma_mm_deg=in_mm_deg(wanted),
+        )
+
+    async def move_flange(self, base_T_flange: RigidTransform) -> None:
+        """Straight move of the main robot at the speed of the cell file."""
+        main = self.cell.config.robots.main
+        await self.cell.main.move_linear(
+            base_T_flange,
+            speed_m_s=main.linear_speed_mm_s * MM,
+            acceleration_m_s2=main.linear_acceleration_mm_s2 * MM,
+        )
+
+
+StepFunction = Callable[[AssemblyRun], Awaitable[None]]
+
+
+def in_mm_deg(components: Array) -> Array:
+    """x, y, z, rx, ry, rz from m and rad to mm and degrees."""
+    return np.concatenate([components[:3] / MM, np.degrees(components[3:])])
