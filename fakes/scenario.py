@@ -61,6 +61,9 @@ class Robot(Section):
     repeatability_deg: float
     correlation_mm: float
     """Travel after which the repeatability error is mostly a new one."""
+    settling_mm: float
+    """Standard deviation of what every single motion adds, however short it is."""
+    settling_deg: float
     start_latency_ms: float
     stop_latency_ms: float
     stop_deceleration_mm_s2: float

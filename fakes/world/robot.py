@@ -8,7 +8,7 @@ from fakes.world.arm import OutOfReachError, forward, forward_matrix, nominal_li
 from fakes.world.frames import MM, Array, distance, stream
 from fakes.world.motion import JointPath, LinearPath, Path, Profile
 from fakes.world.truth import RobotTruth
-from fakes.world.wander import Wander
+from fakes.world.wander import Wander, small_displacement
 
 STEP_ANGLE_MAX_RAD = np.deg2rad(0.5)
 _JUMP_RAD = np.deg2rad(45.0)
@@ -37,6 +37,11 @@ class RobotArm:
         )
         rng = stream(seed, "repeatability", settings.name)
         self._wander = Wander(rng, sigma, settings.correlation_mm * MM)
+        self._settling_rng = stream(seed, "settling", settings.name)
+        self._settling = np.repeat(
+            [settings.settling_mm * MM, np.deg2rad(settings.settling_deg)], 3
+        )
+        self._rest_error = self._next_error = np.zeros(6)
         home = np.deg2rad(np.array(settings.home_deg))
         self._path: Path = JointPath(home, home, self._rated)
         self._profile = Profile(0.0, 0.0, 1.0, 1.0)
@@ -114,7 +119,8 @@ class RobotArm:
         """True cell_T_flange as a 4x4 matrix."""
         along = self._profile.at(time_s)
         base_T_flange = forward_matrix(self.truth.links, self._path.joints(along))
-        return self._cell_T_base @ base_T_flange @ self._wander.matrix(self._travel(along))
+        error = self._wander.error(self._travel(along)) + self._settled(along)
+        return self._cell_T_base @ base_T_flange @ small_displacement(error)
 
     def flange(self, time_s: float) -> RigidTransform:
         """True cell_T_flange."""
@@ -123,7 +129,9 @@ class RobotArm:
     def _begin(self, time_s: float, path: Path, speed: float, acceleration: float) -> None:
         if self.override_percent <= 0:
             raise RefusedMotionError("SPEED")
-        self._travelled_m = self._travel(self._profile.at(time_s))
+        along = self._profile.at(time_s)
+        self._travelled_m, self._rest_error = self._travel(along), self._settled(along)
+        self._next_error = self._settling_rng.normal(0, self._settling)
         start_s = time_s + self.settings.start_latency_ms / 1000
         speed *= self.override_percent / 100
         self._path, self._profile = path, Profile(start_s, path.length, speed, acceleration)
@@ -132,6 +140,11 @@ class RobotArm:
         if self._path.length == 0:
             return self._travelled_m
         return self._travelled_m + self._path.travel_m * along / self._path.length
+
+    def _settled(self, along: float) -> Array:
+        """Error of the single motion, taken on in proportion to the way."""
+        ratio = along / self._path.length if self._path.length > 0 else 0.0
+        return self._rest_error + ratio * (self._next_error - self._rest_error)
 
     def _check_limits(self, joints_rad: Array) -> None:
         inside = (joints_rad >= self._limits[:, 0]) & (joints_rad <= self._limits[:, 1])

@@ -27,7 +27,8 @@ class Wander:
         waves = np.cos(self._rate_per_m * travel_m + self._phase).sum(axis=1)
         return np.asarray(self._amplitude * waves)
 
-    def matrix(self, travel_m: float) -> Array:
-        """The error as a small displacement, 4x4."""
-        x, y, z, rx, ry, rz = self.error(travel_m).tolist()
-        return np.array([[1, -rz, ry, x], [rz, 1, -rx, y], [-ry, rx, 1, z], [0, 0, 0, 1.0]])
+
+def small_displacement(error: Array) -> Array:
+    """x, y, z (m) and rotation vector (rad), well below a milliradian, as a 4x4 matrix."""
+    x, y, z, rx, ry, rz = error.tolist()
+    return np.array([[1, -rz, ry, x], [rz, 1, -rx, y], [-ry, rx, 1, z], [0, 0, 0, 1.0]])
