@@ -5,18 +5,12 @@ import numpy as np
 from fakes.render.canvas import Image, Patch
 from fakes.render.coverage import coverage
 from fakes.render.faces import draw_face
-from fakes.render.lattice import (
-    NODES_FULL,
-    Height,
-    Window,
-    surface_map,
-    to_pixels,
-    window_around,
-)
+from fakes.render.lattice import NODES_FULL, Window, window_around
 from fakes.render.lens import View
 from fakes.render.model import SceneCharucoBoard
 from fakes.render.options import RenderOptions
 from fakes.render.prints import charuco_print, chessboard_print, print_grey
+from fakes.render.surface import Height, face_map, surface_map, to_pixels
 from fakes.world.scene import SceneChessboard, SceneTargetBoard
 
 
@@ -24,7 +18,7 @@ def draw_target_board(
     view: View, image: Image, board: SceneTargetBoard, options: RenderOptions
 ) -> None:
     """Dark plate with white discs."""
-    x, y = surface_map(view, board.camera_T_board, Window.full(view), nodes=NODES_FULL)
+    x, y = face_map(view, board.camera_T_board)
     draw_face(image, x, y, board.size_m, options.black_grey)
     radius_m = board.disc_diameter_m / 2
     angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
@@ -35,8 +29,8 @@ def draw_target_board(
         window = window_around(view, pixels, 3, options.sub_samples)
         if window is None:
             continue
-        x, y = surface_map(view, board.camera_T_board, window)
-        outside = window.mean(coverage(np.hypot(x - middle[0], y - middle[1]) - radius_m))
+        x_disc, y_disc = surface_map(view, board.camera_T_board, window)
+        outside = window.mean(coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m))
         Patch(window, outside, (1 - outside) * options.white_grey).lay_over(image)
 
 

@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from fakes.render.canvas import Image, Patch
 from fakes.render.coverage import coverage
-from fakes.render.lattice import surface_map, to_pixels, window_around
+from fakes.render.lattice import window_around
 from fakes.render.lens import Array, View
 from fakes.render.options import RenderOptions
+from fakes.render.surface import surface_map, to_pixels
 from fakes.world.scene import SceneHole, ScenePlate
 
 MarkKind = Literal["stain", "punch", "spot"]

@@ -7,15 +7,19 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.render.canvas import Image
-from fakes.render.lattice import to_pixels
 from fakes.render.lens import Array, View
+from fakes.render.surface import to_pixels
 
 _SHIFT: Final = 4
 """Fractional bits of OpenCV's drawing functions."""
 
 
 def draw_face(
-    image: Image, x_m: Array, y_m: Array, size_m: tuple[float, float], grey: Image | float
+    image: Image,
+    x_m: Array | Image,
+    y_m: Array | Image,
+    size_m: tuple[float, float],
+    grey: Image | float,
 ) -> None:
     """Lay a rectangle, centred at the origin of its coordinates, over ``image``."""
     inside = _inside(x_m, size_m[0] / 2) * _inside(y_m, size_m[1] / 2)
@@ -63,12 +67,12 @@ def draw_sides(
     image += mask * np.float32(1 / 255) * (np.float32(grey) - image)
 
 
-def _inside(coordinate: Array, half_m: float) -> Image:
+def _inside(coordinate: Array | Image, half_m: float) -> Image:
     """Share of each pixel within ±``half_m``, to first order along the steeper image axis."""
     rows, columns = (size // 2 for size in coordinate.shape)
     near = coordinate[rows : rows + 2, columns : columns + 2]
     pixel_m = np.float32(np.hypot(near[0, 1] - near[0, 0], near[1, 0] - near[0, 0]))
-    distance = np.abs(coordinate).astype(np.float32)
+    distance = np.abs(coordinate).astype(np.float32, copy=False)
     np.subtract(np.float32(half_m), distance, out=distance)
     distance /= pixel_m
     distance += np.float32(0.5)

@@ -13,9 +13,10 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.render.canvas import Patch
 from fakes.render.coverage import coverage
-from fakes.render.lattice import Window, surface_map, to_pixels, window_around
+from fakes.render.lattice import Window, window_around
 from fakes.render.lens import Array, View
 from fakes.render.options import RenderOptions
+from fakes.render.surface import surface_map, to_pixels
 from fakes.world.scene import SceneHole, ScenePlate
 
 CHAMFER: Final = 1.12

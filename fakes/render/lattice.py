@@ -1,4 +1,4 @@
-"""Where the ray of every (sub-)pixel meets a surface.
+"""Smooth functions of the pixel on all (sub-)pixels of a block of the image.
 
 The way from a pixel through the lens to a flat or gently bowed surface is an analytic function.
 It is evaluated exactly at a few Chebyshev nodes and carried to the whole lattice by two small
@@ -13,15 +13,15 @@ from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import RigidTransform
 
-from fakes.render.lens import Array, View, project, undistort
+from fakes.render.lens import Array, View
 
 NODES_FULL: Final = 20
 NODES_WINDOW: Final = 8
+NODES_LIGHT: Final = 28
+"""Light has ripples."""
 
-Height = Callable[[Array, Array], Array]
-"""Height of a surface over its x, y."""
+Picture = NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,56 +61,29 @@ def window_around(view: View, pixels: Array, margin_px: int, sub: int) -> Window
     return Window(x0, y0, x1 - x0, y1 - y0, sub)
 
 
-def surface_map(
-    view: View,
-    head_T_surface: RigidTransform,
-    window: Window,
-    *,
-    z_m: float | Height = 0.0,
-    nodes: int = NODES_WINDOW,
-) -> tuple[Array, Array]:
-    """Surface coordinates x, y (m) seen by each cell centre, each of shape (rows, columns)."""
-    view_T_surface = view.view_T_head * head_T_surface
-
-    def coordinates(pixels: Array) -> Array:
-        return meet_surface(view_T_surface, undistort(view.lens, pixels), z_m)
-
-    x, y = expand(window, coordinates, nodes=nodes)
-    return x, y
-
-
 def expand(window: Window, function: Callable[[Array], Array], *, nodes: int) -> list[Array]:
     """Values of a smooth ``function`` (N, 2) -> (N, k) of the pixel on all cells: k arrays."""
-    unit = _chebyshev_nodes(nodes)
-    x = window.x0 - 0.5 + window.width * (unit + 1) / 2
-    y = window.y0 - 0.5 + window.height * (unit + 1) / 2
-    grid_x, grid_y = np.meshgrid(x, y)
-    values = function(np.column_stack([grid_x.ravel(), grid_y.ravel()]))
+    values = function(nodes_of(window, nodes))
     rows = _interpolation(window.height * window.sub, nodes)
     columns = _interpolation(window.width * window.sub, nodes)
     return [rows @ column.reshape(nodes, nodes) @ columns.T for column in values.T]
 
 
-def meet_surface(view_T_surface: RigidTransform, rays: Array, z_m: float | Height) -> Array:
-    """Surface x, y (m) where rays (N, 2, normalised) meet z = ``z_m``; shape (N, 2)."""
-    rotation = view_T_surface.rotation.as_matrix()
-    directions = np.column_stack([rays, np.ones(len(rays))]) @ rotation
-    origin = -rotation.T @ view_T_surface.translation
-    if origin[2] <= 0 or directions[:, 2].max() >= 0:
-        raise ValueError("a surface is not seen from its front over the whole image")
-    slope = directions[:, :2] / directions[:, 2:]
-    if not callable(z_m):
-        return np.asarray(origin[:2] + (z_m - origin[2]) * slope)
-    height = np.zeros(len(rays))
-    for _ in range(8):  # contraction by bow slope times ray slope, about 1e-3 each time
-        points = origin[:2] + (height - origin[2])[:, None] * slope
-        height = z_m(points[:, 0], points[:, 1])
-    return np.asarray(origin[:2] + (height - origin[2])[:, None] * slope)
+def expand_single(view: View, function: Callable[[Array], Array]) -> list[Picture]:
+    """As ``expand`` over the whole image, in single precision."""
+    nodes = NODES_LIGHT
+    values = function(nodes_of(Window.full(view), nodes)).astype(np.float32)
+    rows, columns = (_interpolation_single(count, nodes) for count in view.size_px[::-1])
+    return [rows @ column.reshape(nodes, nodes) @ columns.T for column in values.T]
 
 
-def to_pixels(view: View, head_T_surface: RigidTransform, points_m: Array) -> Array:
-    """Pixels of points given in a surface's frame, shape (N, 3) to (N, 2)."""
-    return project(view.lens, (view.view_T_head * head_T_surface).apply(points_m))
+def nodes_of(window: Window, nodes: int, *, edge: bool = False) -> Array:
+    """Pixels of the nodes, shape (nodes², 2), row by row; with ``edge`` out to the very corners."""
+    unit = np.linspace(-1, 1, nodes) if edge else _chebyshev_nodes(nodes)
+    x = window.x0 - 0.5 + window.width * (unit + 1) / 2
+    y = window.y0 - 0.5 + window.height * (unit + 1) / 2
+    grid_x, grid_y = np.meshgrid(x, y)
+    return np.column_stack([grid_x.ravel(), grid_y.ravel()])
 
 
 def _chebyshev_nodes(count: int) -> Array:
@@ -131,3 +104,8 @@ def _interpolation(count: int, nodes: int) -> NDArray[np.float64]:
     matrix[hit] = exact[hit]
     matrix.setflags(write=False)
     return matrix
+
+
+@lru_cache(maxsize=16)
+def _interpolation_single(count: int, nodes: int) -> Picture:
+    return _interpolation(count, nodes).astype(np.float32)

@@ -3,12 +3,15 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.render.lattice import NODES_FULL, Window, expand, meet_surface
+from fakes.render.canvas import Image
+from fakes.render.lattice import expand_single
 from fakes.render.lens import Array, View, undistort
 from fakes.render.options import RenderOptions
+from fakes.render.surface import meet_surface
 
-_NODES_LIGHT = NODES_FULL + 8
 _HIGHLIGHT_WIDTH_M = 0.12
+_DEEPEST = 0.8
+"""The gradient levels off at this relative change."""
 
 
 def light_direction(light_seed: int) -> float:
@@ -18,7 +21,7 @@ def light_direction(light_seed: int) -> float:
 
 def light_field(
     view: View, head_T_surface: RigidTransform, light_seed: int, options: RenderOptions
-) -> Array:
+) -> Image:
     """Relative brightness of every pixel on a surface, gain included; shape of the image."""
     azimuth = light_direction(light_seed)
     phase, *highlight = np.random.default_rng([light_seed, 2, view.side == "left"]).uniform(
@@ -35,7 +38,7 @@ def light_field(
     def relative(pixels: Array) -> Array:
         points = meet_surface(view_T_surface, undistort(view.lens, pixels), 0.0)
         along = (points - lamp_centre) @ axis
-        lamp = 1 + options.light_gradient_per_m * along
+        lamp = 1 + _DEEPEST * np.tanh(options.light_gradient_per_m * along / _DEEPEST)
         lamp += options.light_ripple * np.sin(2 * np.pi * along / options.light_ripple_m)
         spot = points - centre - 0.06 * np.array(highlight)
         lamp += options.gloss * np.exp(-0.5 * (spot[:, 0] / _HIGHLIGHT_WIDTH_M) ** 2)
@@ -43,4 +46,4 @@ def light_field(
         radius2 = ((pixels - middle) ** 2).sum(axis=1) / (middle**2).sum()
         return np.asarray((lamp * (1 - options.vignetting * radius2) * view.lens.gain)[:, None])
 
-    return expand(Window.full(view), relative, nodes=_NODES_LIGHT)[0]
+    return expand_single(view, relative)[0]

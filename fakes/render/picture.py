@@ -10,6 +10,7 @@ from fakes.render.model import SceneCharucoBoard, SceneObject, pose_of
 from fakes.render.options import RenderOptions
 from fakes.render.plate import draw_plate
 from fakes.render.sensor import blurred
+from fakes.render.surface import is_seen
 from fakes.world.scene import (
     CameraScene,
     SceneChessboard,
@@ -36,23 +37,28 @@ def clean_pair(
 def clean_picture(
     view: View, objects: tuple[SceneObject, ...], options: RenderOptions, light_seed: int
 ) -> Image:
-    """Picture of one camera; farther objects are drawn first."""
+    """Picture of one camera, farther objects drawn first; faces turned away are left out."""
     width, height = view.size_px
     image = np.full((height, width), options.floor_grey, dtype=np.float32)
-    far_to_near = sorted(objects, key=lambda item: -float(pose_of(item).translation[2]))
+    seen = [item for item in objects if is_seen(view, pose_of(item))]
+    seen.sort(key=lambda item: -float(pose_of(item).translation[2]))
     azimuth = light_direction(light_seed)
-    below: ScenePlate | None = None
-    for item in far_to_near:
+    plates = [item for item in seen if isinstance(item, ScenePlate)]
+    for item in seen:
         match item:
             case ScenePlate():
-                draw_plate(view, image, item, options, light_azimuth=azimuth, below=below)
-                below = item
+                place = plates.index(item)
+                below = plates[place - 1] if place > 0 else None
+                above = plates[place + 1] if place + 1 < len(plates) else None
+                draw_plate(
+                    view, image, item, options, light_azimuth=azimuth, below=below, above=above
+                )
             case SceneTargetBoard():
                 draw_target_board(view, image, item, options)
             case SceneChessboard() | SceneCharucoBoard():
                 draw_chessboard(view, image, item, options)
-    if far_to_near:
-        image *= light_field(view, pose_of(far_to_near[-1]), light_seed, options).astype(np.float32)
+    if seen:
+        image *= light_field(view, pose_of(seen[-1]), light_seed, options)
     return blurred(image, view.lens.blur_px)
 
 

@@ -8,9 +8,9 @@ from fakes.render.canvas import Image
 from fakes.render.clutter import draw_clutter
 from fakes.render.faces import draw_face, draw_sides
 from fakes.render.holes import hole_patch
-from fakes.render.lattice import NODES_FULL, Window, surface_map, to_pixels
-from fakes.render.lens import View
+from fakes.render.lens import View, undistort
 from fakes.render.options import RenderOptions
+from fakes.render.surface import face_map, meet_surface, to_pixels
 from fakes.render.texture import brushed_tile, sample
 from fakes.world.scene import SceneHole, ScenePlate
 
@@ -25,11 +25,17 @@ def draw_plate(
     *,
     light_azimuth: float,
     below: ScenePlate | None = None,
+    above: ScenePlate | None = None,
 ) -> None:
-    """Lay a part over ``image``; ``below`` is the part that shows through its through holes."""
+    """Lay a part over ``image``.
+
+    ``below`` is the part that shows through its through holes. ``above`` is a part that will be
+    laid over this one: when it hides all holes in view, details are not worth their time.
+    """
     pose = plate.camera_T_part
-    x, y = surface_map(view, pose, Window.full(view), nodes=NODES_FULL)
-    seen = np.array([x.min(), y.min()]), np.array([x.max(), y.max()])
+    holes = [hole for hole in plate.holes if _is_near(view, plate, hole)]
+    shown = [hole for hole in holes if above is None or not _is_hidden(view, plate, hole, above)]
+    x, y = face_map(view, pose)
     draw_sides(
         view,
         image,
@@ -37,8 +43,11 @@ def draw_plate(
         size_m=plate.size_m,
         thickness_m=THICKNESS_M[plate.kind],
         grey=0.4 * options.plate_grey,
-        seen_m=seen,
+        seen_m=(np.array([x.min(), y.min()]), np.array([x.max(), y.max()])),
     )
+    if above is not None and not shown:
+        draw_face(image, x, y, plate.size_m, options.plate_grey)
+        return
     face: Image | float = options.plate_grey
     if options.texture_grey > 0:
         face = sample(brushed_tile(plate.seed), x, y)
@@ -46,11 +55,18 @@ def draw_plate(
         face += np.float32(options.plate_grey)
     draw_face(image, x, y, plate.size_m, face)
     draw_clutter(view, image, plate, options, light_azimuth)
-    for hole in plate.holes:
-        if _is_near(view, plate, hole):
-            patch = hole_patch(view, plate, hole, options, light_azimuth=light_azimuth, below=below)
-            if patch is not None:
-                patch.lay_over(image)
+    for hole in shown:
+        patch = hole_patch(view, plate, hole, options, light_azimuth=light_azimuth, below=below)
+        if patch is not None:
+            patch.lay_over(image)
+
+
+def _is_hidden(view: View, plate: ScenePlate, hole: SceneHole, above: ScenePlate) -> bool:
+    """True when the ray to a hole meets the face of the part above, away from its edges."""
+    centre = np.array([[*hole.position_m, 0.0]])
+    ray = undistort(view.lens, to_pixels(view, plate.camera_T_part, centre))
+    place = meet_surface(view.view_T_head * above.camera_T_part, ray, 0.0)[0]
+    return bool((np.abs(place) < np.array(above.size_m) / 2 - 10e-3).all())
 
 
 def _is_near(view: View, plate: ScenePlate, hole: SceneHole) -> bool:

@@ -3,9 +3,9 @@
 import numpy as np
 
 from fakes.render.holes import circle, rim_depth
-from fakes.render.lattice import to_pixels
 from fakes.render.lens import Array, views
 from fakes.render.options import RenderOptions
+from fakes.render.surface import to_pixels
 from fakes.world.scene import ScenePlate, StereoTruth
 
 _DEFAULT = RenderOptions()
