@@ -8,7 +8,7 @@ from cellctl.calibration.drawing import as_png, bars, list_checks, new_figure, t
 from cellctl.geometry.pose import MM
 
 
-def board_transfer_picture(result: TransferResult) -> bytes:
+def transfer_picture(result: TransferResult) -> bytes:
     """PNG: heads and base from above, residuals of large and small heads, checks."""
     figure = new_figure(13, 9)
     axes = figure.subplots(2, 2)

@@ -1,0 +1,217 @@
+"""`cellctl calibrate`: the calibrations of Maintenance mode, from files.
+
+Exit code 3 when a result was found but is beyond its limits; it is written all the same.
+"""
+
+import glob
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Protocol
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from cellctl.calibration.base_frame import calibrate_base_frame
+from cellctl.calibration.base_frame_picture import base_frame_picture
+from cellctl.calibration.board import BoardShape, CalibrationBoard, Charuco
+from cellctl.calibration.board_images import ImagePair, detect_views
+from cellctl.calibration.board_transfer import calibrate_board_transfer
+from cellctl.calibration.checks import Checks
+from cellctl.calibration.hand_eye import calibrate_hand_eye
+from cellctl.calibration.hand_eye_picture import hand_eye_picture, tool_picture
+from cellctl.calibration.hand_eye_result import Setup
+from cellctl.calibration.input_files import (
+    read_base_frame,
+    read_hand_eye,
+    read_tool,
+    read_transfer,
+)
+from cellctl.calibration.stereo import calibrate_stereo
+from cellctl.calibration.stereo_picture import stereo_picture
+from cellctl.calibration.tool import calibrate_tool
+from cellctl.calibration.transfer_picture import transfer_picture
+from cellctl.cli.measure import read_image
+from cellctl.errors.config import FileInvalid
+from cellctl.errors.vision import ImageFileInvalid
+from cellctl.geometry.pose import MM, pose_to_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+
+NOT_PASSED = 3
+"""Exit code when a figure of the result is beyond its limit."""
+
+app = typer.Typer(help="Calibrate from files.", no_args_is_help=True, rich_markup_mode=None)
+
+InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/calibration.md.")]
+OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]
+Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")]
+
+
+class Result(Protocol):
+    """What all calibrations return."""
+
+    @property
+    def checks(self) -> Checks:
+        """Figures against limits."""
+
+    @property
+    def passed(self) -> bool:
+        """The verdict."""
+
+    def to_record(self) -> dict[str, object]:
+        """Plain data."""
+
+
+@app.command("stereo")
+def stereo(
+    *,
+    left: Annotated[str, typer.Option(help="Left images, a pattern such as 'left-*.png'.")],
+    right: Annotated[str, typer.Option(help="Right images, in the same order by name.")],
+    board: Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")],
+    square_mm: Annotated[float, typer.Option(help="Side of a square.")],
+    out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
+    charuco: Annotated[
+        str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")
+    ] = None,
+    marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
+    board_shape: Annotated[
+        BoardShape, typer.Option(help="What may deviate from the drawing of the board.")
+    ] = BoardShape.BENT,
+    picture: Picture = None,
+) -> None:
+    """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board."""
+    pattern = _board(board, square_mm, charuco, marker_mm)
+    found = detect_views(_pairs(left, right), pattern)
+    console = _console()
+    if found.not_found:
+        console.print(f"board not found, left out: {', '.join(found.not_found)}", markup=False)
+    result = calibrate_stereo(found.views, pattern, found.image_size, shape=board_shape)
+    for view in result.views:
+        mark = "" if view.used else "  REJECTED"
+        console.print(
+            f"  {view.name}: {view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right{mark}",
+            markup=False,
+        )
+    baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
+    console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
+    _finish(result, result.warnings, out, picture, lambda: stereo_picture(result))
+
+
+@app.command("hand-eye")
+def hand_eye(
+    file: InFile,
+    setup: Annotated[Setup | None, typer.Option(help="Overrides the setup in the file.")] = None,
+    out: OutFile = None,
+    picture: Picture = None,
+) -> None:
+    """Camera on the flange (AX = XB) or beside the robot (CG = GD), from poses."""
+    data = read_hand_eye(file)
+    chosen = setup or data.setup
+    if chosen is None:
+        raise FileInvalid(f"{file}: missing 'setup'; give --setup eye-in-hand or eye-to-hand")
+    result = calibrate_hand_eye(data.poses, chosen, noise=data.noise)
+    in_hand = chosen is Setup.EYE_IN_HAND
+    _show("flange_T_camera" if in_hand else "base_T_camera", result.camera)
+    _show("base_T_board" if in_hand else "flange_T_board", result.board)
+    _finish(result, result.warnings, out, picture, lambda: hand_eye_picture(result))
+
+
+@app.command("base-frame")
+def base_frame(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
+    """Base of the robot in the large-field head, from turning A1 and A2."""
+    data = read_base_frame(file)
+    result = calibrate_base_frame(data.a1, data.a2, data.arm)
+    _show("C_T_B", result.c_T_base)
+    _finish(result, result.warnings, out, picture, lambda: base_frame_picture(result))
+
+
+@app.command("transfer")
+def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
+    """Heads I and II in the base by the target board (equations 1 to 3)."""
+    data = read_transfer(file)
+    result = calibrate_board_transfer(data.c_T_base, data.before_head_1, data.before_head_2)
+    _show("B_T_C1", result.base_T_c1)
+    _show("B_T_C2", result.base_T_c2)
+    _show("C1_T_C2", result.c1_T_c2)
+    _finish(result, result.warnings, out, picture, lambda: transfer_picture(result))
+
+
+@app.command("tool")
+def tool(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
+    """Tool on the flange: four-point method, and three-point method if the file has it."""
+    data = read_tool(file)
+    result = calibrate_tool(data.touching, data.orienting, touch_sigma_m=data.touch_sigma_m)
+    _show("flange_T_tool", result.flange_T_tool)
+    _finish(result, (), out, picture, lambda: tool_picture(result))
+
+
+def _board(
+    corners: str, square_mm: float, charuco: str | None, marker_mm: float | None
+) -> CalibrationBoard:
+    try:
+        columns, rows = (int(part) for part in corners.lower().split("x"))
+        markers = None
+        if charuco is not None:
+            if marker_mm is None or not 0 < marker_mm < square_mm:
+                raise ValueError("--charuco needs --marker-mm below --square-mm")  # noqa: TRY301
+            markers = Charuco(charuco.upper().removeprefix("DICT_"), marker_mm * MM)
+        return CalibrationBoard(columns, rows, square_mm * MM, markers)
+    except ValueError as error:
+        raise typer.BadParameter(f"board {corners!r}: {error}") from error
+
+
+def _pairs(left: str, right: str) -> list[ImagePair]:
+    names = [sorted(glob.glob(pattern)) for pattern in (left, right)]
+    for pattern, found in zip((left, right), names, strict=True):
+        if not found:
+            raise ImageFileInvalid(f"no file matches {pattern}")
+    if len(names[0]) != len(names[1]):
+        raise ImageFileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
+    return [
+        ImagePair(Path(one).stem, read_image(Path(one)), read_image(Path(other)))
+        for one, other in zip(*names, strict=True)
+    ]
+
+
+def _console() -> Console:
+    return Console(soft_wrap=True, highlight=False)
+
+
+def _show(name: str, pose: UncertainPose) -> None:
+    x, y, z, a, b, c = pose_to_xyzabc(pose.pose)
+    sigma = pose.sigma
+    _console().print(
+        f"{name}: X {x:.4f}, Y {y:.4f}, Z {z:.4f} mm, A {a:.5f}, B {b:.5f}, C {c:.5f}°; "
+        f"sigma {sigma[:3].max() / MM:.4f} mm, {np.degrees(sigma[3:].max()):.5f}°",
+        markup=False,
+    )
+
+
+def _finish(
+    result: Result,
+    warnings: tuple[str, ...],
+    out: Path | None,
+    picture: Path | None,
+    draw: Callable[[], bytes],
+) -> None:
+    """Print the checks, write the files, and leave with the verdict as exit code."""
+    console = _console()
+    for check in result.checks:
+        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
+    for warning in warnings:
+        console.print(f"  warning: {warning}", markup=False)
+    if out is not None:
+        _write(out, json.dumps(result.to_record(), indent=2).encode() + b"\n")
+    if picture is not None:
+        _write(picture, draw())
+    console.print("passed" if result.passed else "NOT passed")
+    if not result.passed:
+        raise typer.Exit(NOT_PASSED)
+
+
+def _write(path: Path, content: bytes) -> None:
+    try:
+        path.write_bytes(content)
+    except OSError as error:
+        raise FileInvalid(f"cannot write {path}: {error.strerror or error}") from error
