@@ -35,7 +35,8 @@ def run(
     """Run the fake cell until SIGINT or SIGTERM."""
     from fakes.cell import run_cell
 
-    asyncio.run(run_cell(scenarios.load(scenario), seed, dict(_port(item) for item in port or [])))
+    ports = dict(_port(item) for item in port or [])
+    raise typer.Exit(asyncio.run(run_cell(scenarios.load(scenario), seed, ports)))
 
 
 def _port(item: str) -> tuple[str, int]:

@@ -12,7 +12,10 @@ from typing import Any
 from fakes.control import ControlServer
 from fakes.faults import FaultBoard
 from fakes.operator import Operator
-from fakes.scenario import HeadName, Robot, RobotName, Scenario
+from fakes.render.look import options_of
+from fakes.render.worker import make_pool
+from fakes.scenario import Head, HeadName, Robot, RobotName, Scenario
+from fakes.wire.frame_server import FrameServer
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sri_box import SriBox
 from fakes.wire.target_server import TargetServer
@@ -34,8 +37,9 @@ class Cell:
             name: self._controller(name, robot) for name, robot in scenario.robots.items()
         }
         self.sensor = SriBox(self._sample)
-        self.targets = TargetServer(self._measure_targets)
-        self.heads = self._frame_servers()
+        self.targets = TargetServer(self._measure_targets, serial=scenario.large_field.serial)
+        self._renderers = make_pool()
+        self.heads = {name: self._frame_server(name, head) for name, head in scenario.heads.items()}
         self.stopping = asyncio.Event()
         self.control = ControlServer(Operator(self).handlers())
 
@@ -53,7 +57,8 @@ class Cell:
             ),
         }
         for name, server in self.heads.items():
-            listening[name] = await server.start(port=port(name, scenario.heads[name].port))
+            await server.start()
+            listening[name] = server.port
         for robot in self.robots.values():
             robot.start()
         listening["control"] = await self.control.start(port=port("control", scenario.control_port))
@@ -68,8 +73,10 @@ class Cell:
     async def stop(self) -> None:
         """Hang up everywhere. Idempotent."""
         self.stopping.set()
-        devices = [*self.robots.values(), *self.heads.values(), self.targets, self.sensor]
-        await asyncio.gather(*(device.stop() for device in [*devices, self.control]))
+        await asyncio.gather(*(robot.stop() for robot in self.robots.values()))
+        await asyncio.gather(*(head.stop() for head in self.heads.values()))
+        await asyncio.gather(self.targets.stop(), self.sensor.stop(), self.control.stop())
+        self._renderers.shutdown(cancel_futures=True)
 
     def _controller(self, name: RobotName, robot: Robot) -> SjlController:
         ports = {
@@ -77,15 +84,16 @@ class Cell:
         }
         return SjlController(self.world.arms[name], self.now_s, ports, faults=FaultBoard(name))
 
-    def _frame_servers(self) -> dict[HeadName, Any]:
-        try:
-            from fakes.wire.frame_server import FrameServer
-        except ModuleNotFoundError:
-            return {}
-        return {
-            name: FrameServer(partial(self.world.camera_scene, name))
-            for name in self._scenario.heads
-        }
+    def _frame_server(self, name: HeadName, head: Head) -> FrameServer:
+        return FrameServer(
+            "127.0.0.1",
+            self._port(name, head.port),
+            partial(self.world.camera_scene, name),
+            self._renderers,
+            options=options_of(self._scenario.rendering),
+            identity=f"fake-head;{head.serial};1.0",
+            exposure_us=self._scenario.cameras.exposure_us,
+        )
 
     def _port(self, name: str, default: int) -> int:
         return self._ports.get(name, default)
@@ -99,8 +107,11 @@ class Cell:
         return self.world.targets(frames)
 
 
-async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> None:
-    """Run a cell until SIGINT or SIGTERM; prints one line of JSON when everything listens."""
+async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> int:
+    """Run a cell until SIGINT or SIGTERM; prints one line of JSON when everything listens.
+
+    Returns the exit code: 1 when a port is taken.
+    """
     cell = Cell(scenario, seed, ports)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -109,8 +120,12 @@ async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> None
         listening = await cell.start()
         _announce({"ready": True, "seed": seed, "ports": listening})
         await cell.run()
+    except OSError as error:
+        _announce({"ready": False, "error": str(error)})
+        return 1
     finally:
         await cell.stop()
+    return 0
 
 
 def _announce(message: dict[str, Any], write: Callable[[str], Any] = sys.stdout.write) -> None:

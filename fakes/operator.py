@@ -1,10 +1,10 @@
 """The operator of the fake cell: what the control port can ask for."""
 
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, cast, get_args
 
 from fakes.control import Handler
 from fakes.faults import CATALOGUE, FaultBoard
-from fakes.scenario import HeadName
+from fakes.scenario import HeadName, RobotName
 
 if TYPE_CHECKING:
     from fakes.cell import Cell
@@ -77,8 +77,8 @@ class Operator:
 
     async def inject(self, device: str, name: str, **parameters: Any) -> dict[str, Any]:
         """Inject a fault; ``count`` limits how often it acts."""
-        if name == "reboot" and device in self._cell.robots:
-            await self._cell.robots[device].reboot()  # type: ignore[index]
+        if name == "reboot" and device in get_args(RobotName):
+            await self._cell.robots[cast(RobotName, device)].reboot()
             return {}
         self._board(device).inject(name, **parameters)
         if device == "world":
@@ -120,7 +120,6 @@ class Operator:
 
 
 def _head(name: str) -> HeadName:
-    for head in get_args(HeadName):
-        if head == name:
-            return head
-    raise ValueError(f"unknown head {name!r}")
+    if name not in get_args(HeadName):
+        raise ValueError(f"unknown head {name!r}")
+    return cast(HeadName, name)

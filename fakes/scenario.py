@@ -154,6 +154,7 @@ class ForceSensor(Section):
 class Head(Section):
     """A small-field head on an auxiliary robot."""
 
+    serial: str
     port: int
     robot: RobotName
     flange_T_head_mm_deg: Pose
@@ -231,6 +232,7 @@ class Chessboard(Section):
 class LargeField(Section):
     """Head that measures targets, above the cell."""
 
+    serial: str
     port: int
     base_T_head_mm_deg: Pose
     placement: Spread

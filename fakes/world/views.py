@@ -9,6 +9,11 @@ from fakes.world.scene import CameraScene, SceneChessboard, ScenePlate, SceneTar
 from fakes.world.snapshot import Snapshot
 from fakes.world.truth import board_discs
 
+_FACING_MIN = 0.6
+_NEAREST_M = 0.15
+_SLOPE_MAX = 0.5
+"""Half the field of view is about 0.34 times the distance."""
+
 
 def camera_pose(world: Snapshot, head: HeadName) -> RigidTransform:
     """True cell_T_camera of a head's left camera."""
@@ -42,13 +47,28 @@ def _plates(
         return None, None
     width, height = np.array(world.scenario.parts.size_mm) * MM
     size = (float(width), float(height))
-    if world.placed.frame:
-        pose = camera_T_cell * parts.cell_T_frame
+    pose = camera_T_cell * parts.cell_T_frame
+    if world.placed.frame and in_view(pose, size):
         frame = ScenePlate("frame", pose, size, parts.frame_holes, parts.frame_seed)
     if world.cell_T_deck is not None:
         pose = camera_T_cell * world.cell_T_deck
-        deck = ScenePlate("deck", pose, size, parts.deck_holes, parts.deck_seed)
+        if in_view(pose, size):
+            deck = ScenePlate("deck", pose, size, parts.deck_holes, parts.deck_seed)
     return frame, deck
+
+
+def in_view(camera_T_plate: RigidTransform, size_m: tuple[float, float]) -> bool:
+    """True when part of a plate's face can be in an image; generous at the edges.
+
+    The world has arms elsewhere: a deck behind the camera, edge-on or far aside is not seen.
+    """
+    facing = float(camera_T_plate.rotation.as_matrix()[2, 2]) < -_FACING_MIN
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, 17), np.linspace(-0.5, 0.5, 9))
+    face = np.column_stack([x.ravel() * size_m[0], y.ravel() * size_m[1], np.zeros(x.size)])
+    points = camera_T_plate.apply(face)
+    ahead = points[points[:, 2] > _NEAREST_M]
+    slopes = np.abs(ahead[:, :2] / ahead[:, 2:])
+    return facing and bool((slopes < _SLOPE_MAX).all(axis=1).any())
 
 
 def _target_board(world: Snapshot, camera_T_cell: RigidTransform) -> SceneTargetBoard | None:
