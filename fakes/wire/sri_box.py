@@ -11,15 +11,17 @@ the sample of its own due time even when it leaves late.
 
 import time
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from fakes.wire.sri_core import SriCore
 from fakes.wire.sri_faults import SriFaults
-from fakes.wire.sri_links import Link
+from fakes.wire.sri_links import Clock, Link, OnWrite
+from fakes.wire.sri_serial import SerialLink
 from fakes.wire.sri_settings import SriSettings
 from fakes.wire.sri_tcp import TcpLink
 
-OnWrite = Callable[[bytes, float], None]
-"""Told of every write of stream data and the time just after it, for latency measurements."""
+if TYPE_CHECKING:
+    import can
 
 
 class SriBox:
@@ -31,7 +33,7 @@ class SriBox:
         *,
         settings: SriSettings | None = None,
         faults: SriFaults | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Clock = time.monotonic,
         on_write: OnWrite | None = None,
     ) -> None:
         self.core = SriCore(sample, settings, faults)
@@ -54,6 +56,32 @@ class SriBox:
         link = TcpLink(self.core, self._clock, self._on_write)
         self._links.append(link)
         return await link.start(host, port)
+
+    async def start_serial(self, baud: int = 115200) -> str:
+        """Offer RS232 on a pseudo terminal; returns its device file."""
+        link = SerialLink(self.core, self._clock, self._on_write, baud)
+        self._links.append(link)
+        return link.path
+
+    async def start_slcan(self) -> str:
+        """Offer CAN behind an slcan adapter on a pseudo terminal; returns its device file."""
+        from fakes.wire.sri_can_links import SlcanLink
+
+        link = SlcanLink(self.core, self._clock)
+        self._links.append(link)
+        return link.path
+
+    async def start_can(self, bus: "can.BusABC") -> None:
+        """Join a bus of python-can, which stays the caller's to close."""
+        from fakes.wire.sri_can_links import BusLink
+
+        self._links.append(BusLink(self.core, self._clock, bus))
+
+    def drop_clients(self) -> None:
+        """Break every TCP connection, as a power cut of the box does."""
+        for link in self._links:
+            if isinstance(link, TcpLink):
+                link.drop_clients()
 
     async def stop(self) -> None:
         """Close every link. Idempotent."""

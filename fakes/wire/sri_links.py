@@ -1,10 +1,14 @@
-"""What the links of the fake box share: the task that sends frames when they are due."""
+"""What the links of the fake box share: the task that sends when something is due."""
 
 import asyncio
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from typing import Generic, Protocol, TypeVar
 
-from fakes.wire.sri_session import SriSession
+Item = TypeVar("Item")
+Clock = Callable[[], float]
+OnWrite = Callable[[bytes, float], None]
+"""Told of every write of stream data and the time just after it, for latency measurements."""
 
 
 class Link(ABC):
@@ -15,40 +19,49 @@ class Link(ABC):
         """Close it and wait until its tasks have ended."""
 
 
-class Pacer:
-    """Sends the frames of one session when they are due."""
+class Paced(Protocol[Item]):
+    """A session that says when it wants to send."""
+
+    @property
+    def due_s(self) -> float | None:
+        """Time of the next item; None while there is none."""
+
+    def emit(self, now_s: float) -> list[Item]:
+        """Items that are due by now."""
+
+
+class Pacer(Generic[Item]):
+    """Sends the items of one session when they are due. ``write`` says whether it could."""
 
     def __init__(
         self,
-        session: SriSession,
-        clock: Callable[[], float],
-        write: Callable[[bytes], bool],
-        on_write: Callable[[bytes, float], None] | None,
+        session: Paced[Item],
+        clock: Clock,
+        write: Callable[[Item], bool],
+        on_sent: Callable[[Item, float], None] | None = None,
     ) -> None:
-        self.session = session
+        self._session = session
         self._clock = clock
         self._write = write
-        self._on_write = on_write
+        self._on_sent = on_sent
         self._wake = asyncio.Event()
 
-    def receive(self, data: bytes) -> bytes:
-        """Pass client bytes on; returns the replies."""
-        replies = self.session.receive(data, self._clock())
+    def wake(self) -> None:
+        """The session may have something due now."""
         self._wake.set()
-        return replies
 
     async def run(self) -> None:
         """Until cancelled."""
         while True:
-            due_s = self.session.due_s
+            due_s = self._session.due_s
             if due_s is None:
                 self._wake.clear()
                 await self._wake.wait()
                 continue
             await asyncio.sleep(max(0.0, due_s - self._clock()))
-            for data in self.session.emit(self._clock()):
-                if self._write(data) and self._on_write is not None:
-                    self._on_write(data, self._clock())
+            for item in self._session.emit(self._clock()):
+                if self._write(item) and self._on_sent is not None:
+                    self._on_sent(item, self._clock())
 
 
 async def cancel(task: asyncio.Task[None]) -> None:

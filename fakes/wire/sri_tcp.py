@@ -2,10 +2,9 @@
 
 import asyncio
 import socket
-from collections.abc import Callable
 
 from fakes.wire.sri_core import SriCore
-from fakes.wire.sri_links import Link, Pacer, cancel
+from fakes.wire.sri_links import Clock, Link, OnWrite, Pacer, cancel
 from fakes.wire.sri_session import SriSession
 
 _FULL_BYTES = 256 * 1024
@@ -15,12 +14,7 @@ _FULL_BYTES = 256 * 1024
 class TcpLink(Link):
     """Every client gets its own session on the same core."""
 
-    def __init__(
-        self,
-        core: SriCore,
-        clock: Callable[[], float],
-        on_write: Callable[[bytes, float], None] | None,
-    ) -> None:
+    def __init__(self, core: SriCore, clock: Clock, on_write: OnWrite | None) -> None:
         self._core = core
         self._clock = clock
         self._on_write = on_write
@@ -62,13 +56,15 @@ class TcpLink(Link):
             writer.write(data)
             return True
 
-        pacer = Pacer(SriSession(self._core), self._clock, write, self._on_write)
-        pacer.session.connected(self._clock())
+        session = SriSession(self._core)
+        pacer = Pacer(session, self._clock, write, self._on_write)
+        session.connected(self._clock())
         sender = asyncio.create_task(pacer.run())
         try:
             while data := await reader.read(4096):
-                if replies := pacer.receive(data):
+                if replies := session.receive(data, self._clock()):
                     writer.write(replies)
+                pacer.wake()
         except ConnectionError:
             writer.transport.abort()
         finally:

@@ -1,8 +1,6 @@
 """The fake box spoken to with literal bytes; golden frames are from public sources."""
 
-import asyncio
 import struct
-from collections.abc import AsyncIterator
 
 import pytest
 
@@ -262,33 +260,3 @@ class TestFaults:
         session = start(silent=1, coalesce=3)
         session._core.faults.clear()
         assert [len(w) for w in run(session, 2)] == [31, 31]
-
-
-@pytest.fixture
-async def box() -> AsyncIterator[SriBox]:
-    box = SriBox(lambda time_s: WRENCH)
-    yield box
-    await box.stop()
-
-
-async def test_tcp(box: SriBox) -> None:
-    port = await box.start_tcp()
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    writer.write(b"AT+SMPF=500\r\n")
-    assert await asyncio.wait_for(reader.readuntil(b"\n"), 2) == b"ACK+SMPF=500$OK\r\n"
-    writer.write(b"AT+GSD\r\n")
-    stream = await asyncio.wait_for(reader.readexactly(31 * 50), 2)
-    assert all(stream[k : k + 4] == b"\xaa\x55\x00\x1b" for k in range(0, len(stream), 31))
-    writer.close()
-    await writer.wait_closed()
-
-
-async def test_stop_closes_clients(box: SriBox) -> None:
-    port = await box.start_tcp()
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    writer.write(b"AT+SFWV=?\r\n")
-    await asyncio.wait_for(reader.readuntil(b"\n"), 2)
-    await box.stop()
-    assert await asyncio.wait_for(reader.read(), 2) == b""
-    writer.close()
-    await writer.wait_closed()
