@@ -38,8 +38,12 @@ class FtHealth:
     checksum_errors: int = 0
     resynchronised_bytes: int = 0
     """Bytes thrown away while looking for a frame."""
+    invalid: int = 0
+    """Frames with a good check whose values are not finite numbers; they are not samples."""
     saturated: int = 0
     reconnects: int = 0
+    rate_deviations: int = 0
+    """Measuring windows whose rate was further from the set rate than the driver tolerates."""
     rate_hz: float = 0.0
     """Measured over the last second or so."""
 

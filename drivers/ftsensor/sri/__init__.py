@@ -1,0 +1,1 @@
+"""SRI six-axis sensors behind an M8128-family interface box."""

@@ -1,0 +1,47 @@
+"""CAN messages of the box: three in order make one sample; no I/O.
+
+A connection hands each message over as ten bytes, identifier (u16 BE) and payload, so that CAN is
+one more byte stream. There is neither a counter nor a check: order is all there is to go by.
+"""
+
+import struct
+from collections.abc import Sequence
+
+from drivers.ftsensor.sri.protocol import Frame, Reply
+
+RECORD = struct.Struct(">H8s")
+_PAIR = struct.Struct("<2f")
+_NUMBERS = 0x10000
+
+
+class TripleDecoder:
+    """Pairs the three identifiers; an incomplete triple is dropped and shows as a gap."""
+
+    def __init__(self, data_ids: tuple[int, int, int]) -> None:
+        self.checksum_errors = 0
+        self.skipped_bytes = 0
+        self._ids = data_ids
+        self._parts: list[float] = []
+        self._number = 0
+
+    def feed(self, data: bytes) -> Sequence[Reply | Frame]:
+        """Take whole records, return the samples that became complete."""
+        found: list[Frame] = []
+        for identifier, payload in RECORD.iter_unpack(data):
+            have = len(self._parts) // 2
+            if identifier != self._ids[have]:
+                self._drop(RECORD.size * (have + (identifier != self._ids[0])))
+                if identifier != self._ids[0]:
+                    continue
+            self._parts += _PAIR.unpack(payload)
+            if len(self._parts) == 6:
+                found.append(Frame(self._number, (tuple(self._parts),)))
+                self._number = (self._number + 1) % _NUMBERS
+                self._parts.clear()
+        return found
+
+    def _drop(self, skipped: int) -> None:
+        self.skipped_bytes += skipped
+        if self._parts:
+            self._number = (self._number + 1) % _NUMBERS
+            self._parts.clear()

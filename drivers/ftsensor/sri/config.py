@@ -1,0 +1,91 @@
+"""The settings of an SRI interface box in the cell file. N, N·m, hertz, seconds."""
+
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from drivers.ftsensor.sri.protocol import Check, FrameLayout, Unit
+
+Six = tuple[float, float, float, float, float, float]
+Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
+PositiveSix = tuple[Positive, Positive, Positive, Positive, Positive, Positive]
+Matrix = tuple[Six, Six, Six, Six, Six, Six]
+CanId = Annotated[int, Field(ge=0, le=0x7FF)]
+
+_BITS_PER_BYTE = 10
+
+
+class SriConfig(BaseModel):
+    """One sensor with its box."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    transport: Literal["tcp", "serial", "can"]
+    serial_number: str = ""
+    """From the sensor's type plate; the box cannot be asked for it."""
+
+    host: str = "192.168.0.108"
+    port: Annotated[int, Field(ge=1, le=65535)] = 4008
+
+    device: str = ""
+    """Serial device, for example /dev/ttyUSB0."""
+    baud: Annotated[int, Field(ge=9600, le=4_000_000)] = 115_200
+
+    can_interface: str = "socketcan"
+    """Any interface of python-can."""
+    can_channel: str = ""
+    can_options: dict[str, Any] = {}
+    """Further arguments of that interface, for example bitrate."""
+    can_command_id: CanId = 0x80
+    can_data_ids: tuple[CanId, CanId, CanId] = (0x291, 0x292, 0x293)
+    """Fx Fy, Fz Mx, My Mz."""
+
+    rate_hz: Annotated[float, Field(ge=1.0, le=4000.0)] = 1000.0
+    rate_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Relative deviation of the measured rate beyond which a window is counted."""
+    unit: Unit = "E"
+    """What the box sends: E newtons, C converter counts, M bridge signals."""
+    points: Annotated[int, Field(ge=1, le=80)] = 1
+    """Samples in a frame."""
+    filter_weights: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=16)] = (1,)
+    """Weighted moving mean inside the box, the newest sample last; (1,) is none."""
+    check: Check = "SUM"
+    crc: Literal["zlib", "mpeg2"] = "zlib"
+    """The variant of CRC32; no public source has proven either on a device."""
+
+    raw_unit: Literal["MVPV", "MV"] = "MVPV"
+    """Expected unit of the box's matrix input. A wrong one looks plausible and is wrong by five."""
+    matrix: Matrix | None = None
+    """Decoupling matrix of the calibration sheet: the box's must be equal."""
+    range: PositiveSix | None = None
+    """Rated range of the sensor, Fx … Mz: a sample beyond it counts as saturated."""
+    inverted: bool = False
+    """True when mounted so that it reads the reaction: all six signs are turned."""
+
+    connect_timeout_s: Positive = 3.0
+    reply_timeout_s: Positive = 1.2
+    first_frame_timeout_s: Positive = 1.0
+    reconnect_s: Positive = 0.5
+
+    @property
+    def layout(self) -> FrameLayout:
+        """The frames that this configuration asks for."""
+        return FrameLayout(self.unit, self.points, self.check, self.crc)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.transport == "serial":
+            if not self.device:
+                raise ValueError("transport serial needs `device`")
+            frames_hz = self.baud / _BITS_PER_BYTE / self.layout.total_bytes
+            if self.rate_hz / self.points > frames_hz:
+                most = frames_hz * self.points
+                raise ValueError(f"{self.baud} baud carries at most {most:.0f} Hz in this format")
+        if self.transport == "can":
+            if not self.can_channel:
+                raise ValueError("transport can needs `can_channel`")
+            if (self.unit, self.points) != ("E", 1):
+                raise ValueError("on CAN the box sends unit E, one point a frame")
+        if sum(self.filter_weights) <= 0:
+            raise ValueError("filter_weights need a positive sum")
+        return self

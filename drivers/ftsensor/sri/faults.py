@@ -1,0 +1,24 @@
+"""Where errors of sockets, serial lines and CAN, and the box's own words, become faults."""
+
+from cellctl.errors.force import SensorSetupWrong
+from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout
+
+
+def cannot_connect(peer: str, reason: object) -> ConnectTimeout:
+    """Fault of a link that did not come up."""
+    return ConnectTimeout(f"force sensor at {peer}: {reason}")
+
+
+def lost(peer: str, reason: object) -> LinkLost:
+    """Fault of a link that broke."""
+    return LinkLost(f"force sensor at {peer}: {reason}")
+
+
+def no_reply(peer: str, request: str) -> ReplyTimeout:
+    """Fault of a command that was not answered."""
+    return ReplyTimeout(f"force sensor at {peer}: no reply to {request}")
+
+
+def wrong_setup(what: str, found: object, expected: object) -> SensorSetupWrong:
+    """Fault of a setting that is not what the cell file says."""
+    return SensorSetupWrong(f"{what} is {found}, expected {expected}")

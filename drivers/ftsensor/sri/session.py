@@ -1,0 +1,133 @@
+"""One connection from its first byte on: start-up, first frame, stream."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from drivers.ftsensor.sri import faults
+from drivers.ftsensor.sri.config import SriConfig
+from drivers.ftsensor.sri.connection import Connection
+from drivers.ftsensor.sri.protocol import Frame, Reply
+from drivers.ftsensor.sri.startup import Exchange, Setup, StartUp
+
+
+class Decoder(Protocol):
+    """Bytes of a connection to replies and frames."""
+
+    checksum_errors: int
+    skipped_bytes: int
+
+    def feed(self, data: bytes) -> Sequence[Reply | Frame]:
+        """Take bytes, return what became complete."""
+        ...
+
+
+class Session:
+    """Never waits: ``pump`` takes what is there and looks at the clock.
+
+    ``pump`` raises ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout`` or ``SensorSetupWrong``;
+    the session is over then.
+    """
+
+    def __init__(
+        self,
+        config: SriConfig,
+        connection: Connection,
+        decoder: Decoder,
+        start_up: StartUp,
+        now_s: float,
+    ) -> None:
+        self.setup: Setup | None = None
+        """Known once the start-up is through."""
+        self.streaming = False
+        """True from the first good frame on."""
+        self._config = config
+        self._connection = connection
+        self._decoder = decoder
+        self._start_up = start_up
+        self._waiting: Exchange | None = None
+        self._begun = False
+        self._deadline_s = now_s + config.connect_timeout_s
+        self._quiet_since_s = now_s
+        self._skipped_before = 0
+        self._errors_before = 0
+        connection.connect()
+
+    @property
+    def checksum_errors(self) -> int:
+        """Since the stream began; what was drained before does not count."""
+        return self._decoder.checksum_errors - self._errors_before if self.streaming else 0
+
+    @property
+    def skipped_bytes(self) -> int:
+        """Since the stream began."""
+        return self._decoder.skipped_bytes - self._skipped_before if self.streaming else 0
+
+    def pump(self, now_s: float) -> list[Frame]:
+        """Go on as far as possible; the frames that arrived."""
+        if not self._begun and not self._begin(now_s):
+            return []
+        frames = self._receive(now_s)
+        if frames:
+            self._begin_stream()
+            self._deadline_s = now_s + self._config.first_frame_timeout_s
+        elif now_s > self._deadline_s or self._quiet(now_s):
+            self._time_out(now_s)
+        return frames
+
+    def _begin(self, now_s: float) -> bool:
+        if not self._connection.established():
+            if now_s > self._deadline_s:
+                raise faults.cannot_connect(self._connection.peer, "no answer")
+            return False
+        self._begun = True
+        self._quiet_since_s = now_s
+        self._advance(None, now_s)
+        return True
+
+    def _receive(self, now_s: float) -> list[Frame]:
+        """Frames count once the set-up is through; replies go to whoever waits for them."""
+        data = self._connection.receive()
+        if not data:
+            return []
+        self._quiet_since_s = now_s
+        frames: list[Frame] = []
+        for item in self._decoder.feed(data):
+            if isinstance(item, Frame):
+                if self.setup is not None:
+                    frames.append(item)
+            elif self._waiting is not None and item.name == self._waiting.name:
+                self._advance(item, now_s)
+        return frames
+
+    def _begin_stream(self) -> None:
+        if not self.streaming:
+            self.streaming = True
+            self._skipped_before = self._decoder.skipped_bytes
+            self._errors_before = self._decoder.checksum_errors
+
+    def _quiet(self, now_s: float) -> bool:
+        waiting = self._waiting
+        if waiting is None or waiting.quiet_s is None:
+            return False
+        return now_s - self._quiet_since_s > waiting.quiet_s
+
+    def _time_out(self, now_s: float) -> None:
+        if self._waiting is None:
+            raise faults.no_reply(self._connection.peer, "the start of the stream (no frame)")
+        self._advance(None, now_s)
+
+    def _advance(self, reply: Reply | None, now_s: float) -> None:
+        """Hand the answer to the start-up, send what it wants next."""
+        while True:
+            try:
+                exchange = self._start_up.send(reply)
+            except StopIteration as stop:
+                self.setup, self._waiting = stop.value, None
+                self._deadline_s = now_s + self._config.first_frame_timeout_s
+                return
+            self._connection.send(exchange.send)
+            if exchange.timeout_s > 0.0:
+                self._waiting = exchange
+                self._deadline_s = now_s + exchange.timeout_s
+                return
+            reply = None

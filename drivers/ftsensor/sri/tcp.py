@@ -1,0 +1,97 @@
+"""The box over TCP: it listens, the PC connects."""
+
+import errno
+import select
+import socket
+
+from drivers.ftsensor.sri import faults
+from drivers.ftsensor.sri.connection import Connection
+
+_CHUNK_BYTES = 65_536
+_UNANSWERED_MS = 2000
+
+
+class TcpConnection(Connection):
+    """A non-blocking socket without Nagle's delay."""
+
+    def __init__(self, host: str, port: int) -> None:
+        self.peer = f"{host}:{port}"
+        self._address = (host, port)
+        self._socket: socket.socket | None = None
+        self._established = False
+
+    def connect(self) -> None:
+        """Begin; a name that does not resolve is ``ConnectTimeout``."""
+        self.close()
+        try:
+            family, kind, protocol, _, address = socket.getaddrinfo(
+                *self._address, type=socket.SOCK_STREAM
+            )[0]
+            self._socket = socket.socket(family, kind, protocol)
+            self._socket.settimeout(0.0)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNANSWERED_MS)
+            code = self._socket.connect_ex(address)
+        except OSError as error:
+            self.close()
+            raise faults.cannot_connect(self.peer, error) from error
+        if code not in (0, errno.EINPROGRESS):
+            self.close()
+            raise faults.cannot_connect(self.peer, errno.errorcode.get(code, code))
+
+    def established(self) -> bool:
+        """True once the handshake of TCP is through."""
+        if self._established:
+            return True
+        if self._socket is None:
+            raise faults.lost(self.peer, "not connected")
+        if not select.select([], [self._socket], [], 0.0)[1]:
+            return False
+        code = self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
+        if code:
+            self.close()
+            raise faults.cannot_connect(self.peer, errno.errorcode.get(code, code))
+        self._established = True
+        return True
+
+    def close(self) -> None:
+        """Drop the link."""
+        if self._socket is not None:
+            self._socket.close()
+        self._socket, self._established = None, False
+
+    def fileno(self) -> int:
+        """Descriptor of the socket; -1 until it is established."""
+        return self._socket.fileno() if self._socket is not None and self._established else -1
+
+    def wait(self, timeout_s: float) -> None:
+        """For bytes, or while connecting for the end of that."""
+        sockets = [] if self._socket is None else [self._socket]
+        connecting = [] if self._established else sockets
+        select.select(sockets, connecting, [], timeout_s)
+
+    def send(self, data: bytes) -> None:
+        """Hand the bytes to the kernel."""
+        if self._socket is None:
+            raise faults.lost(self.peer, "not connected")
+        try:
+            self._socket.sendall(data)
+        except OSError as error:
+            self.close()
+            raise faults.lost(self.peer, error) from error
+
+    def receive(self) -> bytes:
+        """What the kernel holds."""
+        if self._socket is None:
+            raise faults.lost(self.peer, "not connected")
+        try:
+            data = self._socket.recv(_CHUNK_BYTES)
+        except BlockingIOError:
+            return b""
+        except OSError as error:
+            self.close()
+            raise faults.lost(self.peer, error) from error
+        if not data:
+            self.close()
+            raise faults.lost(self.peer, "closed by the box")
+        return data

@@ -1,0 +1,68 @@
+"""When was it sampled? Sample times from arrival times, without the jitter of the way.
+
+A sample cannot arrive before it was taken, and the least delayed one of many arrives almost at
+once. So the estimate runs ahead at the device's pace and is tied to the earliest arrivals.
+"""
+
+_WINDOW_S = 0.5
+_PAUSE_S = 0.25
+"""An estimate this far behind has missed a pause of the stream: start from the arrival again."""
+
+
+class SampleClock:
+    """One stream of equally spaced samples; restart it when the numbering restarts."""
+
+    def __init__(self, rate_hz: float, tolerance: float) -> None:
+        self.rate_hz = 0.0
+        """Measured over the last window; 0 before the first one ended."""
+        self.deviations = 0
+        """Windows outside the tolerance."""
+        self._nominal_hz = rate_hz
+        self._tolerance = tolerance
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget the phase; the next sample is the first again."""
+        self._period_s = 1.0 / self._nominal_hz
+        self._estimate_s = 0.0
+        self._last_s = 0.0
+        self._started = False
+        self._origin_s: float | None = None
+        self._periods = 0
+        self._least_delay_s = 0.0
+
+    def stamp(self, receive_s: float, periods: int, behind: int = 0) -> float:
+        """Time of a sample that came ``periods`` after the one before.
+
+        ``behind`` says how many samples came after it in the same read: it was not taken later
+        than so many periods before the read.
+        """
+        bound_s = receive_s - behind * self._period_s
+        if not self._started:
+            self._started = True
+            self._estimate_s = self._last_s = bound_s
+            self._least_delay_s = float("inf")
+            return bound_s
+        self._estimate_s += periods * self._period_s
+        self._periods += periods
+        delay_s = bound_s - self._estimate_s
+        if delay_s < 0.0 or delay_s > _PAUSE_S:
+            self._estimate_s = bound_s
+            delay_s = 0.0
+        self._least_delay_s = min(delay_s, self._least_delay_s)
+        if self._periods >= _WINDOW_S * self._nominal_hz:
+            self._end_window()
+        self._last_s = max(self._estimate_s, self._last_s + 0.01 * self._period_s)
+        return self._last_s
+
+    def _end_window(self) -> None:
+        """Tie the phase to the least delayed sample, learn the pace, judge the rate."""
+        self._estimate_s += self._least_delay_s
+        if self._origin_s is not None:
+            self._period_s = (self._estimate_s - self._origin_s) / self._periods
+            self.rate_hz = 1.0 / self._period_s
+            if abs(self.rate_hz / self._nominal_hz - 1.0) > self._tolerance:
+                self.deviations += 1
+        self._origin_s = self._estimate_s
+        self._periods = 0
+        self._least_delay_s = float("inf")
