@@ -64,8 +64,9 @@ class MatingSettings:
 
     settle_s: float = 0.5
     settle_timeout_s: float = 5.0
-    settle_sigma: tuple[float, float] = (3.0, 0.6)
-    """Scatter of force (N) and moment (N·m) that counts as steady."""
+    settle_sigma: tuple[float, float] = (3.0, 2.0)
+    """Scatter of force (N) and moment (N·m) that counts as steady; the moment about the deck has
+    the noise of the lateral force on its lever."""
     plausible: tuple[float, float] = (80.0, 40.0)
     """Untared force (N) and moment (N·m) at the stand-off that compensation can leave."""
     tare_s: float = 0.5
