@@ -5,7 +5,6 @@ Modbus TCP closes the connection. Every unit id is served. Reasons: docs/decisio
 """
 
 import asyncio
-import contextlib
 import errno
 import ipaddress
 import socket
@@ -108,9 +107,7 @@ class ModbusServer:
             self._clients.discard(task)
             self.counters[reason] += 1
             _log.info("line disconnected", peer=peer, reason=reason)
-            writer.close()
-            with contextlib.suppress(OSError):
-                await writer.wait_closed()
+            writer.transport.abort()  # answers are out; close() would wait for a dead client
 
     def _admits(self, peer: str) -> bool:
         if len(self._clients) > self._limits.clients:
@@ -147,6 +144,7 @@ class ModbusServer:
 
 
 def _tune(writer: asyncio.StreamWriter) -> None:
+    writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
     sock = writer.get_extra_info("socket")
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

@@ -1,0 +1,249 @@
+"""The line's interface as an outside Modbus client sees it."""
+
+import asyncio
+from collections.abc import AsyncIterator, Callable
+
+import pytest
+from pymodbus.client import AsyncModbusTcpClient
+
+from cellctl.config.cell import Plc
+from cellctl.errors.link import ConnectTimeout
+from cellctl.packml import Command, PackMLMachine, RejectCode, State
+from cellctl.plc import CellStatus, LineCommand, LineCoupling, PlcPort, Result
+
+ACK, DONE, RESULT, REJECT, HEARTBEAT, STATUS, STATE = 7, 8, 9, 10, 11, 5, 2
+LOST = 1 << 5
+
+
+class Line:
+    """A port with a recording handler, and a client."""
+
+    def __init__(self) -> None:
+        self.commands: list[LineCommand] = []
+        self.answer: Callable[[LineCommand], RejectCode] = lambda _command: RejectCode.NONE
+        self.lost = asyncio.Event()
+        self.ports: list[PlcPort] = []
+        self.clients: list[AsyncModbusTcpClient] = []
+        self.beat = 0
+
+    async def on_command(self, command: LineCommand) -> RejectCode:
+        self.commands.append(command)
+        return self.answer(command)
+
+    async def open(
+        self, *, previous_seq: int | None = None, timeout_s: float = 5.0
+    ) -> tuple[PlcPort, AsyncModbusTcpClient]:
+        config = Plc(port=0, heartbeat_timeout_s=timeout_s)
+        port = PlcPort(config, self.on_command, self.lost.set, previous_seq=previous_seq)
+        await port.start()
+        self.ports.append(port)
+        return port, await self.connect(port)
+
+    async def connect(self, port: PlcPort) -> AsyncModbusTcpClient:
+        client = AsyncModbusTcpClient("127.0.0.1", port=port.port, timeout=2, retries=0)
+        assert await client.connect()
+        self.clients.append(client)
+        return client
+
+    async def heartbeat(self, client: AsyncModbusTcpClient) -> None:
+        self.beat += 1
+        assert not (await client.write_register(40, self.beat)).isError()
+
+    async def command(
+        self, client: AsyncModbusTcpClient, seq: int, cmd: int, *, mode: int = 1, serial: str = ""
+    ) -> None:
+        text = client.convert_to_registers(serial, client.DATATYPE.STRING) if serial else []
+        block = [mode, cmd, 1, 0, 0, 0, *(list(text) + [0] * 12)[:12], *[0] * 8, 0, seq]
+        await self.heartbeat(client)
+        assert not (await client.write_registers(0, block)).isError()
+
+
+async def inputs(client: AsyncModbusTcpClient) -> list[int]:
+    answer = await client.read_input_registers(0, count=125)
+    assert not answer.isError()
+    assert answer.registers[0] == answer.registers[124]
+    return list(answer.registers)
+
+
+async def until(
+    client: AsyncModbusTcpClient, condition: Callable[[list[int]], bool], timeout_s: float = 3
+) -> list[int]:
+    async with asyncio.timeout(timeout_s):
+        while True:
+            block = await inputs(client)
+            if condition(block):
+                return block
+
+
+@pytest.fixture
+async def line() -> AsyncIterator[Line]:
+    line = Line()
+    yield line
+    for client in line.clients:
+        client.close()
+    for port in line.ports:
+        await port.stop()
+
+
+async def test_a_command_is_acknowledged_and_later_done(line: Line) -> None:
+    port, client = await line.open()
+    await line.command(client, 1, Command.START, serial="SAT-0042")
+    block = await until(client, lambda b: b[ACK] == 1)
+    assert (block[DONE], block[RESULT], block[REJECT]) == (0, 0, 0)
+    assert block[STATUS] & 0b10
+    assert line.commands[0].serial == "SAT-0042"
+    port.finish(1, Result.GOOD)
+    block = await inputs(client)
+    assert (block[DONE], block[RESULT]) == (1, Result.GOOD)
+    assert block[STATUS] & 0b110 == 0b100
+
+
+async def test_a_refusal_is_a_number_not_a_modbus_exception(line: Line) -> None:
+    line.answer = lambda _command: RejectCode.CALIBRATION_INVALID
+    _, client = await line.open()
+    await line.command(client, 1, Command.START, serial="SAT-1")
+    block = await until(client, lambda b: b[ACK] == 1)
+    assert (block[DONE], block[RESULT]) == (1, Result.REJECTED)
+    assert block[REJECT] == RejectCode.CALIBRATION_INVALID
+
+
+async def test_a_fault_while_deciding_refuses_and_the_next_command_is_heard(line: Line) -> None:
+    def answer(command: LineCommand) -> RejectCode:
+        if command.seq == 1:
+            raise ConnectTimeout("main robot")
+        return RejectCode.NONE
+
+    line.answer = answer
+    _, client = await line.open()
+    await line.command(client, 1, Command.RESET)
+    block = await until(client, lambda b: b[ACK] == 1)
+    assert block[REJECT] == RejectCode.DEVICE_NOT_READY
+    await line.command(client, 2, Command.RESET)
+    assert (await until(client, lambda b: b[ACK] == 2))[REJECT] == 0
+
+
+async def test_nothing_old_is_executed_after_a_restart(line: Line) -> None:
+    _, client = await line.open(previous_seq=7)
+    await line.command(client, 7, Command.START, serial="SAT-1")
+    block = await until(client, lambda b: b[ACK] == 7)
+    assert (block[RESULT], block[REJECT]) == (
+        Result.IGNORED,
+        RejectCode.IGNORED_AFTER_RESTART,
+    )
+    await line.command(client, 8, Command.RESET)
+    await until(client, lambda b: b[ACK] == 8)
+    assert [command.seq for command in line.commands] == [8]
+
+
+async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> None:
+    _, client = await line.open()
+    for seq, command in enumerate((Command.RESET, Command.STOP, Command.ABORT), start=1):
+        await client.write_registers(0, [1, command, *[0] * 25, seq])
+        await until(client, lambda b, seq=seq: b[ACK] == seq)  # type: ignore[misc]
+        if seq == 1:
+            assert (await inputs(client))[REJECT] == RejectCode.LINE_HEARTBEAT_MISSING
+    assert [command.cntrl_cmd for command in line.commands] == [Command.STOP, Command.ABORT]
+
+
+async def test_a_heartbeat_that_stands_still_is_lost_and_comes_back(line: Line) -> None:
+    port, client = await line.open(timeout_s=0.5)
+    await line.heartbeat(client)
+    assert port.line_alive
+    async with asyncio.timeout(3):
+        while not line.lost.is_set():
+            await client.write_register(40, line.beat)  # written, but the same value
+    assert (await inputs(client))[STATUS] & LOST
+    await line.heartbeat(client)
+    assert not (await inputs(client))[STATUS] & LOST
+    assert port.line_alive
+
+
+async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:
+    port, client = await line.open()
+    port._heartbeat = 0xFFFE
+    seen = []
+    for _ in range(3):
+        port.beat()
+        seen.append((await inputs(client))[HEARTBEAT])
+    assert seen == [0xFFFF, 0, 1]
+
+
+async def test_the_cell_does_not_beat_once_commands_are_no_longer_taken(line: Line) -> None:
+    def answer(_command: LineCommand) -> RejectCode:
+        raise RuntimeError("defect")
+
+    line.answer = answer
+    port, client = await line.open()
+    await line.command(client, 1, Command.RESET)
+    with pytest.raises(RuntimeError, match="defect"):
+        async with asyncio.timeout(2):
+            await port.failed()
+    before = (await inputs(client))[HEARTBEAT]
+    port.beat()
+    assert (await inputs(client))[HEARTBEAT] == before
+
+
+async def test_blocks_are_never_torn(line: Line) -> None:
+    port, client = await line.open()
+    stop = asyncio.Event()
+
+    async def publish() -> None:
+        number = 0
+        while not stop.is_set():
+            number += 1
+            port.publish(CellStatus(run_number=number, cycle_counter=number))
+            await asyncio.sleep(0)
+
+    publishing = asyncio.create_task(publish())
+    for _ in range(200):
+        block = await inputs(client)
+        assert block[23:25] == block[25:27]
+    stop.set()
+    await publishing
+
+
+async def test_commands_come_in_order_though_deciding_takes_time(line: Line) -> None:
+    _, client = await line.open()
+    await line.heartbeat(client)
+    for seq in range(1, 6):
+        await client.write_registers(0, [1, Command.STOP, *[0] * 25, seq])
+    await until(client, lambda b: b[ACK] == 5)
+    assert [command.seq for command in line.commands] == [1, 2, 3, 4, 5]
+
+
+async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
+    machine = PackMLMachine({}, initial=State.ABORTED)
+    coupling: list[LineCoupling] = []
+    config = Plc(port=0)
+
+    async def obey(command: LineCommand) -> RejectCode:
+        return await coupling[0].obey(command)
+
+    port = PlcPort(config, obey, line.lost.set)
+    coupling.append(LineCoupling(machine, port.finish, lambda: Result.GOOD))
+    machine.on_change.append(
+        lambda _before, after: port.publish(
+            CellStatus(state=after, state_requested=machine.state_requested, mode=machine.mode)
+        )
+    )
+    await port.start()
+    line.ports.append(port)
+    client = await line.connect(port)
+    expected = [
+        (Command.CLEAR, State.STOPPED),
+        (Command.RESET, State.IDLE),
+        (Command.START, State.COMPLETED),
+        (Command.RESET, State.IDLE),
+        (Command.ABORT, State.ABORTED),
+    ]
+    for seq, (command, state) in enumerate(expected, start=1):
+        await line.command(client, seq, command, serial="SAT-0042")
+        block = await until(client, lambda b, seq=seq: b[DONE] == seq)  # type: ignore[misc]
+        assert (block[STATE], block[RESULT]) == (state, Result.GOOD)
+    await line.command(client, 6, Command.START, serial="SAT-0042")
+    block = await until(client, lambda b: b[DONE] == 6)
+    assert block[REJECT] == RejectCode.COMMAND_NOT_ALLOWED
+    await line.command(client, 7, Command.UNDEFINED, mode=2)
+    block = await until(client, lambda b: b[DONE] == 7)
+    assert (block[3], block[RESULT]) == (2, Result.GOOD)
+    await machine.close()
