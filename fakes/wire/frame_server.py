@@ -8,7 +8,7 @@ import asyncio
 import struct
 import zlib
 from collections.abc import AsyncIterator, Callable
-from concurrent.futures import Executor
+from concurrent.futures import BrokenExecutor, Executor
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -26,6 +26,10 @@ _OK, _BUSY, _CAMERA_FAULT, _BAD_REQUEST = 0, 1, 2, 3
 _MONO8: Final = 1
 _CHUNK: Final = 1 << 18
 _SEND_TIMEOUT_S: Final = 20.0
+_ENDS: Final = (ConnectionError, asyncio.IncompleteReadError, TimeoutError)
+"""How a client goes: closed, closed within a request, or no longer reading."""
+_DEPARTURE_S: Final = 0.1
+"""A newcomer waits this long for a client that has just closed its end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,24 +118,34 @@ class FrameServer:
 
     async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if self._client is not None:
+            await asyncio.wait({self._client}, timeout=_DEPARTURE_S)
+        if self._client is not None:
             writer.close()
             return
         self._client = asyncio.current_task()
+        requests: asyncio.Queue[bytes] = asyncio.Queue()
+        jobs = {
+            asyncio.create_task(_read(reader, requests)),
+            asyncio.create_task(self._answer(requests, writer)),
+        }
         try:
-            await self._serve(reader, writer)
-        except (ConnectionError, asyncio.IncompleteReadError, TimeoutError):
-            pass  # the client has gone, or stopped reading: the next one is welcome
+            await asyncio.wait(jobs, return_when=asyncio.FIRST_COMPLETED)
         except asyncio.CancelledError:
-            if self._server is not None:
-                raise
+            writer.transport.abort()  # the server stops
         finally:
+            for job in jobs:
+                job.cancel()
+            outcomes = await asyncio.gather(*jobs, return_exceptions=True)
+            writer.close()
             self._client = None
-            writer.transport.abort() if self._server is None else writer.close()
+        for outcome in outcomes:
+            if isinstance(outcome, Exception) and not isinstance(outcome, _ENDS):
+                raise outcome
 
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+    async def _answer(self, requests: asyncio.Queue[bytes], writer: asyncio.StreamWriter) -> None:
+        """Answer until a fault or a violation ends the connection."""
         while True:
-            request = await reader.readexactly(_REQUEST.size)
-            magic, version, command, request_id, zero = _REQUEST.unpack(request)
+            magic, version, command, request_id, zero = _REQUEST.unpack(await requests.get())
             if magic != b"CFSQ" or version != _VERSION:
                 return
             if command == _IDENTIFY and zero == 0:
@@ -141,8 +155,7 @@ class FrameServer:
                 if "hang_up" in faults:
                     return
                 if "half_open" in faults:
-                    await _until_closed(reader)
-                    return
+                    await asyncio.Event().wait()  # ended by the client's going
                 if "silent" not in faults:
                     reply = await self._grab(request_id, faults)
                     await self._send(writer, reply, faults)
@@ -160,7 +173,10 @@ class FrameServer:
             if name in faults:
                 return _Reply(request_id, status)
         if "frozen" not in faults or self._last is None:
-            self._last = await self._expose(frozenset(faults))
+            try:
+                self._last = await self._expose(frozenset(faults))
+            except BrokenExecutor:
+                return _Reply(request_id, _CAMERA_FAULT)
         reply = replace(self._last, request_id=request_id)
         if "wrong_size" in faults:
             reply = _quartered(reply)
@@ -221,9 +237,10 @@ async def _pieces(
             await asyncio.sleep(0.002)
 
 
-async def _until_closed(reader: asyncio.StreamReader) -> None:
-    while await reader.read(_CHUNK):
-        continue
+async def _read(reader: asyncio.StreamReader, requests: asyncio.Queue[bytes]) -> None:
+    """Read ahead, so that the end of the connection is noticed during a reply too."""
+    while True:
+        requests.put_nowait(await reader.readexactly(_REQUEST.size))
 
 
 def _quartered(reply: _Reply) -> _Reply:

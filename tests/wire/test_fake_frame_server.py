@@ -200,6 +200,36 @@ async def test_new_client_after_the_first_has_gone(server: FrameServer) -> None:
         link.writer.close()
 
 
+async def test_client_that_gave_up_does_not_block_the_next(
+    server: FrameServer, client: Client
+) -> None:
+    server.faults.inject("late", 60.0, replies=1)
+    client.ask(2, 1)
+    client.ask(1, 2)
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(0.6):
+            await client.reader.read(1)
+    client.writer.close()
+    await client.writer.wait_closed()
+    link = await connect(server)
+    assert (await link.grab(3)).request_id == 3
+    link.writer.close()
+
+
+async def test_dead_worker_is_a_camera_fault() -> None:
+    with ThreadPoolExecutor(1, initializer=_fail) as pool:
+        server = FrameServer("127.0.0.1", 0, scenes(), pool)
+        await server.start()
+        link = await connect(server)
+        assert (await link.grab()).status == 2
+        link.writer.close()
+        await server.stop()
+
+
+def _fail() -> None:
+    raise RuntimeError("no memory")
+
+
 async def test_stop_drops_the_client_and_frees_the_port(
     server: FrameServer, client: Client, threads: Executor
 ) -> None:
