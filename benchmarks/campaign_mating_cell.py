@@ -60,9 +60,7 @@ class MatingCell:
         self.controller = Controller(self.arm, self.faults)
         self.robot = WorldRobot(self.controller, self.start_s)
         self.sensor_fault = SensorFault()
-        self.flange_T_sensor = from_written(
-            self.world.scenario.force_sensor.flange_T_sensor_mm_deg
-        )
+        self.flange_T_sensor = from_written(self.world.scenario.force_sensor.flange_T_sensor_mm_deg)
         self.guard = WorldGuard(self._identify(), self.flange_T_sensor, self._guard_stop)
         self._stops = 0
         self._ticks = round(self.start_s / TICK_S)
@@ -87,7 +85,7 @@ class MatingCell:
         self.controller.supervise("GRD", ["ABORT", str(SESSION), str(self._stops)], time_s)
 
     # -- the steps before mating ------------------------------------------------------------------
-    def frame_T_deck(self) -> RigidTransform:
+    def true_pose(self) -> RigidTransform:
         """Truth: M_T_D."""
         parts, deck = self.world.placed.parts, self.world.snapshot().cell_T_deck
         assert parts is not None
@@ -98,9 +96,9 @@ class MatingCell:
         """M_T_D as vision measures it at the end of its loop."""
         sigma = np.repeat([POSITION_SIGMA_M / 3.0, ANGLE_SIGMA_RAD / 3.0], 3)
         error = _displacement(self.rng.normal(0.0, sigma))
-        return UncertainPose(self.frame_T_deck() * error, np.diag(sigma**2))
+        return UncertainPose(self.true_pose() * error, np.diag(sigma**2))
 
-    def flange_T_deck(self) -> RigidTransform:
+    def calibrated_deck(self) -> RigidTransform:
         """As the deck-flange calibration gives it: what encoders and truth say together."""
         deck = self.world.snapshot().cell_T_deck
         assert deck is not None
@@ -127,9 +125,7 @@ class MatingCell:
             deck = world.snapshot().cell_T_deck
             assert deck is not None
             correction = wanted * deck.inv()
-            arm.start_linear(
-                world.time_s, correction * arm.encoder_pose(world.time_s), 0.25, 1.0
-            )
+            arm.start_linear(world.time_s, correction * arm.encoder_pose(world.time_s), 0.25, 1.0)
             self._wait()
         world.advance(world.time_s + 1.0)
         return world.time_s

@@ -28,6 +28,8 @@ class WorldGuard:
     ) -> None:
         self._compensation, self._flange_T_sensor = compensation, flange_T_sensor
         self._request_stop = request_stop
+        self._pose: RigidTransform | None = None
+        self._load = np.zeros(6)
         self._deck_A_sensor = np.eye(6)
         self._tare = np.zeros(6)
         self._limits: GuardLimits | None = None
@@ -51,8 +53,11 @@ class WorldGuard:
             if self._limits and self._bad >= self._limits.bad_frames:
                 self._stop(time_s, TripReason.SENSOR_INVALID, f"{self._bad} damaged frames")
             return
-        rotation = base_T_flange.rotation * self._flange_T_sensor.rotation
-        wrench = self._deck_A_sensor @ self._compensation.apply(raw, rotation) - self._tare
+        if base_T_flange is not self._pose:
+            self._pose = base_T_flange
+            rotation = base_T_flange.rotation * self._flange_T_sensor.rotation
+            self._load = self._compensation.load(rotation)
+        wrench = self._deck_A_sensor @ (raw - self._load) - self._tare
         number = self._last.number + 1
         self._equal = self._equal + 1 if np.array_equal(raw, self._last.raw) else 1
         self._last = GuardSample(time_s, time_s, number, wrench, raw, 0.0)

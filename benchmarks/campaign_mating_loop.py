@@ -41,9 +41,7 @@ class SimulatedTimeLoop(asyncio.SelectorEventLoop):
         self._advance(self._now_s)
 
 
-def run_simulated(
-    start_s: float, advance: Callable[[float], None], main: Callable[[], Any]
-) -> Any:
+def run_simulated(start_s: float, advance: Callable[[float], None], main: Callable[[], Any]) -> Any:
     """Run a coroutine function to its end on simulated time; ``advance`` drives the world."""
     with asyncio.Runner(loop_factory=lambda: SimulatedTimeLoop(start_s, advance)) as runner:
         return runner.run(main())

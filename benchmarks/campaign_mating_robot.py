@@ -5,7 +5,7 @@ import asyncio
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.link import LinkLost
+from cellctl.errors.link import LinkLost, StaleData
 from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, StopFailed
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import Robot, RobotMode, RobotState
@@ -66,8 +66,11 @@ class WorldRobot(Robot):
 
     def state(self, max_age_s: float = 0.25) -> RobotState:
         self._check_link()
-        assert self._state is not None
-        return self._state
+        state = self._state
+        assert state is not None
+        if asyncio.get_running_loop().time() - state.time_s > max_age_s:
+            raise StaleData("main: no report")
+        return state
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         degrees = [f"{value:.5f}" for value in np.rad2deg(joints_rad)]

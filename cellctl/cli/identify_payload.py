@@ -10,10 +10,10 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.errors.force import PayloadFileInvalid
+from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.pose_file import parse_pose_file
 from cellctl.geometry.pose import MM
 from cellctl.procedures.payload_picture import residual_picture
-from cellctl.procedures.payload_result import PayloadResult, evaluate_payload, payload_document
 
 NOT_ACCEPTED = 3
 """Exit code when the payload was identified but failed its acceptance."""

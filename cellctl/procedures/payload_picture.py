@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from cellctl.force.payload_result import PayloadResult
 from cellctl.geometry.pose import Array
-from cellctl.procedures.payload_result import PayloadResult
 
 
 def residual_picture(result: PayloadResult) -> bytes:

@@ -86,8 +86,8 @@ async def _run(attempt: Attempt) -> MatingResult:
     await take_over(attempt)
     readings = await creep_to(attempt, plan.creep, MatingPhase.CREEP)
     held, verdict = await hold(attempt, readings)
-    stiffness = stiffness_of(readings)
-    released = await _leave(attempt, held, verdict, stiffness)
+    leaving = await _leave(attempt, held, verdict, stiffness_of(readings))
+    released = leaving[-1] if leaving else None
     curve = attempt.recorder.curve()
     return MatingResult(
         outcome=MatingOutcome.SEATED if verdict.seated else MatingOutcome.FALSE_SEAT,
@@ -98,7 +98,7 @@ async def _run(attempt: Attempt) -> MatingResult:
         touch_travel_m=touch_travel_m,
         touch_force_n=readings[0].force_n,
         creep=readings,
-        stiffness=stiffness,
+        stiffness=stiffness_of((*readings, *leaving)),
         hold=held,
         verdict=verdict,
         released=released,
@@ -110,16 +110,16 @@ async def _run(attempt: Attempt) -> MatingResult:
 
 async def _leave(
     attempt: Attempt, held: Reading, verdict: SeatVerdict, stiffness: StiffnessEstimate | None
-) -> Reading | None:
-    """Relax a good seat for fastening, back off from a false one."""
+) -> tuple[Reading, ...]:
+    """Relax a good seat for fastening, back off from a false one; readings while relaxing."""
     if not verdict.seated:
         await back_off(attempt)
-        return None
+        return ()
     shown_n_m = stiffness.stiffness_n_m if stiffness else None
     law = attempt.plan.release
     readings = await creep_to(attempt, law, MatingPhase.RELEASE, held, shown_n_m)
     await attempt.guard.disarm()
-    return readings[-1]
+    return readings
 
 
 async def _retreat(attempt: Attempt, fault: CellError) -> None:

@@ -84,7 +84,7 @@ class MatingResult:
     creep: tuple[Reading, ...]
     """Readings of the creep, oldest first."""
     stiffness: StiffnessEstimate | None
-    """From the creep, where it had enough steps."""
+    """From all readings in contact, where there were enough."""
     hold: Reading
     verdict: SeatVerdict
     released: Reading | None

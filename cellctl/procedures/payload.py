@@ -1,0 +1,118 @@
+"""Procedure 106: the payload from still poses with the deck gripped (paper 2.4.1)."""
+
+import asyncio
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.errors.force import NotSettled, SensorSilent
+from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
+from cellctl.force.pose_file import PoseRecord
+from cellctl.force.poses import PoseRole, plan_identification
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.guard.report import Curve, GuardSample
+from cellctl.interfaces import Robot
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.procedures.payload_picture import residual_picture
+
+HOLD_OUT_POSES = 4
+SETTLE_S = 0.5
+AVERAGE_S = 1.0
+STEADY_N, STEADY_N_M = 4.0, 1.5
+"""Scatter of single samples at standstill, raw, above which hoses or arm still swing."""
+STEADY_TRIES = 5
+POLL_S = 0.02
+READ_TIMEOUT_S = 2.0
+
+
+class SampleSource(Protocol):
+    """The part of the guard's client that this procedure reads."""
+
+    def latest(self) -> GuardSample:
+        """The newest sample."""
+        ...
+
+    def samples(self, since_s: float) -> Curve:
+        """All samples after a time."""
+        ...
+
+
+async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcome:
+    """Tilt around the mating orientation, high above the frame, and identify.
+
+    The home pose must hold the deck in the mating orientation. Raises ``NotSettled``,
+    ``SensorSilent``, ``PosesDegenerate`` and what the robot raises.
+    """
+    cell = context.cell
+    settings, main = cell.config.procedures, cell.config.robots.main
+    await cell.main.move_joint(
+        np.radians(main.home_joints_deg), speed_ratio=main.speed_percent / 100
+    )
+    flange_T_sensor = pose_from_xyzabc(main.flange_T_sensor)
+    deck = pose_from_xyzabc(cell.config.recipes[0].flange_T_deck)
+    poses = plan_identification(
+        cell.main.state().base_T_flange,
+        pivot_in_flange_m=deck.translation,
+        half_angle_rad=float(np.radians(settings.payload_cone_deg)),
+        fit_poses=max(settings.payload_poses - HOLD_OUT_POSES - 1, 6),
+        hold_out_poses=HOLD_OUT_POSES,
+    )
+    rotations, wrenches, roles = [], [], []
+    for number, pose in enumerate(poses, start=1):
+        await context.progress(number, len(poses), f"{pose.role.value} pose")
+        await cell.main.move_linear(
+            pose.base_T_flange,
+            speed_m_s=main.linear_speed_mm_s * MM,
+            acceleration_m_s2=main.linear_acceleration_mm_s2 * MM,
+        )
+        rotation, wrench = await still_wrench(cell.main, cell.guard, flange_T_sensor)
+        rotations.append(rotation)
+        wrenches.append(wrench)
+        roles.append(pose.role)
+    result = _evaluate(rotations, wrenches, roles)
+    return ProcedureOutcome(
+        item="payload",
+        record=payload_document(result),
+        passed=result.accepted,
+        warnings=tuple(str(check) for check in result.checks if not check.passed),
+        picture_png=residual_picture(result),
+        serial_number=cell.guard.health().sensor_serial,
+    )
+
+
+async def still_wrench(
+    robot: Robot, guard: SampleSource, flange_T_sensor: RigidTransform
+) -> tuple[Rotation, Array]:
+    """base_R_sensor and mean raw wrench, shape (6,), once the readings are steady.
+
+    Raises ``NotSettled`` or ``SensorSilent``.
+    """
+    limits = np.array([STEADY_N] * 3 + [STEADY_N_M] * 3)
+    for _ in range(STEADY_TRIES):
+        raw = await _raw_samples(guard, SETTLE_S, AVERAGE_S)
+        scatter = raw.std(axis=0)
+        if (scatter < limits).all():
+            rotation = robot.state().base_T_flange.rotation * flange_T_sensor.rotation
+            return rotation, raw.mean(axis=0)
+    shown = ", ".join(f"{value:.2f}" for value in scatter)
+    raise NotSettled(f"raw readings scatter by ({shown}) N, N·m at a pose of the payload")
+
+
+async def _raw_samples(guard: SampleSource, settle_s: float, average_s: float) -> Array:
+    loop = asyncio.get_running_loop()
+    begin_s = loop.time() + settle_s
+    end_s = begin_s + average_s
+    while guard.latest().time_s < end_s:
+        if loop.time() > end_s + READ_TIMEOUT_S:
+            raise SensorSilent("no samples while reading a pose of the payload")
+        await asyncio.sleep(POLL_S)
+    return guard.samples(begin_s).raw
+
+
+def _evaluate(
+    rotations: list[Rotation], wrenches: list[Array], roles: list[PoseRole]
+) -> PayloadResult:
+    return evaluate_payload(
+        PoseRecord(Rotation.concatenate(rotations), np.array(wrenches), tuple(roles))
+    )

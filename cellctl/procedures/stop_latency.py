@@ -1,0 +1,142 @@
+"""Procedure 107: how long the main robot takes to stop at the speeds of mating."""
+
+import asyncio
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.force import CommissioningFailed
+from cellctl.errors.robot import MotionAborted, NotRearmed
+from cellctl.force.commissioning import LatencyEstimate, estimate_stop_latency
+from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces import Robot
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+
+SPEEDS_M_S = (2e-3, 4e-3, 6e-3, 8e-3)
+REPEATS = 3
+TRAVEL_M = 0.03
+RUN_S = 1.0
+"""Time on the way before the stop is requested: the speed is constant by then."""
+ACCELERATION_M_S2 = 0.05
+POLL_S = 0.01
+START_TIMEOUT_S = 2.0
+END_TIMEOUT_S = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class StopLatency:
+    """The measurement with its data."""
+
+    estimate: LatencyEstimate
+    speeds_m_s: Array
+    overruns_m: Array
+
+
+async def measure_stop_latency_on_cell(context: ProcedureContext) -> ProcedureOutcome:
+    """Stop the main robot on its way up from home, at several speeds."""
+    cell = context.cell
+    main = cell.config.robots.main
+    await cell.main.move_joint(
+        np.radians(main.home_joints_deg), speed_ratio=main.speed_percent / 100
+    )
+    measured = await measure_stop_latency(cell.main, np.array([0.0, 0.0, 1.0]))
+    estimate = measured.estimate
+    return ProcedureOutcome(
+        item="stop_latency",
+        record={
+            "latency_ms": estimate.latency_s * 1e3,
+            "sigma_ms": estimate.sigma_s * 1e3,
+            "upper_ms": estimate.upper_s * 1e3,
+            "offset_mm": estimate.offset_m / MM,
+            "residual_mm": estimate.residual_m / MM,
+            "speeds_mm_s": (measured.speeds_m_s / MM).tolist(),
+            "overruns_mm": (measured.overruns_m / MM).tolist(),
+        },
+        passed=True,
+        warnings=(),
+        picture_png=None,
+        serial_number="",
+    )
+
+
+async def measure_stop_latency(
+    robot: Robot,
+    direction: Array,
+    speeds_m_s: tuple[float, ...] = SPEEDS_M_S,
+    repeats: int = REPEATS,
+) -> StopLatency:
+    """Start, request a stop on the way, and measure how far the arm still goes; return each time.
+
+    ``direction``: unit vector in the base that is free for 30 mm. Raises ``CommissioningFailed``
+    and what the robot raises.
+    """
+    home = robot.state().base_T_flange
+    speeds = [speed for speed in speeds_m_s for _ in range(repeats)]
+    overruns = []
+    for speed_m_s in speeds:
+        overruns.append(await _overrun(robot, direction, speed_m_s))
+        await robot.rearm()
+        await robot.move_linear(home, speed_m_s=0.01, acceleration_m_s2=ACCELERATION_M_S2)
+    data = np.array(speeds), np.array(overruns)
+    return StopLatency(estimate_stop_latency(*data), *data)
+
+
+async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
+    start = robot.state().base_T_flange
+    target = RigidTransform.from_translation(direction * TRAVEL_M) * start
+    motion = asyncio.create_task(
+        robot.move_linear(target, speed_m_s=speed_m_s, acceleration_m_s2=ACCELERATION_M_S2)
+    )
+    try:
+        await _moving(robot, motion)
+        await asyncio.sleep(RUN_S)
+        state, request_s = robot.state(), asyncio.get_running_loop().time()
+        seen_m = float((state.base_T_flange.translation - start.translation) @ direction)
+        at_request_m = seen_m + speed_m_s * (request_s - state.time_s)
+        await robot.stop()
+        await _aborted(motion)
+    finally:
+        motion.cancel()
+        await asyncio.gather(motion, return_exceptions=True)
+    end_m = float((await _at_rest(robot) - start.translation) @ direction)
+    if end_m > TRAVEL_M - speed_m_s * 0.1:
+        raise CommissioningFailed(
+            f"at {speed_m_s / MM:.1f} mm/s the arm ran to its target instead of stopping"
+        )
+    return end_m - at_request_m
+
+
+async def _moving(robot: Robot, motion: asyncio.Task[object]) -> None:
+    try:
+        async with asyncio.timeout(START_TIMEOUT_S):
+            while not robot.state().moving:
+                if motion.done():
+                    motion.result()
+                await asyncio.sleep(POLL_S)
+    except TimeoutError as error:
+        raise CommissioningFailed("the robot accepted a motion but did not move") from error
+
+
+async def _aborted(motion: asyncio.Task[object]) -> None:
+    try:
+        async with asyncio.timeout(END_TIMEOUT_S):
+            await motion
+    except (MotionAborted, NotRearmed):
+        return
+    except TimeoutError as error:
+        raise CommissioningFailed("the stopped motion never ended") from error
+
+
+async def _at_rest(robot: Robot) -> Array:
+    """Position once two reports in a row say the same and none of them is of a moving arm."""
+    last, position = -1.0, np.full(3, np.nan)
+    async with asyncio.timeout(END_TIMEOUT_S):
+        while True:
+            state = robot.state()
+            if state.time_s > last:
+                here = state.base_T_flange.translation
+                if not state.moving and np.allclose(here, position, atol=1e-7):
+                    return np.asarray(here)
+                last, position = state.time_s, here
+            await asyncio.sleep(POLL_S)
