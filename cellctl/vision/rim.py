@@ -11,7 +11,8 @@ from cellctl.vision.camera import PlanePatch, plane_patch, project
 from cellctl.vision.ellipse import Ellipse, ellipse_from_points
 from cellctl.vision.features import Hole
 from cellctl.vision.rim_edges import EdgeCircle, edge_circle, plane_to_px, plane_units_per_px
-from cellctl.vision.rim_fit import Light, RimFit, fit_rim, rim_cost
+from cellctl.vision.rim_fit import Prior, RimFit, fit_rim, rim_cost
+from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape, rim_distance_px
 from cellctl.vision.stereo_head import CameraModel
 
@@ -19,7 +20,10 @@ _RADIUS_TOLERANCE = 0.07
 _MIN_SUPPORT = 0.55
 _MIN_CONTRAST_GREY = 8.0
 _BAND_INSIDE_PX, _BAND_OUTSIDE_PX = 7.0, 6.0
+_THREAD_INSIDE_PX = 3.0
 _WALL_DEPTHS_M = (0.6e-3, 1.5e-3, 3e-3, 6e-3, 12e-3)
+_CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
+_DIAMETER_SIGMA = 0.01
 _BIC_EVIDENCE = 12.0
 _FLOOR_PX = 1e-3
 """Lens model and pixel response limit every centre to about this."""
@@ -140,7 +144,12 @@ def _best_fit(
     patch: PlanePatch, circle: EdgeCircle, grey: Array, hole: Hole, distance_m: float
 ) -> RimFit:
     """The simplest model of the rim that the grey values do not contradict."""
+    nominal = hole.diameter_m / 2.0 / distance_m
     pixels = _band(patch, circle, grey, hole)
+    if hole.kind == "thread":
+        start = RimShape(circle.centre, nominal, 1.0, None, _CHAMFER_RATIO)
+        sigma = np.array([np.inf, np.inf, _DIAMETER_SIGMA * nominal, 0.3, _CHAMFER_SIGMA])
+        return fit_rim(pixels, start, Light(thread=True), Prior(start.vector, sigma))
     light = Light(cone=hole.countersink_m is not None)
     plain = fit_rim(pixels, RimShape(circle.centre, circle.radius, 1.0), light)
     if hole.kind == "disc":
@@ -155,14 +164,19 @@ def _best_fit(
 
 
 def _band(patch: PlanePatch, circle: EdgeCircle, grey: Array, hole: Hole) -> RimPixels:
-    distance = rim_distance_px(patch.points, patch.jacobian, circle.centre, circle.radius)
+    everything = RimPixels(
+        patch.points.reshape(-1, 2), patch.jacobian.reshape(-1, 2, 2), grey.ravel()
+    )
+    distance = rim_distance_px(everything, circle.centre, circle.radius)
     radius_px = circle.radius / plane_units_per_px(patch)
     inside, outside = min(_BAND_INSIDE_PX, 0.5 * radius_px), _BAND_OUTSIDE_PX
+    if hole.kind == "thread":
+        inside = _THREAD_INSIDE_PX
     if hole.countersink_m is not None:
         ring_px = radius_px * (hole.countersink_m / hole.diameter_m - 1.0)
         outside = min(outside, max(2.0, 0.7 * ring_px))
     mask = (distance > -inside) & (distance < outside)
-    return RimPixels(patch.points[mask], patch.jacobian[mask], grey[mask])
+    return RimPixels(everything.points[mask], everything.jacobian[mask], everything.grey[mask])
 
 
 def _rim(view: View, patch: PlanePatch, fit: RimFit, nominal: float, distance_m: float) -> Rim:

@@ -1,23 +1,33 @@
 """Maximum-likelihood fit of a rim to the grey values around it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_model import RimImage, RimPixels, RimShape, rim_image
+from cellctl.vision.rim_light import Light, Surface, surfaces
+from cellctl.vision.rim_model import RimPixels, RimShape, borders
+from cellctl.vision.rim_noise import scatter_factor, weights_of
 
 _MAX_ITERATIONS = 25
-_CONVERGED_PX = 2e-4
-_BLUR_LIMITS_PX = (0.35, 4.0)
+_CONVERGED_PX = 3e-4
+_SETTLED_PX = 0.02
+_REFRESH = (1, 3, 6)
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
+_BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_WALL_RATIO = 0.2
-_REWEIGHT = (1, 3, 6)
-_SETTLED_PX = 0.01
-_HUBER = 2.5
-_MIN_SCALE_GREY = 0.3
-"""Rounding to 8 bit alone leaves this much."""
+_RING_LIMITS = (1.02, 1.4)
+
+
+@dataclass(frozen=True, slots=True)
+class Prior:
+    """What is known of a shape beforehand: mean and standard deviation of ``RimShape.vector``."""
+
+    mean: Array
+    sigma: Array
+    """Infinite where nothing is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,50 +38,37 @@ class RimFit:
     covariance: Array
     """Shape (3, 3): of centre and radius, in plane units squared."""
     residual_grey: float
-    """Robust standard deviation of the residuals."""
+    """Standard deviation of the residuals."""
     contrast_grey: float
-    """Mean step from inside to outside."""
-    explained: float
-    """Share of pixels whose residual is within three standard deviations."""
+    """Step from just inside to just outside, mean over the rim."""
     bic: float
     """Bayesian information criterion, to compare models on the same pixels."""
     converged: bool
-    pixels: int
 
 
-@dataclass(frozen=True, slots=True)
-class Light:
-    """Which grey-value terms are free beside the mean levels and an even gradient."""
-
-    cone: bool = False
-    """Outside the rim lies the cone of a countersink, whose grey varies with the azimuth."""
-
-
-def fit_rim(pixels: RimPixels, start: RimShape, light: Light) -> RimFit:
+def fit_rim(pixels: RimPixels, start: RimShape, light: Light, prior: Prior | None = None) -> RimFit:
     """Fit shape and light jointly by robust Gauss-Newton steps from a start within 1–2 px."""
-    px = _plane_units_per_px(pixels)
-    weights = np.ones(len(pixels.grey))
-    best = _solve(pixels, start, light, weights)
+    problem = _Problem(pixels, light, prior or _no_prior(start))
+    best = problem.first(start)
     damping, step_px = 1e-6, np.inf
     for iteration in range(_MAX_ITERATIONS):
-        trial = _solve(pixels, _moved(best, damping, px), light, weights)
+        trial = problem.solve(_moved(best, damping, problem), best.parts, best.weights)
         if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
             continue
-        step_px = float(np.abs(trial.shape.vector[:3] - best.shape.vector[:3]).max() / px)
+        change = trial.shape.vector[:3] - best.shape.vector[:3]
+        step_px = float(np.abs(change).max() / pixels.unit_px)
         best, damping = trial, damping * 0.2
         if step_px < _CONVERGED_PX:
             break
-        if iteration in _REWEIGHT or step_px < _SETTLED_PX:
-            weights = _huber_weights(best.residuals)
-            best = best.reweighted(weights)
-    return _result(pixels, best, converged=step_px < 10 * _CONVERGED_PX)
+        if iteration in _REFRESH or step_px < _SETTLED_PX:
+            best = problem.refreshed(best)
+    return _result(problem, best, converged=step_px < 10 * _CONVERGED_PX)
 
 
 def rim_cost(pixels: RimPixels, shape: RimShape, light: Light) -> float:
     """Bayesian information criterion of a shape as it stands, with the best light for it."""
-    solution = _solve(pixels, shape, light, np.ones(len(pixels.grey)))
-    return _bic(solution)
+    return _bic(_Problem(pixels, light, _no_prior(shape)).first(shape))
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,122 +76,141 @@ class _Solution:
     """Best light for one shape, and what the next step needs."""
 
     shape: RimShape
+    parts: Sequence[Surface]
     weights: Array
+    """One over the variance of each pixel, less for outliers."""
     residuals: Array
     design: Array
     """Columns: light, then shape, shape (n, lights + p)."""
-    lights: int
-    contrast_grey: float
+    precision: Array
+    """Of the priors on light and shape, shape (lights + p,)."""
+    pull: Array
+    """Prior mean minus present value, shape (lights + p,)."""
+    outside: Array
+    """Share of each pixel outside the rim."""
+
+    @property
+    def lights(self) -> int:
+        return self.design.shape[1] - len(self.shape.vector)
 
     @property
     def cost(self) -> float:
-        return float(self.weights @ self.residuals**2)
-
-    def reweighted(self, weights: Array) -> "_Solution":
-        return replace(self, weights=weights)
+        return float(self.weights @ self.residuals**2 + self.precision @ self.pull**2)
 
     def normal(self) -> Array:
-        return np.asarray(self.design.T @ (self.design * self.weights[:, None]))
+        weighted = self.design * self.weights[:, None]
+        return np.asarray(self.design.T @ weighted + np.diag(self.precision))
 
 
-def _solve(pixels: RimPixels, shape: RimShape, light: Light, weights: Array) -> _Solution:
-    """Best light for a shape, by linear least squares, and the derivatives by light and shape."""
-    image = rim_image(pixels, shape)
-    columns, outside, wall = _light_columns(pixels, shape, image, light)
-    weighted = columns * weights[:, None]
-    gram = weighted.T @ columns
-    gram[np.diag_indices_from(gram)] += 1e-6 + 1e-9 * np.diag(gram).max()
-    levels = np.linalg.solve(gram, weighted.T @ pixels.grey)
-    plate_grey = outside @ levels[: outside.shape[1]]
-    dark_grey = float(levels[-1])
-    if wall is None:
-        by_shape = (plate_grey - dark_grey)[:, None] * image.outside_by_shape
-    else:
-        wall_grey = wall @ levels[outside.shape[1] : -1]
-        by_shape = (plate_grey - wall_grey)[:, None] * image.outside_by_shape
-        by_shape += (wall_grey - dark_grey)[:, None] * image.not_dark_by_shape
-    return _Solution(
-        shape,
-        weights,
-        pixels.grey - columns @ levels,
-        np.hstack([columns, by_shape]),
-        columns.shape[1],
-        float(np.mean(plate_grey)) - dark_grey,
-    )
+@dataclass(frozen=True, slots=True)
+class _Problem:
+    pixels: RimPixels
+    light: Light
+    prior: Prior
+
+    def first(self, shape: RimShape) -> _Solution:
+        """Solution at the start: equal weights, then weights from its own residuals."""
+        parts = surfaces(self.pixels, shape, borders(self.pixels, shape), self.light)
+        flat = np.full(len(self.pixels.grey), 1e-2)
+        return self.refreshed(self.solve(shape, parts, flat))
+
+    def refreshed(self, solution: _Solution) -> _Solution:
+        """The same shape with weights and light terms brought up to date."""
+        shape = solution.shape
+        parts = surfaces(self.pixels, shape, borders(self.pixels, shape), self.light)
+        return self.solve(shape, parts, weights_of(solution.residuals, solution.outside))
+
+    def solve(self, shape: RimShape, parts: Sequence[Surface], weights: Array) -> _Solution:
+        """Best light for a shape, by linear least squares, and the derivatives of all pixels.
+
+        A pixel is the sum of its surfaces' greys times the shares that they cover.
+        """
+        edges = borders(self.pixels, shape)
+        columns = np.hstack([part.columns * part.share(edges)[:, None] for part in parts])
+        light_precision = np.concatenate([part.sigma_grey for part in parts]) ** -2.0
+        weighted = columns * weights[:, None]
+        gram = weighted.T @ columns
+        gram[np.diag_indices_from(gram)] += light_precision + 1e-9 * np.diag(gram).max()
+        levels = np.linalg.solve(gram, weighted.T @ self.pixels.grey)
+        by_shape = np.zeros((len(weights), len(shape.vector)))
+        ends = np.cumsum([part.columns.shape[1] for part in parts])[:-1]
+        for part, amplitudes in zip(parts, np.split(levels, ends), strict=True):
+            grey = (part.columns @ amplitudes)[:, None]
+            if part.inner is not None:
+                by_shape += grey * edges[part.inner].by_shape
+            if part.outer is not None:
+                by_shape -= grey * edges[part.outer].by_shape
+        return _Solution(
+            shape,
+            parts,
+            weights,
+            self.pixels.grey - columns @ levels,
+            np.hstack([columns, by_shape]),
+            np.concatenate([light_precision, self.prior.sigma**-2.0]),
+            np.concatenate([-levels, self.prior.mean - shape.vector]),
+            edges[0 if shape.ring_ratio is None else 1].outside,
+        )
 
 
-def _light_columns(
-    pixels: RimPixels, shape: RimShape, image: RimImage, light: Light
-) -> tuple[Array, Array, Array | None]:
-    """Columns of the linear model, and the polynomials outside and on the wall."""
-    x, y = ((pixels.points - shape.centre) / shape.radius).T
-    radius = np.maximum(np.hypot(x, y), 1e-6)
-    cos, sin, above, one = x / radius, y / radius, radius - 1.0, np.ones_like(x)
-    outside = np.column_stack([one, x, y])
-    if light.cone:
-        double = [cos * cos - sin * sin, 2.0 * sin * cos]
-        outside = np.column_stack([one, cos, sin, *double, above, above * cos, above * sin])
-    dark = (1.0 - image.not_dark)[:, None]
-    plate = outside * image.outside[:, None]
-    if shape.wall_ratio is None:
-        return np.hstack([plate, dark]), outside, None
-    wall = np.column_stack([one, cos, sin, above])
-    seen = (image.not_dark - image.outside)[:, None]
-    return np.hstack([plate, wall * seen, dark]), outside, wall
+def _no_prior(shape: RimShape) -> Prior:
+    return Prior(shape.vector, np.full(len(shape.vector), np.inf))
 
 
-def _moved(solution: _Solution, damping: float, px: float) -> RimShape:
+def _moved(solution: _Solution, damping: float, problem: _Problem) -> RimShape:
     """The shape after a damped Gauss-Newton step, inside what is physically possible."""
     normal = solution.normal()
     size = np.sqrt(np.diag(normal)) + 1e-12
     scaled = normal / np.outer(size, size)
     scaled[np.diag_indices_from(scaled)] += damping + 1e-10
     gradient = solution.design.T @ (solution.residuals * solution.weights)
+    gradient += solution.precision * solution.pull
     step = (np.linalg.solve(scaled, gradient / size) / size)[solution.lights :]
-    longest = float(np.abs(step[:3]).max()) / px
+    longest = float(np.abs(step[:3]).max()) / problem.pixels.unit_px
     vector = solution.shape.vector + step * min(1.0, _MAX_STEP_PX / max(longest, 1e-12))
-    vector[3] = np.clip(vector[3], *_BLUR_LIMITS_PX)
-    if len(vector) > 4:
-        vector[4] = np.clip(vector[4], 0.0, _MAX_WALL_RATIO)
-    return RimShape.from_vector(vector)
-
-
-def _huber_weights(residuals: Array) -> Array:
-    limit = _HUBER * max(_robust_sigma(residuals), _MIN_SCALE_GREY)
-    return np.asarray(np.minimum(1.0, limit / np.maximum(np.abs(residuals), 1e-12)))
-
-
-def _robust_sigma(residuals: Array) -> float:
-    return 1.4826 * float(np.median(np.abs(residuals - np.median(residuals))))
-
-
-def _plane_units_per_px(pixels: RimPixels) -> float:
-    return float(np.sqrt(np.abs(np.mean(np.linalg.det(pixels.jacobian)))))
+    moved = solution.shape.with_vector(vector)
+    wall, ring = moved.wall_ratio, moved.ring_ratio
+    return replace(
+        moved,
+        blur_px=float(np.clip(moved.blur_px, *_BLUR_LIMITS_PX)),
+        wall_ratio=None if wall is None else float(np.clip(wall, 0.0, _MAX_WALL_RATIO)),
+        ring_ratio=None if ring is None else float(np.clip(ring, *_RING_LIMITS)),
+    )
 
 
 def _bic(solution: _Solution) -> float:
-    count = len(solution.residuals)
-    mean_square = solution.cost / float(solution.weights.sum())
-    free = solution.design.shape[1]
-    return count * float(np.log(max(mean_square, 1e-6))) + free * float(np.log(count))
+    residuals = np.abs(solution.residuals)
+    count = len(residuals)
+    limit = 4.0 * max(float(np.median(residuals)), 0.2)
+    mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
+    free = int(np.count_nonzero(solution.precision == 0.0))
+    return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
-def _result(pixels: RimPixels, solution: _Solution, *, converged: bool) -> RimFit:
-    sigma = max(_robust_sigma(solution.residuals), _MIN_SCALE_GREY)
-    freedom = float(solution.weights.sum()) - solution.design.shape[1]
-    variance = solution.cost / max(freedom, 1.0)
+def _result(problem: _Problem, solution: _Solution, *, converged: bool) -> RimFit:
     normal = solution.normal()
     size = np.sqrt(np.diag(normal)) + 1e-12
     scaled = normal / np.outer(size, size)
     inverse = np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(size, size)
     geometry = slice(solution.lights, solution.lights + 3)
+    influence = (solution.design @ inverse[:, geometry]) * solution.weights[:, None]
+    offset = problem.pixels.points - solution.shape.centre
+    factor = scatter_factor(
+        influence[:, :2] * solution.residuals[:, None],
+        np.arctan2(offset[:, 1], offset[:, 0]),
+        inverse[geometry, geometry][:2, :2],
+    )
+    wide = np.eye(3)
+    wide[:2, :2] = factor
+    outside = solution.outside
+    grey = problem.pixels.grey - solution.residuals
     return RimFit(
         shape=solution.shape,
-        covariance=inverse[geometry, geometry] * variance,
-        residual_grey=sigma,
-        contrast_grey=solution.contrast_grey,
-        explained=float(np.mean(np.abs(solution.residuals) < 3.0 * sigma)),
+        covariance=wide @ inverse[geometry, geometry] @ wide.T,
+        residual_grey=float(np.sqrt(np.mean(solution.residuals**2))),
+        contrast_grey=float(
+            np.average(grey, weights=outside + 1e-9)
+            - np.average(grey, weights=1.0 - outside + 1e-9)
+        ),
         bic=_bic(solution),
         converged=converged,
-        pixels=len(pixels.grey),
     )
