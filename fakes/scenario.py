@@ -225,6 +225,7 @@ class Chessboard(Section):
     bow_spread_mm: float
     distance_mm: Pair
     """From the middle between the cameras."""
+    offset_mm: Pair
     tilt_deg: float
     turn_rad: float
 

@@ -4,10 +4,11 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.scenario import HeadName, Scenario
-from fakes.world.frames import MM, Array, displacement, from_written, stream
+from fakes.world.frames import MM, displacement, from_written, stream
 
-_PRINT_MARGIN = 1.1
-"""For lens distortion and the growth of the near side of a tilted board."""
+_EDGE_PX = 40.0
+"""Room for lens distortion and for lenses that differ from the nominal one."""
+_DRAWS = 1000
 
 
 def target_board_pose(scenario: Scenario, seed: int, head: HeadName, number: int) -> RigidTransform:
@@ -26,41 +27,42 @@ def target_board_pose(scenario: Scenario, seed: int, head: HeadName, number: int
 
 
 def chessboard_view(scenario: Scenario, seed: int, head: HeadName, number: int) -> RigidTransform:
-    """camera_T_board of one view: all of the print in both images, else spread at random.
+    """camera_T_board of one view: all of the print in both images, else spread at random."""
+    rng = stream(seed, "chessboard view", head, number)
+    for _ in range(_DRAWS):
+        view = _random_view(scenario, rng)
+        if _all_in_view(scenario, view):
+            return view
+    raise ValueError("the chessboard of the scenario fits no view of the heads")
 
-    Over the depth of the stereo overlap, sideways as far as the images allow, tilted, and turned
-    by a quarter where that fits.
-    """
-    board, rng = scenario.chessboard, stream(seed, "chessboard view", head, number)
-    half_toe_in = np.deg2rad(scenario.cameras.toe_in_deg / 2)
-    depth = rng.uniform(*board.distance_mm)
-    quarter = rng.choice([False, True])
-    room = _room_mm(scenario, depth, quarter=bool(quarter))
-    if room.min() < 0:
-        quarter, room = False, np.maximum(_room_mm(scenario, depth, quarter=False), 0.0)
-    side = rng.uniform(-1, 1, 2) * room
-    between = Rotation.from_euler("y", -half_toe_in)
-    half_baseline = scenario.cameras.baseline_mm / 2
-    middle = half_baseline * np.array([np.cos(half_toe_in), 0.0, np.sin(half_toe_in)])
-    place = middle + between.apply([*side, depth])
+
+def _random_view(scenario: Scenario, rng: np.random.Generator) -> RigidTransform:
+    """Over the depth of the stereo overlap, sideways, tilted, turned by any quarter."""
+    board = scenario.chessboard
+    side = rng.uniform(-1, 1, 2) * np.array(board.offset_mm)
+    between = Rotation.from_euler("y", -_half_toe_in(scenario))
+    across, depth = scenario.cameras.baseline_mm / 2, rng.uniform(*board.distance_mm)
+    place = between.apply([across + side[0], side[1], depth])
     heading, tilt = rng.uniform(0, 2 * np.pi), np.deg2rad(board.tilt_deg) * np.sqrt(rng.random())
     lean = Rotation.from_rotvec(tilt * np.array([np.cos(heading), np.sin(heading), 0.0]))
-    turn = Rotation.from_euler("z", quarter * np.pi / 2 + rng.uniform(-1, 1) * board.turn_rad)
-    facing = between * Rotation.from_euler("x", np.pi)
-    return RigidTransform.from_components(place * MM, facing * lean * turn)
+    turn_rad = rng.integers(2) * np.pi / 2 + rng.uniform(-1, 1) * board.turn_rad
+    facing = between * Rotation.from_euler("x", np.pi) * lean * Rotation.from_euler("z", turn_rad)
+    return RigidTransform.from_components(place * MM, facing)
 
 
-def _room_mm(scenario: Scenario, depth_mm: float, *, quarter: bool) -> Array:
-    """How far the board may go sideways before its print leaves one of the images."""
+def _all_in_view(scenario: Scenario, camera_T_board: RigidTransform) -> bool:
     cameras, board = scenario.cameras, scenario.chessboard
-    width, height = cameras.image_px
-    x, y = cameras.centre_px
-    reach_px = np.array([min(x, width - x), min(y, height - y)])
-    half_toe_in = np.deg2rad(cameras.toe_in_deg / 2)
-    crossing_mm = cameras.baseline_mm / 2 / np.tan(half_toe_in)
-    apart_mm = abs(depth_mm - crossing_mm) * np.tan(half_toe_in)
-    half_print = (np.array(board.inner_corners) + 1) * board.square_mm / 2
-    if quarter:
-        half_print = half_print[::-1]
-    view_mm = reach_px * depth_mm / cameras.focal_px - np.array([apart_mm, 0.0])
-    return np.asarray(view_mm - _PRINT_MARGIN * half_print)
+    half_x, half_y = (np.array(board.inner_corners) + 1) * board.square_mm / 2 * MM
+    print_corners = np.array([[x, y, 0.0] for x in (-half_x, half_x) for y in (-half_y, half_y)])
+    in_left = camera_T_board.apply(print_corners)
+    across = Rotation.from_euler("y", -_half_toe_in(scenario)).apply([1.0, 0.0, 0.0])
+    toe_in = Rotation.from_euler("y", 2 * _half_toe_in(scenario))
+    in_right = toe_in.apply(in_left - across * cameras.baseline_mm * MM)
+    points = np.vstack([in_left, in_right])
+    pixels = points[:, :2] / points[:, 2:] * cameras.focal_px + cameras.centre_px
+    inside = (pixels > _EDGE_PX) & (pixels < np.array(cameras.image_px) - _EDGE_PX)
+    return bool(inside.all())
+
+
+def _half_toe_in(scenario: Scenario) -> float:
+    return float(np.deg2rad(scenario.cameras.toe_in_deg / 2))

@@ -21,7 +21,7 @@ def from_written(xyz_mm_abc_deg: Sequence[float]) -> RigidTransform:
 
 def to_written(pose: RigidTransform) -> list[float]:
     """x, y, z in mm and A, B, C in degrees."""
-    abc_deg = pose.rotation.as_euler("ZYX", degrees=True)
+    abc_deg = pose.rotation.as_euler("ZYX", degrees=True, suppress_warnings=True)
     return [float(value) for value in (*(pose.translation / MM), *abc_deg)]
 
 

@@ -1,0 +1,126 @@
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from fakes.scenario import Scenario
+from fakes.world.arm import forward, nominal_links
+from fakes.world.frames import from_written
+from fakes.world.robot import RefusedMotionError, RobotArm
+from fakes.world.truth import draw
+
+
+def arm_of(scenario: Scenario, seed: int = 1) -> RobotArm:
+    return RobotArm(scenario.robots["main"], draw(scenario, seed).robots["main"], seed)
+
+
+def at_work(scenario: Scenario, seed: int = 1) -> tuple[RobotArm, float]:
+    arm = arm_of(scenario, seed)
+    arm.start_joint(0.0, np.deg2rad([0, -52.766, 109.14, 0, 33.626, 90]), 100)
+    return arm, arm.standstill_s
+
+
+def shifted(arm: RobotArm, time_s: float, z_m: float) -> RigidTransform:
+    return RigidTransform.from_translation([0, 0, z_m]) * arm.encoder_pose(time_s)
+
+
+def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario):
+    arm, t = at_work(scenario)
+    speed, settings = 0.01, scenario.robots["main"]
+    arm.start_linear(t, shifted(arm, t, -0.05), speed, 0.2)
+    ask_s = t + 2.0
+    before = arm.encoder_pose(ask_s).translation[2]
+    arm.stop(ask_s)
+    latency_s = settings.stop_latency_ms / 1000
+    braking = settings.stop_deceleration_mm_s2 / 1000
+    over = before - arm.encoder_pose(arm.standstill_s).translation[2]
+    assert arm.standstill_s == pytest.approx(ask_s + latency_s + speed / braking)
+    assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), abs=1e-7)
+    assert arm.cut_short
+
+
+def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenario):
+    arm, t = at_work(scenario)
+    target = shifted(arm, t, -0.001)
+    arm.start_linear(t, target, 0.05, 0.2)
+    arm.stop(t + 0.05)
+    assert not arm.cut_short
+    np.testing.assert_allclose(
+        arm.encoder_pose(arm.standstill_s).translation, target.translation, atol=1e-9
+    )
+
+
+def test_repeatability_over_long_ways(scenario: Scenario):
+    """The stated ±0.05 mm is three standard deviations of what a long way leaves behind."""
+    arm, t = at_work(scenario)
+    here = arm.joints(t)
+    errors = []
+    for _ in range(120):
+        for joints in (here + 0.3, here):
+            arm.start_joint(t, joints, 100)
+            t = arm.standstill_s
+        true = arm.truth.cell_T_base * forward(arm.truth.links, here)
+        errors.append(arm.flange(t).translation - true.translation)
+    sigma_mm = np.std(errors, axis=0) * 1e3
+    np.testing.assert_allclose(sigma_mm, 0.05 / 3, rtol=0.4)
+
+
+def test_small_step_has_a_small_error(scenario: Scenario):
+    arm, t = at_work(scenario)
+    errors = []
+    for index in range(100):
+        before = arm.flange(t)
+        arm.start_linear(t, shifted(arm, t, 1e-4 if index % 2 else -1e-4), 0.01, 0.2)
+        t = arm.standstill_s
+        done = arm.flange(t).translation - before.translation
+        errors.append(done - [0, 0, 1e-4 if index % 2 else -1e-4])
+    assert 1e-6 < np.std(errors) < 4e-6
+
+
+def test_target_beyond_reach_is_refused(scenario: Scenario):
+    arm, t = at_work(scenario)
+    with pytest.raises(RefusedMotionError, match="REACH"):
+        arm.start_linear(t, from_written([3900, 0, 967, 90, 0, 180]), 0.05, 0.2)
+    assert not arm.moving(t)
+
+
+@pytest.mark.parametrize(
+    ("joints_deg", "reason"),
+    [([0, -52.8, 109.1, 0, 0.1, 90], "SINGULAR"), ([0, -52.8, 109.1, 0, 121, 90], "LIMIT")],
+)
+def test_target_that_the_joints_cannot_take_is_refused(
+    scenario: Scenario, joints_deg: list[float], reason: str
+):
+    arm, t = at_work(scenario)
+    chain = nominal_links(scenario.robots["main"].chain_mm)
+    target = forward(chain, np.deg2rad(joints_deg))
+    with pytest.raises(RefusedMotionError, match=reason):
+        arm.start_linear(t, target, 0.05, 0.2)
+
+
+def test_joint_limits_and_percent_are_checked(scenario: Scenario):
+    arm = arm_of(scenario)
+    with pytest.raises(RefusedMotionError, match="LIMIT"):
+        arm.start_joint(0.0, np.deg2rad([0, 30, 0, 0, 0, 0]), 10)
+    with pytest.raises(RefusedMotionError, match="SPEED"):
+        arm.start_joint(0.0, np.zeros(6), 0)
+
+
+def test_step_limits(scenario: Scenario):
+    arm, t = at_work(scenario)
+    arm.check_step(t, shifted(arm, t, 0.5e-3))
+    with pytest.raises(RefusedMotionError, match="STEP"):
+        arm.check_step(t, shifted(arm, t, 0.51e-3))
+
+
+def test_override_slows_down(scenario: Scenario):
+    arm, t = at_work(scenario)
+    arm.override_percent = 50
+    arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 10.0)
+    assert arm.standstill_s - t == pytest.approx(2.0, abs=0.05)
+
+
+def test_true_pose_does_not_jump_when_a_motion_begins(scenario: Scenario):
+    arm, t = at_work(scenario)
+    before = arm.flange(t).translation
+    arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 0.2)
+    np.testing.assert_allclose(arm.flange(t).translation, before, atol=1e-9)
