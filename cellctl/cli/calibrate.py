@@ -89,10 +89,8 @@ def stereo(
     result = calibrate_stereo(found.views, pattern, found.image_size, shape=board_shape)
     for view in result.views:
         mark = "" if view.used else "  REJECTED"
-        console.print(
-            f"  {view.name}: {view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right{mark}",
-            markup=False,
-        )
+        rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
+        console.print(f"  {view.name}: {rms}{mark}", markup=False)
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
     _finish(result, result.warnings, out, picture, lambda: stereo_picture(result))
