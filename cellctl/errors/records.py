@@ -1,7 +1,85 @@
 """8xx: run store and artefacts."""
 
-from cellctl.errors.base import CellError
+from cellctl.errors.base import CellError, Reaction
 
 
 class RecordsError(CellError):
     """The record could not be kept."""
+
+
+class StoreUnavailable(RecordsError):
+    """The run store cannot be opened."""
+
+    number = 801
+    text = "Run store cannot be opened"
+    cause = "Folder missing or not writable, disk full, or a damaged database."
+    remedy = "Check data_dir in the cell file and the disk; restore the store from its backup."
+
+
+class StoreInUse(RecordsError):
+    """Another daemon owns the run store."""
+
+    number = 802
+    text = "Run store is in use by another daemon"
+    cause = "A second cellctl was started on the same data_dir."
+    remedy = "Stop the other daemon or give this one its own data_dir."
+    reaction = Reaction.STOP
+
+
+class RecordNotWritten(RecordsError):
+    """A record did not reach the disk."""
+
+    number = 803
+    text = "A record could not be written"
+    cause = "Disk full, disk failing, or the file system has become read-only."
+    remedy = "Repair the disk, then restart the daemon: after a failed write nothing is retried."
+
+
+class RunUnknown(RecordsError):
+    """There is no such run."""
+
+    number = 804
+    text = "No such run in the store"
+    cause = "Mistyped number, or another data_dir."
+    remedy = "See `cellctl runs list`."
+    reaction = Reaction.STOP
+
+
+class RunClosed(RecordsError):
+    """A closed run was to be changed."""
+
+    number = 805
+    text = "The run is closed and cannot be changed"
+    cause = "A defect, or a run that was closed as interrupted."
+    remedy = "Keep the log and report it."
+    reaction = Reaction.STOP
+
+
+class ArtefactDamaged(RecordsError):
+    """A stored file is missing or not what was stored."""
+
+    number = 806
+    text = "A stored file is missing or has changed"
+    cause = "Deleted or edited by hand, or a failing disk."
+    remedy = "Restore the file from the backup; do not trust this run's files until then."
+    reaction = Reaction.STOP
+
+
+class RecordingUnreadable(RecordsError):
+    """A force recording holds nothing that can be read."""
+
+    number = 807
+    text = "Force recording cannot be read"
+    cause = "Not a recording, or cut before its first chunk."
+    remedy = "Use the figures of the run record."
+    reaction = Reaction.WARN
+
+
+class ValueRefused(RecordsError):
+    """A value does not belong into the record."""
+
+    number = 808
+    text = "Value refused by the run store"
+    cause = "Mistyped, or outside what can be measured."
+    remedy = "See the detail for what is allowed."
+    reaction = Reaction.WARN

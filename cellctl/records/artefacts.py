@@ -1,0 +1,56 @@
+"""Files beside the database, each under the SHA-256 of its bytes: written once, never changed."""
+
+import hashlib
+import os
+from pathlib import Path
+
+from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
+
+
+class ArtefactFolder:
+    """A folder of files by content."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def path(self, sha256: str) -> Path:
+        """Where the bytes with this hash lie."""
+        return self._folder / sha256[:2] / sha256
+
+    def put(self, data: bytes) -> str:
+        """Store bytes durably and return their hash; raises ``RecordNotWritten``."""
+        sha256 = hashlib.sha256(data).hexdigest()
+        path = self.path(sha256)
+        try:
+            if not (path.exists() and path.stat().st_size == len(data)):
+                _write_durably(path, data)
+        except OSError as error:
+            raise RecordNotWritten(f"{path.name}: {error.strerror}") from error
+        return sha256
+
+    def get(self, sha256: str) -> bytes:
+        """The bytes; raises ``ArtefactDamaged`` when they are missing or others."""
+        try:
+            data = self.path(sha256).read_bytes()
+        except OSError as error:
+            raise ArtefactDamaged(f"{sha256[:12]}: {error.strerror}") from error
+        if hashlib.sha256(data).hexdigest() != sha256:
+            raise ArtefactDamaged(f"{sha256[:12]}: content does not match its name")
+        return data
+
+
+def _write_durably(path: Path, data: bytes) -> None:
+    """All or nothing, also over a power cut: file, then name, then directory."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    draft = path.with_suffix(".part")
+    with draft.open("wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    draft.replace(path)
+    for folder in (path.parent, path.parent.parent):
+        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

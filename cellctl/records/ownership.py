@@ -1,0 +1,33 @@
+"""One daemon owns a store: a lock that ends with its process."""
+
+import fcntl
+from pathlib import Path
+from typing import IO
+
+from cellctl.errors.records import StoreInUse
+
+
+class Ownership:
+    """An advisory lock on a file beside the database."""
+
+    def __init__(self, file: Path) -> None:
+        self._path = file
+        self._file: IO[str] | None = None
+
+    def take(self) -> None:
+        """Own the store from now on; raises ``StoreInUse``. Idempotent."""
+        if self._file is not None:
+            return
+        file = self._path.open("w", encoding="ascii")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            file.close()
+            raise StoreInUse(str(self._path.parent)) from error
+        self._file = file
+
+    def release(self) -> None:
+        """Let go. Idempotent."""
+        if self._file is not None:
+            self._file.close()
+            self._file = None

@@ -1,0 +1,28 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cellctl.records import RunStore
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[RunStore]:
+    store = RunStore(tmp_path / "runs")
+    yield store
+    store.close()
+
+
+def start(store: RunStore, serial: str = "SAT-0001") -> int:
+    return store.start_run(
+        serial=serial,
+        recipe_id=1,
+        recipe_name="panel 500 x 1000",
+        recipe_hash="ab" * 32,
+        mode="PRODUCTION",
+        software="cellctl 0.1.0",
+        config_hash="cd" * 32,
+        calibration_ids={"head_1": "ef" * 32},
+        simulated=True,
+        operator="OP-7",
+    )
