@@ -2,36 +2,39 @@
 
 import numpy as np
 
-from fakes.render.canvas import Image, Patch
+from fakes.render.canvas import Image, Patch, margin_px
 from fakes.render.coverage import coverage
 from fakes.render.faces import draw_face
 from fakes.render.lattice import NODES_FULL, Window, window_around
 from fakes.render.lens import View
 from fakes.render.model import SceneCharucoBoard
 from fakes.render.options import RenderOptions
-from fakes.render.prints import charuco_print, chessboard_print, print_grey
+from fakes.render.prints import charuco_print, chessboard_print, white_share
 from fakes.render.surface import Height, face_map, surface_map, to_pixels
 from fakes.world.scene import SceneChessboard, SceneTargetBoard
 
 
 def draw_target_board(
-    view: View, image: Image, board: SceneTargetBoard, options: RenderOptions
-) -> None:
-    """Dark plate with white discs."""
+    view: View, image: Image, board: SceneTargetBoard, options: RenderOptions, blur_px: float
+) -> list[Patch]:
+    """Lay the dark plate over ``image``; its white discs are returned, blurred, for later."""
     x, y = face_map(view, board.camera_T_board)
     draw_face(image, x, y, board.size_m, options.black_grey)
     radius_m = board.disc_diameter_m / 2
     angle = np.linspace(0, 2 * np.pi, 48, endpoint=False)
     rim = radius_m * np.column_stack([np.cos(angle), np.sin(angle), np.zeros(48)])
+    patches = []
     for disc in board.discs:
         middle = np.array([*disc.position_m, 0.0])
         pixels = to_pixels(view, board.camera_T_board, rim + middle)
-        window = window_around(view, pixels, 3, options.sub_samples)
+        window = window_around(view, pixels, margin_px(blur_px), options.sub_samples)
         if window is None:
             continue
         x_disc, y_disc = surface_map(view, board.camera_T_board, window)
-        outside = window.mean(coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m))
-        Patch(window, outside, (1 - outside) * options.white_grey).lay_over(image)
+        outside = coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m)
+        grey = (1 - outside) * options.white_grey
+        patches.append(Patch.from_cells(window, outside, grey, blur_px))
+    return patches
 
 
 def draw_chessboard(
@@ -39,18 +42,18 @@ def draw_chessboard(
     image: Image,
     board: SceneChessboard | SceneCharucoBoard,
     options: RenderOptions,
-) -> None:
-    """Printed board: every edge exact, through bow and lens."""
+    blur_px: float,
+) -> list[Patch]:
+    """Lay white paper over ``image``; its print is returned, blurred, for later."""
     if isinstance(board, SceneChessboard):
         pattern = chessboard_print(board)
     else:
         pattern = charuco_print(board)
-    pose, window = board.camera_T_board, Window.full(view)
-    x, y = surface_map(view, pose, window, z_m=_bow(board), nodes=NODES_FULL)
-    white = print_grey(pattern, x, y, sub=options.sub_samples)
-    white *= options.white_grey - options.black_grey
-    white += options.black_grey
-    draw_face(image, x, y, board.size_m, white)
+    window = Window.full(view)
+    x, y = surface_map(view, board.camera_T_board, window, z_m=_bow(board), nodes=NODES_FULL)
+    draw_face(image, x, y, board.size_m, options.white_grey)
+    dark = np.float32(options.black_grey / options.white_grey)
+    return [Patch(window, dark + (1 - dark) * white_share(pattern, x, y, blur_px))]
 
 
 def _bow(board: SceneChessboard | SceneCharucoBoard) -> float | Height:

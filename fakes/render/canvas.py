@@ -1,14 +1,20 @@
-"""The picture under construction, and the patches that are laid over it from far to near."""
+"""The picture under construction, and the patches that are laid over it."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fakes.render.lattice import Window
 from fakes.render.lens import Array
+from fakes.render.sensor import REACH, Image, blurred_cells
 
-Image = NDArray[np.float32]
+__all__ = ["Image", "Patch", "margin_px"]
+
+
+def margin_px(blur_px: float) -> int:
+    """How far a blurred object reaches beyond its outline."""
+    return 3 + int(np.ceil(REACH * blur_px))
 
 
 @dataclass(frozen=True, slots=True)
@@ -16,13 +22,23 @@ class Patch:
     """What a small object does to the picture below it: ``below * through + grey``."""
 
     window: Window
-    through: Array
+    through: Array | Image
     """Part of each pixel in which the picture below stays visible."""
-    grey: Array
+    grey: Array | float = 0.0
     """Grey that the object adds, already weighted with its part of the pixel."""
 
-    def lay_over(self, image: Image) -> None:
-        """Change ``image`` in place."""
+    @classmethod
+    def from_cells(cls, window: Window, through: Array, grey: Array, blur_px: float) -> Self:
+        """From values of the window's cells, through blur and pixel box."""
+        sigma = blur_px * window.sub
+        return cls(
+            window,
+            window.mean(blurred_cells(through, sigma)),
+            window.mean(blurred_cells(grey, sigma)),
+        )
+
+    def lay_over(self, image: Image, light: Image | None = None) -> None:
+        """Change ``image`` in place; ``light`` falls on the object's own grey."""
         part = image[self.window.slices]
-        part *= self.through.astype(np.float32)
-        part += self.grey.astype(np.float32)
+        part *= self.through
+        part += self.grey if light is None else self.grey * light[self.window.slices]

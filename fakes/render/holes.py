@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.render.canvas import Patch
+from fakes.render.canvas import Patch, margin_px
 from fakes.render.coverage import coverage
 from fakes.render.lattice import Window, window_around
 from fakes.render.lens import Array, View
@@ -81,6 +81,7 @@ def hole_patch(
     options: RenderOptions,
     *,
     light_azimuth: float,
+    blur_px: float,
     below: ScenePlate | None = None,
 ) -> Patch | None:
     """One hole as this camera sees it, or None when it is outside the image.
@@ -89,13 +90,13 @@ def hole_patch(
     """
     pose = plate.camera_T_part
     rim = to_pixels(view, pose, circle(hole, outer_diameter(hole), 0.0))
-    window = window_around(view, rim, 3, options.sub_samples)
+    window = window_around(view, rim, margin_px(blur_px), options.sub_samples)
     if window is None:
         return None
     rays = _rays(view, pose, hole, window)
     azimuth = _azimuth_in_part(pose, light_azimuth)
     visible = 1 - coverage(rays.radius(0.0) - outer_diameter(hole) / 2)
-    through = window.mean(1 - visible)
+    through = 1 - visible
     grey = np.zeros_like(visible)
     depth_m = rim_depth(hole, options)
     radius_m = hole.diameter_m / 2
@@ -109,7 +110,7 @@ def hole_patch(
     wall = coverage(rays.radius(hole.depth_m) - radius_m)
     grey += visible * wall * _wall_grey(rays, radius_m, hole.depth_m, options, azimuth)
     grey += visible * (1 - wall) * _bottom_grey(view, hole, window, options, below)
-    return Patch(window, through, window.mean(grey))
+    return Patch.from_cells(window, through, grey, blur_px)
 
 
 def _rays(view: View, pose: RigidTransform, hole: SceneHole, window: Window) -> _Rays:

@@ -106,4 +106,6 @@ def nominal_chessboard(
     pose: RigidTransform | None = None, *, bow_m: tuple[float, float] = (0.0, 0.0)
 ) -> SceneChessboard:
     """11 × 8 inner corners, 20 mm pitch."""
-    return SceneChessboard(pose or facing_pose(), (11, 8), 0.02, (0.28, 0.22), bow_m, 1)
+    return SceneChessboard(
+        facing_pose() if pose is None else pose, (11, 8), 0.02, (0.28, 0.22), bow_m, 1
+    )

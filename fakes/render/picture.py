@@ -1,9 +1,11 @@
 """From a scene to the clean picture of each camera."""
 
+from functools import partial
+
 import numpy as np
 
 from fakes.render.boards import draw_chessboard, draw_target_board
-from fakes.render.canvas import Image
+from fakes.render.canvas import Image, Patch
 from fakes.render.lens import View, views
 from fakes.render.light import light_direction, light_field
 from fakes.render.model import SceneCharucoBoard, SceneObject, pose_of
@@ -37,29 +39,60 @@ def clean_pair(
 def clean_picture(
     view: View, objects: tuple[SceneObject, ...], options: RenderOptions, light_seed: int
 ) -> Image:
-    """Picture of one camera, farther objects drawn first; faces turned away are left out."""
+    """Picture of one camera, farther objects drawn first; faces turned away are left out.
+
+    The nearest object is the one that is measured: its edges are blurred in fine cells.
+    """
     width, height = view.size_px
     image = np.full((height, width), options.floor_grey, dtype=np.float32)
     seen = [item for item in objects if is_seen(view, pose_of(item))]
+    if not seen:
+        return image
     seen.sort(key=lambda item: -float(pose_of(item).translation[2]))
     azimuth = light_direction(light_seed)
-    plates = [item for item in seen if isinstance(item, ScenePlate)]
-    for item in seen:
-        match item:
-            case ScenePlate():
-                place = plates.index(item)
-                below = plates[place - 1] if place > 0 else None
-                above = plates[place + 1] if place + 1 < len(plates) else None
-                draw_plate(
-                    view, image, item, options, light_azimuth=azimuth, below=below, above=above
-                )
-            case SceneTargetBoard():
-                draw_target_board(view, image, item, options)
-            case SceneChessboard() | SceneCharucoBoard():
-                draw_chessboard(view, image, item, options)
-    if seen:
-        image *= light_field(view, pose_of(seen[-1]), light_seed, options)
-    return blurred(image, view.lens.blur_px)
+    draw = partial(_draw, view, image, seen=seen, options=options, light_azimuth=azimuth)
+    for item in seen[:-1]:
+        for patch in draw(item, blur_px=0.0):
+            patch.lay_over(image)
+    blur_px = view.lens.blur_px
+    measured = draw(seen[-1], blur_px=blur_px)
+    light = light_field(view, pose_of(seen[-1]), light_seed, options)
+    image *= light
+    image = blurred(image, blur_px)
+    for patch in measured:
+        patch.lay_over(image, light)
+    return image
+
+
+def _draw(
+    view: View,
+    image: Image,
+    item: SceneObject,
+    *,
+    seen: list[SceneObject],
+    options: RenderOptions,
+    light_azimuth: float,
+    blur_px: float,
+) -> list[Patch]:
+    """Lay one object over ``image``; what must be exact is returned, blurred by ``blur_px``."""
+    match item:
+        case ScenePlate():
+            plates = [other for other in seen if isinstance(other, ScenePlate)]
+            place = plates.index(item)
+            return draw_plate(
+                view,
+                image,
+                item,
+                options,
+                light_azimuth=light_azimuth,
+                blur_px=blur_px,
+                below=plates[place - 1] if place > 0 else None,
+                above=plates[place + 1] if place + 1 < len(plates) else None,
+            )
+        case SceneTargetBoard():
+            return draw_target_board(view, image, item, options, blur_px)
+        case SceneChessboard() | SceneCharucoBoard():
+            return draw_chessboard(view, image, item, options, blur_px)
 
 
 def scene_objects(scene: CameraScene) -> tuple[SceneObject, ...]:

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from fakes.render.canvas import Image
+from fakes.render.canvas import Image, Patch
 from fakes.render.clutter import draw_clutter
 from fakes.render.faces import draw_face, draw_sides
 from fakes.render.holes import hole_patch
@@ -24,10 +24,11 @@ def draw_plate(
     options: RenderOptions,
     *,
     light_azimuth: float,
+    blur_px: float,
     below: ScenePlate | None = None,
     above: ScenePlate | None = None,
-) -> None:
-    """Lay a part over ``image``.
+) -> list[Patch]:
+    """Lay the face of a part over ``image``; its holes are returned, blurred, for later.
 
     ``below`` is the part that shows through its through holes. ``above`` is a part that will be
     laid over this one: when it hides all holes in view, details are not worth their time.
@@ -47,7 +48,7 @@ def draw_plate(
     )
     if above is not None and not shown:
         draw_face(image, x, y, plate.size_m, options.plate_grey)
-        return
+        return []
     face: Image | float = options.plate_grey
     if options.texture_grey > 0:
         face = sample(brushed_tile(plate.seed), x, y)
@@ -55,10 +56,13 @@ def draw_plate(
         face += np.float32(options.plate_grey)
     draw_face(image, x, y, plate.size_m, face)
     draw_clutter(view, image, plate, options, light_azimuth)
-    for hole in shown:
-        patch = hole_patch(view, plate, hole, options, light_azimuth=light_azimuth, below=below)
-        if patch is not None:
-            patch.lay_over(image)
+    patches = (
+        hole_patch(
+            view, plate, hole, options, light_azimuth=light_azimuth, blur_px=blur_px, below=below
+        )
+        for hole in shown
+    )
+    return [patch for patch in patches if patch is not None]
 
 
 def _is_hidden(view: View, plate: ScenePlate, hole: SceneHole, above: ScenePlate) -> bool:

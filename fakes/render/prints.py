@@ -6,14 +6,17 @@ from typing import Final
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtr
 
 from fakes.render.canvas import Image
 from fakes.render.coverage import half_plane
 from fakes.render.lens import Array
 from fakes.render.model import SceneCharucoBoard
+from fakes.render.sensor import REACH
 from fakes.world.scene import SceneChessboard
 
 _LOOKUP: Final = 16384
+_PIXEL_VARIANCE: Final = 1 / 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,48 +67,81 @@ def _all_lines(count: int, square_m: float, steps: Array) -> Array:
     return np.append(np.add.outer(starts, steps).ravel(), count / 2 * square_m)
 
 
-def print_grey(pattern: Print, x_m: Array, y_m: Array, *, sub: int) -> Image:
-    """Part of white in every pixel; ``x_m``, ``y_m`` are surface coordinates of the pixels.
+def white_share(pattern: Print, x_m: Array, y_m: Array, blur_px: float) -> Image:
+    """Share of white in every pixel, blur included; ``x_m``, ``y_m`` are the pixels' coordinates.
 
-    Away from edges a pixel has the field at its middle. Where a neighbour differs, the pixel is
-    divided into ``sub`` × ``sub`` cells, each with its exact share beyond the nearest lines.
+    Away from edges it is the field at the pixel's middle. Near edges the lines are straight over
+    the reach of the blur, so that the convolution with Gaussian and pixel box has a closed form;
+    where two lines cross, their shares are correlated by the cosine between their normals.
     """
     column = _lookup(pattern.lines_x, x_m)
     row = _lookup(pattern.lines_y, y_m)
     field = pattern.white.astype(np.uint8)[row, column]
-    kernel = np.ones((3, 3), np.uint8)
-    at_edge = cv2.dilate(field, kernel) != cv2.erode(field, kernel)
-    at_edge[[0, -1]] = False
-    at_edge[:, [0, -1]] = False
-    rows, columns = np.nonzero(at_edge)
-    grey = field.astype(np.float32)
-    side_x, share_x = _beyond(pattern.lines_x, x_m, rows, columns, sub)
-    side_y, share_y = _beyond(pattern.lines_y, y_m, rows, columns, sub)
+    reach = 1 + int(np.ceil(REACH * blur_px))
+    kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    places = np.nonzero(cv2.dilate(field, kernel) != cv2.erode(field, kernel))
+    side_x = _nearest_line(pattern.lines_x, x_m, *places)
+    side_y = _nearest_line(pattern.lines_y, y_m, *places)
     white = pattern.white.astype(np.float64)
-    low, high = white[side_y, side_x][:, None], white[side_y + 1, side_x][:, None]
-    at_left = low + share_y * (high - low)
-    low, high = white[side_y, side_x + 1][:, None], white[side_y + 1, side_x + 1][:, None]
-    at_right = low + share_y * (high - low)
-    grey[rows, columns] = (at_left + share_x * (at_right - at_left)).mean(axis=1)
-    return grey
+    near_near, near_far = white[side_y.index, side_x.index], white[side_y.index, side_x.index + 1]
+    far_near = white[side_y.index + 1, side_x.index]
+    far_far = white[side_y.index + 1, side_x.index + 1]
+    share_x, share_y = side_x.share(blur_px), side_y.share(blur_px)
+    near = near_near + share_x * (near_far - near_near)
+    far = far_near + share_x * (far_far - far_near)
+    saddle = far_far - far_near - near_far + near_near
+    value = near + share_y * (far - near) + saddle * _crossing(side_x, side_y, blur_px)
+    result = field.astype(np.float32)
+    result[places] = value
+    return result
 
 
-def _beyond(
-    lines: Array, coordinate: Array, rows: NDArray[np.intp], columns: NDArray[np.intp], sub: int
-) -> tuple[NDArray[np.intp], Array]:
-    """For pixels (N): index of the nearest line, and the share of each cell (N, sub²) beyond it."""
+@dataclass(frozen=True, slots=True)
+class _Line:
+    """The nearest line of each of N pixels."""
+
+    index: NDArray[np.intp]
+    distance: Array
+    """Of the pixel's middle beyond the line, px."""
+    normal_x: Array
+    normal_y: Array
+
+    def share(self, blur_px: float) -> Array:
+        """Share of the pixel beyond the line."""
+        if blur_px <= 0:
+            return half_plane(self.distance, self.normal_x, self.normal_y)
+        sigma2 = blur_px**2 + _PIXEL_VARIANCE
+        z = self.distance / np.sqrt(sigma2)
+        excess = -(self.normal_x**4 + self.normal_y**4) / (120 * sigma2**2)
+        return np.asarray(ndtr(z) - excess / 24 * (z**3 - 3 * z) * _normal_density(z))
+
+
+def _crossing(first: _Line, second: _Line, blur_px: float) -> Array:
+    """What the share beyond both lines exceeds the product of their shares by (Mehler's series)."""
+    if blur_px <= 0:
+        return np.zeros_like(first.distance)
+    sigma = np.sqrt(blur_px**2 + _PIXEL_VARIANCE)
+    u, v = first.distance / sigma, second.distance / sigma
+    cosine = first.normal_x * second.normal_x + first.normal_y * second.normal_y
+    series = 1 + cosine / 2 * u * v + cosine**2 / 6 * (u**2 - 1) * (v**2 - 1)
+    return np.asarray(cosine * series * _normal_density(u) * _normal_density(v))
+
+
+def _nearest_line(
+    lines: Array, coordinate: Array, rows: NDArray[np.intp], columns: NDArray[np.intp]
+) -> _Line:
     here = coordinate[rows, columns]
-    slope_x = (coordinate[rows, columns + 1] - coordinate[rows, columns - 1]) / 2
-    slope_y = (coordinate[rows + 1, columns] - coordinate[rows - 1, columns]) / 2
-    middles = (lines[1:] + lines[:-1]) / 2
-    nearest = np.searchsorted(middles, here)
+    up, down = np.maximum(rows - 1, 0), np.minimum(rows + 1, coordinate.shape[0] - 1)
+    left, right = np.maximum(columns - 1, 0), np.minimum(columns + 1, coordinate.shape[1] - 1)
+    slope_x = (coordinate[rows, right] - coordinate[rows, left]) / (right - left)
+    slope_y = (coordinate[down, columns] - coordinate[up, columns]) / (down - up)
     length = np.hypot(slope_x, slope_y)
-    normal_x, normal_y = slope_x / length, slope_y / length
-    offset = (np.arange(sub) + 0.5) / sub - 0.5
-    cell_y, cell_x = (axis.ravel() for axis in np.meshgrid(offset, offset, indexing="ij"))
-    distance = ((here - lines[nearest]) / length)[:, None]
-    distance = distance + np.outer(normal_x, cell_x) + np.outer(normal_y, cell_y)
-    return nearest, half_plane(distance * sub, normal_x[:, None], normal_y[:, None])
+    nearest = np.searchsorted((lines[1:] + lines[:-1]) / 2, here)
+    return _Line(nearest, (here - lines[nearest]) / length, slope_x / length, slope_y / length)
+
+
+def _normal_density(z: Array) -> Array:
+    return np.asarray(np.exp(-0.5 * z * z) / np.sqrt(2 * np.pi))
 
 
 def _lookup(lines: Array, coordinate: Array) -> NDArray[np.int16]:

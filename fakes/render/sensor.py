@@ -6,23 +6,38 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from fakes.render.canvas import Image
+from fakes.render.lens import Array
 from fakes.render.options import RenderOptions
 
 Grey = NDArray[np.uint8]
+Image = NDArray[np.float32]
 
-_REACH: Final = 4.5
+REACH: Final = 4.5
 """Half width of the sampled kernel in standard deviations."""
 
 
 def blurred(image: Image, sigma_px: float) -> Image:
-    """Convolve with a Gaussian point spread; the pixel's own box is already in ``image``."""
+    """Convolve a picture with a Gaussian point spread; the pixel's own box is already in it.
+
+    Pixels are too coarse for the convolution of a sharp edge: its profile would depend on where
+    in a pixel the edge lies. Whatever is measured comes already blurred, from finer cells.
+    """
     if sigma_px <= 0:
         return image
-    size = 2 * int(np.ceil(_REACH * sigma_px)) + 1
-    kernel = cv2.getGaussianKernel(size, sigma_px, cv2.CV_32F)
-    result = cv2.sepFilter2D(image, cv2.CV_32F, kernel, kernel, borderType=cv2.BORDER_REFLECT)
-    return np.asarray(result, dtype=np.float32)
+    return np.asarray(_convolved(image, sigma_px, cv2.CV_32F), dtype=np.float32)
+
+
+def blurred_cells(cells: Array, sigma_cells: float) -> Array:
+    """The same on an array of cells, in double precision."""
+    if sigma_cells <= 0:
+        return cells
+    return np.asarray(_convolved(cells, sigma_cells, cv2.CV_64F), dtype=np.float64)
+
+
+def _convolved(image: Image | Array, sigma: float, depth: int) -> cv2.typing.MatLike:
+    size = 2 * int(np.ceil(REACH * sigma)) + 1
+    kernel = cv2.getGaussianKernel(size, sigma, depth)
+    return cv2.sepFilter2D(image, depth, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
 
 
 def noise_sigma(clean: Image, options: RenderOptions) -> Image:

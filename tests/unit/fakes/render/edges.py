@@ -4,6 +4,8 @@ In a row of pixels that crosses an edge once, the sum of the coverage is exactly
 of the edge over the height of the row. Both sides are compared by that mean.
 """
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -83,3 +85,8 @@ def inner_strips(curve: Array, margin: float = 0.0) -> NDArray[np.int_]:
     """Rows that a curve crosses over their whole height."""
     low, high = curve[:, 1].min() + margin, curve[:, 1].max() - margin
     return np.arange(int(np.ceil(low + 0.5)), int(np.floor(high - 0.5)) + 1)
+
+
+def with_blur(view: View, blur_px: float) -> View:
+    """The same camera out of perfect focus."""
+    return replace(view, lens=replace(view.lens, blur_px=blur_px))
