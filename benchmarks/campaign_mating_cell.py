@@ -38,14 +38,16 @@ class SensorFault:
 
     def spoil(self, time_s: float, raw: Array) -> Array | None:
         """The sample as it arrives."""
-        if time_s < self.from_s:
+        if time_s < self.from_s or self.kind == "saturated":
             self.held = raw
             return raw
         if self.kind == "silent":
             return None
-        if self.kind == "frozen":
-            return self.held
-        return np.full(6, np.nan)
+        return self.held if self.kind == "frozen" else np.full(6, np.nan)
+
+    def saturated(self, time_s: float) -> bool:
+        """A channel is at the end of its range."""
+        return self.kind == "saturated" and time_s >= self.from_s
 
 
 class MatingCell:
@@ -64,7 +66,9 @@ class MatingCell:
         self.guard = WorldGuard(self._identify(), self.flange_T_sensor, self._guard_stop)
         self._stops = 0
         self._ticks = round(self.start_s / TICK_S)
-        self.robot.tick(self.start_s)
+        self.robot.tick(self.start_s, guard_beats=True)
+        raw = self.world.sensor_wrench(self.start_s)
+        self.guard.tick(self.start_s, raw, self.robot.reported)
 
     # -- time -----------------------------------------------------------------------------------
     def advance(self, to_s: float) -> None:
@@ -72,13 +76,11 @@ class MatingCell:
         while (self._ticks + 1) * TICK_S <= to_s:
             self._ticks += 1
             time_s = self._ticks * TICK_S
-            raw = self.world.sensor_wrench(time_s)
-            self.guard.tick(time_s, self.sensor_fault.spoil(time_s, raw), self._reported)
-            self.robot.tick(time_s)
-
-    @property
-    def _reported(self) -> RigidTransform:
-        return self.robot.reported
+            raw = self.sensor_fault.spoil(time_s, self.world.sensor_wrench(time_s))
+            saturated = self.sensor_fault.saturated(time_s)
+            self.guard.tick(time_s, raw, self.robot.reported, saturated=saturated)
+            beats = self.guard.beats(time_s, latched=self.controller.latched)
+            self.robot.tick(time_s, guard_beats=beats)
 
     def _guard_stop(self, time_s: float) -> None:
         self._stops += 1

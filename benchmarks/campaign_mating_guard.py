@@ -1,20 +1,22 @@
-"""The guard without processes: the same limits and detectors, fed once a simulated millisecond."""
+"""The guard without its process: the real monitor, fed once a simulated millisecond."""
 
 import asyncio
-import math
 from collections.abc import Callable
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.force import GuardRefused
 from cellctl.force.compensation import Compensation
 from cellctl.geometry.pose import Array
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.report import Curve, GuardSample, GuardTrip, TareResult, TripReason
+from cellctl.guard.monitor import Monitor
+from cellctl.guard.report import Curve, GuardSample, GuardTrip, TareResult
+from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
+from cellctl.interfaces.stop_channel import FlangeState
 
-SAMPLE_S = 1e-3
-NAMES = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
+POLL_S = 0.005
+STOP_CONFIRM_S = 0.1
+"""As ``GuardSettings``: a stop that is not latched by then withholds the heartbeat."""
 
 
 class WorldGuard:
@@ -26,85 +28,69 @@ class WorldGuard:
         flange_T_sensor: RigidTransform,
         request_stop: Callable[[float], None],
     ) -> None:
-        self._compensation, self._flange_T_sensor = compensation, flange_T_sensor
+        self._monitor = Monitor(_nine(flange_T_sensor), has_channel=True)
+        self._monitor.channel_up = True
+        self._monitor.compensator.set_load(
+            [(float(x), float(y), float(z)) for x, y, z in compensation.A],
+            [float(value) for value in compensation.b],
+            compensation.base_down,
+        )
         self._request_stop = request_stop
-        self._pose: RigidTransform | None = None
-        self._load = np.zeros(6)
-        self._deck_A_sensor = np.eye(6)
-        self._tare = np.zeros(6)
-        self._limits: GuardLimits | None = None
-        self._filtered = np.zeros(6)
-        self._cusum = 0.0
-        self._equal = self._bad = 0
-        self._last = GuardSample(0.0, 0.0, 0, np.zeros(6), np.zeros(6), math.inf)
+        self._flange: RigidTransform | None = None
+        self._invalid = 0
+        self._number = 0
+        self._stop_s: float | None = None
+        self._last: GuardSample | None = None
         self._times: list[float] = []
         self._wrenches: list[Array] = []
         self._raws: list[Array] = []
-        self.trip: GuardTrip | None = None
 
     # -- what the process does ------------------------------------------------------------------
-    def tick(self, time_s: float, raw: Array | None, base_T_flange: RigidTransform) -> None:
+    def tick(
+        self, time_s: float, raw: Array | None, flange: RigidTransform, *, saturated: bool = False
+    ) -> None:
         """One millisecond: a sample, or None when none came."""
-        if raw is None:
-            self._check_silence(time_s)
-            return
-        if not np.isfinite(raw).all():
-            self._bad += 1
-            if self._limits and self._bad >= self._limits.bad_frames:
-                self._stop(time_s, TripReason.SENSOR_INVALID, f"{self._bad} damaged frames")
-            return
-        if base_T_flange is not self._pose:
-            self._pose = base_T_flange
-            rotation = base_T_flange.rotation * self._flange_T_sensor.rotation
-            self._load = self._compensation.load(rotation)
-        wrench = self._deck_A_sensor @ (raw - self._load) - self._tare
-        number = self._last.number + 1
-        self._equal = self._equal + 1 if np.array_equal(raw, self._last.raw) else 1
-        self._last = GuardSample(time_s, time_s, number, wrench, raw, 0.0)
+        if flange is not self._flange:
+            self._flange = flange
+            x, y, z = map(float, flange.translation)
+            state = FlangeState(time_s, (x, y, z), _nine(flange), moving=False, stop_latched=False)
+            self._monitor.flange(state)
+        if raw is not None and not np.isfinite(raw).all():
+            self._invalid += 1
+        elif raw is not None:
+            self._sample(time_s, raw, saturated)
+        self._monitor.sensor_health(self._health, time_s)
+        self._monitor.tick(time_s)
+        if self._monitor.trip is not None and self._stop_s is None:
+            self._stop_s = time_s
+            self._request_stop(time_s)
+
+    def beats(self, time_s: float, *, latched: bool) -> bool:
+        """Whether the heartbeat goes out: not while a stop stays unheard."""
+        if latched or self._stop_s is None:
+            return True
+        return time_s - self._stop_s <= STOP_CONFIRM_S
+
+    @property
+    def _health(self) -> FtHealth:
+        return FtHealth(samples=self._number, invalid=self._invalid)
+
+    def _sample(self, time_s: float, raw: Array, saturated: bool) -> None:  # noqa: FBT001
+        self._number += 1
+        sample = WrenchSample(time_s, time_s, self._number, *raw.tolist(), saturated)
+        wrench = np.array(self._monitor.sample(sample))
+        self._last = GuardSample(time_s, time_s, self._number, wrench, raw, 0.0)
         self._times.append(time_s)
         self._wrenches.append(wrench)
         self._raws.append(raw)
-        self._watch(time_s, wrench)
-
-    def _watch(self, time_s: float, wrench: Array) -> None:
-        limits = self._limits
-        if limits is None or self.trip is not None:
-            return
-        gain = -math.expm1(-SAMPLE_S / limits.filter_s)
-        self._filtered += gain * (wrench - self._filtered)
-        if self._equal >= limits.frozen_samples:
-            self._stop(time_s, TripReason.SENSOR_FROZEN, f"{self._equal} equal samples")
-            return
-        checks = (
-            (TripReason.RAW_LIMIT, wrench, limits.raw),
-            (TripReason.FILTERED_LIMIT, self._filtered, limits.filtered),
-        )
-        for reason, values, bounds in checks:
-            over = np.abs(values) > bounds
-            if over.any():
-                index = int(np.argmax(over))
-                detail = f"{NAMES[index]} {values[index]:.1f} beyond {bounds[index]:.1f}"
-                self._stop(time_s, reason, detail, index)
-                return
-        touch = limits.touch
-        if touch is not None:
-            self._cusum = max(0.0, self._cusum + wrench[2] - touch.drift_n)
-            if self._cusum > touch.threshold_n:
-                self._stop(time_s, TripReason.TOUCH, f"touch at {wrench[2]:.1f} N", 2)
-
-    def _check_silence(self, time_s: float) -> None:
-        limits = self._limits
-        if limits and self.trip is None and time_s - self._last.time_s > limits.stale_s:
-            self._stop(time_s, TripReason.SENSOR_SILENT, f"{limits.stale_s * 1e3:.0f} ms")
-
-    def _stop(
-        self, time_s: float, reason: TripReason, detail: str, component: int | None = None
-    ) -> None:
-        self.trip = GuardTrip(reason, time_s, detail, component)
-        self._request_stop(time_s)
 
     # -- what the client offers -----------------------------------------------------------------
+    @property
+    def trip(self) -> GuardTrip | None:
+        return self._monitor.trip
+
     def latest(self) -> GuardSample:
+        assert self._last is not None
         return self._last
 
     def samples(self, since_s: float) -> Curve:
@@ -115,32 +101,29 @@ class WorldGuard:
         return Curve(times, wrench, raw, np.zeros(len(times)), overrun=False)
 
     async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
-        deck_T_sensor = sensor_T_deck.inv()
-        rotation, (x, y, z) = deck_T_sensor.rotation.as_matrix(), deck_T_sensor.translation
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        self._deck_A_sensor = np.block([[rotation, np.zeros((3, 3))], [cross @ rotation, rotation]])
-        self._tare = np.zeros(6)
+        self._monitor.require_unarmed()
+        place = sensor_T_deck.translation.tolist()
+        self._monitor.compensator.set_deck_frame(_nine(sensor_T_deck), place)
+        self._monitor.signal_jumped()
 
     async def tare(self, duration_s: float) -> TareResult:
-        begin_s = asyncio.get_running_loop().time()
-        await asyncio.sleep(duration_s)
-        curve = self.samples(begin_s)
-        mean = curve.wrench.mean(axis=0)
-        self._tare = self._tare + mean
-        return TareResult(mean, curve.wrench.std(axis=0), len(curve.time_s))
+        self._monitor.begin_tare(duration_s, asyncio.get_running_loop().time())
+        async with asyncio.timeout(duration_s + 1.0):
+            while self._monitor.tare_result is None:  # noqa: ASYNC110 - set by the simulation
+                await asyncio.sleep(POLL_S)
+        found = self._monitor.tare_result
+        return TareResult(np.array(found.mean), np.array(found.sigma), found.samples)
 
     async def arm(self, limits: GuardLimits) -> None:
-        if self.trip is not None:
-            raise GuardRefused("a trip is latched")
-        if asyncio.get_running_loop().time() - self._last.time_s > limits.stale_s + SAMPLE_S:
-            raise GuardRefused("no fresh sample")
-        self._limits = limits
-        self._filtered = self._last.wrench.copy()
-        self._cusum = 0.0
-        self._bad = 0
+        self._monitor.arm(limits, self._health, asyncio.get_running_loop().time())
 
     async def disarm(self) -> None:
-        self._limits = None
+        self._monitor.disarm()
 
     async def acknowledge(self) -> None:
-        self.trip = None
+        self._monitor.acknowledge()
+        self._stop_s = None
+
+
+def _nine(pose: RigidTransform) -> tuple[float, ...]:
+    return tuple(pose.rotation.as_matrix().ravel().tolist())

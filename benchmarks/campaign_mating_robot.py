@@ -34,10 +34,11 @@ class WorldRobot(Robot):
         for channel in CHANNELS:
             controller.opened(channel, SESSION, start_s)
 
-    def tick(self, time_s: float) -> None:
+    def tick(self, time_s: float, *, guard_beats: bool) -> None:
         """Heartbeats out, answers and reports in; once a simulated millisecond."""
-        for link in self._controller.links.values():
-            link.beat_s = time_s
+        for channel, link in self._controller.links.items():
+            if guard_beats or channel != "GRD":
+                link.beat_s = time_s
         for channel, record in self._controller.tick(time_s):
             if channel == "CMD":
                 self._answers[int(record[1])] = record

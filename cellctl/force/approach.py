@@ -36,6 +36,8 @@ class ApproachFigures:
     touch: Cusum
     tare_uncertainty_n: float
     """What tare, drift and pose may leave on the force reading."""
+    step_sigma_m: float
+    """Standard deviation of the length of a single move."""
 
     @property
     def delay_s(self) -> float:
@@ -105,13 +107,18 @@ def approach_speed(
 def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
     """Longest single move (m) that cannot exceed ``limit_n`` even if no stop is ever obeyed.
 
-    Each move starts with the force read at standstill below the detector's drift level, so it can
-    add no more than k times its length.
+    Each move starts below the detector's drift level, so it adds no more than k times its length,
+    and the arm's own error of the move.
     """
     spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
-    if spare_n <= 0.0:
-        raise MatingPlanInvalid(f"no force is left below {limit_n:.1f} N for a single move")
-    return spare_n / figures.stiffness_n_m
+    length_m = spare_n / figures.stiffness_n_m - 3.0 * figures.step_sigma_m
+    if length_m <= figures.step_sigma_m:
+        raise MatingPlanInvalid(
+            f"a single move cannot be kept below {limit_n:.1f} N: stiffness "
+            f"{figures.stiffness_n_m / 1e3:.0f} N/mm, error of a move "
+            f"{figures.step_sigma_m * 1e6:.1f} µm"
+        )
+    return length_m
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,11 @@ Stability: the error e = F_ref − F obeys e' = (1 − T k/(S + M/T + T k_hat)) 
 changing sign when ``k ≤ k_hat + S/T + M/T²``, and is stable up to twice that; explicit Euler has
 no k_hat in the denominator and needs S > T k/2. With k_hat an upper bound of the stiffness the
 force never overshoots, whatever T is. k_hat then falls towards what the steps have shown plus a
-margin, by no more than half a step, and rises at once. Contact may stiffen while it closes, so a
-second bound does not trust k_hat: no step may pass ``ceiling_n`` even at the upper bound of k.
+margin, by no more than half a step, and rises at once.
+
+An arm does not go exactly where it is sent: every move adds an error of its own, and contact may
+stiffen while it closes. A second bound keeps the force below ``abort_n`` in spite of both:
+``F + min(k_max, 2 k_hat) (d + 3 sigma) <= abort``.
 """
 
 from dataclasses import dataclass, replace
@@ -41,8 +44,12 @@ class CreepLaw:
     """Below this a step tells less than its noise; also the controller's resolution."""
     force_sigma_n: float
     """Standard deviation of a reading at standstill."""
-    ceiling_n: float
-    """No step towards the frame may pass this force, whatever the steps before have shown."""
+    abort_n: float
+    """No step towards the frame may be able to pass this force."""
+    step_sigma_m: float
+    """Standard deviation of the length of a step: the arm's own error of every single move."""
+    stiffening_ratio: float = 2.0
+    """Contact may be so much stiffer at the end of a step than the steps before have shown."""
     stiffness_margin_ratio: float = 1.25
     """k_hat stays this much above the stiffness that the steps have shown."""
 
@@ -78,8 +85,10 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
     error_n = law.reference_n - state.force_n
     resistance = law.damping_n_s_m + law.mass_kg / law.period_s
     step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
-    furthest_m = max(law.ceiling_n - state.force_n, 0.0) / law.stiffness_n_m
-    step_m = float(np.clip(step_m, -law.greatest_step_m, min(law.greatest_step_m, furthest_m)))
+    stiffest = min(law.stiffness_n_m, law.stiffening_ratio * state.stiffness_n_m)
+    furthest_m = (law.abort_n - state.force_n) / stiffest - 3.0 * law.step_sigma_m
+    bound_m = min(law.greatest_step_m, max(furthest_m, law.smallest_step_m))
+    step_m = float(np.clip(step_m, -law.greatest_step_m, bound_m))
     if abs(step_m) < law.smallest_step_m:
         step_m = float(np.copysign(law.smallest_step_m, error_n))
     return step_m
@@ -88,18 +97,16 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
 def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float) -> CreepState:
     """State after a step was driven and the force read again at standstill.
 
-    The stiffness is corrected from the step when it moved the force by clearly more than noise:
-    upwards at once, downwards by at most half a step.
+    The stiffness is corrected from a step that was long against the arm's own error: downwards
+    with the noise of force and length counted as stiffness, and by at most half.
     """
     stiffness = state.stiffness_n_m
-    moved_m, rose_n = travel_m - state.travel_m, force_n - state.force_n
-    noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
-    if abs(moved_m) >= 0.5 * law.smallest_step_m:
-        # The noise of the readings counts as stiffness: luck must not make the next step bold.
-        shown = law.stiffness_margin_ratio * abs(rose_n) / abs(moved_m)
-        cautious = shown + law.stiffness_margin_ratio * noise_n / abs(moved_m)
-        ceiling = max(law.stiffness_n_m, shown)
-        stiffness = min(max(cautious, 0.5 * stiffness), ceiling)
+    moved_m, rose_n = abs(travel_m - state.travel_m), abs(force_n - state.force_n)
+    unsure_m = 3.0 * law.step_sigma_m
+    if moved_m > 2.0 * unsure_m:
+        noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
+        shown = law.stiffness_margin_ratio * (rose_n + noise_n) / (moved_m - unsure_m)
+        stiffness = min(max(shown, 0.5 * stiffness), law.stiffness_n_m)
     return replace(
         state,
         stiffness_n_m=float(stiffness),

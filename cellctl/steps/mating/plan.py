@@ -85,6 +85,7 @@ def plan_mating(
         sample_period_s=settings.sample_period_s,
         touch=settings.touch,
         tare_uncertainty_n=settings.tare_uncertainty_n,
+        step_sigma_m=settings.step_sigma_m,
     )
     segment_m = segment_length(figures, limit_n=settings.abort_force_n)
     return MatingPlan(
@@ -152,5 +153,6 @@ def _law(settings: MatingSettings, low_n: float, high_n: float) -> CreepLaw:
         greatest_step_m=settings.greatest_step_m,
         smallest_step_m=settings.smallest_step_m,
         force_sigma_n=settings.force_sigma_n,
-        ceiling_n=settings.ceiling_n,
+        abort_n=settings.abort_force_n,
+        step_sigma_m=settings.step_sigma_m,
     )

@@ -52,7 +52,7 @@ class MatingSettings:
     least_window_m: float = 1e-4
     coverage: float = 4.0
     """Half width of the contact window in standard deviations."""
-    clear_margin_m: float = 1e-4
+    clear_margin_m: float = 2e-4
     """Slow travel begins this much before the window."""
     travel_sigma_m: float = 1e-5
     """Relative accuracy of the arm over the stand-off distance."""
@@ -80,8 +80,8 @@ class MatingSettings:
     reading_s: float = 0.2
     smallest_step_m: float = 1e-6
     greatest_step_m: float = 1e-4
-    ceiling_n: float = 43.0
-    """No creep step may reach beyond, even at the upper bound of the stiffness."""
+    step_sigma_m: float = 3e-6
+    """Standard deviation of the length of a short move: what the arm adds to every single one."""
     max_creep_steps: int = 40
     hold_s: float = 0.5
     release_low_n: float = 10.0
