@@ -10,6 +10,9 @@ Six = tuple[float, float, float, float, float, float]
 
 UNLIMITED: Six = (math.inf,) * 6
 
+DEFAULT_FILTER_S = 5e-3
+"""A slower one lets hard contacts grow past the force limit before it notices them."""
+
 
 @dataclass(frozen=True, slots=True)
 class CusumTouch:
@@ -47,7 +50,7 @@ class GuardLimits:
     filtered: Six = UNLIMITED
     """The same after a first-order low-pass of ``filter_s``."""
     touch: Touch | None = None
-    filter_s: float = 5e-3
+    filter_s: float = DEFAULT_FILTER_S
     stale_s: float = 0.01
     """No sample for this long trips."""
     flange_age_s: float = 0.1

@@ -1,0 +1,79 @@
+"""The words between daemon and guard: JSON objects, one a packet, over a pair of local sockets.
+
+Requests have an ``id`` and a ``do``; answers repeat the id with ``result`` or ``refused``; events
+have an ``event``. The guard never waits for room: an event that does not fit is dropped, and the
+shared status tells the same story.
+"""
+
+import json
+import socket
+from dataclasses import asdict
+from typing import Any
+
+from cellctl.errors.base import CellError, catalogue
+from cellctl.errors.internal import Unexpected
+from cellctl.guard.limits import CountTouch, CusumTouch, GuardLimits
+from cellctl.guard.report import GuardTrip, TripReason
+
+Message = dict[str, Any]
+
+_LONGEST_BYTES = 65_536
+_TOUCHES = {"cusum": CusumTouch, "count": CountTouch}
+
+
+def encode(message: Message) -> bytes:
+    """One packet."""
+    return json.dumps(message, separators=(",", ":")).encode()
+
+
+def receive(link: socket.socket) -> Message | None:
+    """The next packet; None at the end. ``BlockingIOError`` when none waits."""
+    data = link.recv(_LONGEST_BYTES)
+    if not data:
+        return None
+    message: Message = json.loads(data)
+    return message
+
+
+def limits_to_json(limits: GuardLimits) -> Message:
+    """Limits as a message."""
+    message = asdict(limits)
+    if limits.touch is not None:
+        names = {kind: name for name, kind in _TOUCHES.items()}
+        message["touch"] = {"kind": names[type(limits.touch)], **asdict(limits.touch)}
+    return message
+
+
+def limits_from_json(message: Message) -> GuardLimits:
+    """Limits back; ``ValueError`` or ``TypeError`` for what are no limits."""
+    fields = dict(message)
+    if fields.get("touch") is not None:
+        touch = dict(fields["touch"])
+        fields["touch"] = _TOUCHES[touch.pop("kind")](**touch)
+    for name in ("raw", "filtered", "rate_hz"):
+        fields[name] = tuple(fields[name])
+    return GuardLimits(**fields)
+
+
+def trip_to_json(trip: GuardTrip) -> Message:
+    """A trip as a message."""
+    return {**asdict(trip), "reason": trip.reason.value}
+
+
+def trip_from_json(message: Message) -> GuardTrip:
+    """A trip back."""
+    return GuardTrip(**{**message, "reason": TripReason(message["reason"])})
+
+
+def fault_to_json(fault: CellError) -> Message:
+    """A fault as number and facts."""
+    return {"number": fault.number, "detail": fault.detail}
+
+
+def fault_from_json(message: Message) -> CellError:
+    """The fault with that number; ``Unexpected`` for a number that nobody has."""
+    kinds = {kind.number: kind for kind in catalogue()}
+    number, detail = message["number"], message["detail"]
+    if number not in kinds:
+        return Unexpected(f"the guard reports fault {number}: {detail}")
+    return kinds[number](detail)

@@ -1,0 +1,94 @@
+"""The daemon's end of the ring."""
+
+import numpy as np
+
+from cellctl.guard import ring
+from cellctl.guard.report import Curve, GuardSample
+
+_SLOT = np.dtype(
+    [
+        ("index", "u8"),
+        ("time_s", "f8"),
+        ("receive_time_s", "f8"),
+        ("flange_age_s", "f8"),
+        ("number", "u8"),
+        ("wrench", "f8", (6,)),
+        ("raw", "f8", (6,)),
+    ]
+)
+_STATUS_TRIES = 1000
+
+
+class RingReader:
+    """Reads without disturbing the writer."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._memory, self._slots = ring.attach(descriptor)
+        self._words = np.frombuffer(self._memory, "u8", ring.HEADER_BYTES // 8)
+        self._ring = np.frombuffer(self._memory, _SLOT, self._slots, ring.HEADER_BYTES)
+
+    def close(self) -> None:
+        """Unmap; nothing handed out keeps a view."""
+        del self._words, self._ring
+        self._memory.close()
+
+    def latest(self) -> GuardSample | None:
+        """The newest sample; None before the first."""
+        while (head := self._head()) > 0:
+            slot = self._ring[(head - 1) % self._slots].copy()
+            if self._head() - head < self._slots - 1 and slot["index"] == head - 1:
+                return GuardSample(
+                    time_s=float(slot["time_s"]),
+                    receive_time_s=float(slot["receive_time_s"]),
+                    number=int(slot["number"]),
+                    wrench=slot["wrench"].copy(),
+                    raw=slot["raw"].copy(),
+                    flange_age_s=float(slot["flange_age_s"]),
+                )
+        return None
+
+    def since(self, since_s: float) -> Curve:
+        """All samples with a time after ``since_s``."""
+        head = self._head()
+        oldest = max(0, head - self._slots + 1)
+        first = self._first_after(since_s, oldest, head)
+        begin, end = first % self._slots, head % self._slots
+        if first == head:
+            found = self._ring[:0].copy()
+        elif begin < end:
+            found = self._ring[begin:end].copy()
+        else:
+            found = np.concatenate([self._ring[begin:], self._ring[:end]])
+        intact = found["index"] == np.arange(first, head, dtype="u8")
+        intact &= found["index"] >= max(0, self._head() - self._slots + 1)
+        kept = found[intact]
+        overrun = len(kept) < len(found) or (first == oldest and oldest > 0)
+        return Curve(
+            time_s=kept["time_s"].copy(),
+            wrench=kept["wrench"].copy(),
+            raw=kept["raw"].copy(),
+            flange_age_s=kept["flange_age_s"].copy(),
+            overrun=overrun,
+        )
+
+    def status(self) -> ring.Status:
+        """The status of the last beat; ``RuntimeError`` when it never holds still."""
+        for _ in range(_STATUS_TRIES):
+            before = int(self._words[ring.STATUS_NUMBER])
+            status = ring.Status.unpack_from(self._memory)
+            if before % 2 == 0 and int(self._words[ring.STATUS_NUMBER]) == before:
+                return status if before else ring.Status()
+        raise RuntimeError("status of the guard is torn: its writer died in the middle")
+
+    def _head(self) -> int:
+        return int(self._words[ring.HEAD])
+
+    def _first_after(self, since_s: float, low: int, high: int) -> int:
+        """Index of the first sample after a time, by bisection."""
+        while low < high:
+            middle = (low + high) // 2
+            if self._ring[middle % self._slots]["time_s"] <= since_s:
+                low = middle + 1
+            else:
+                high = middle
+        return low
