@@ -161,19 +161,20 @@ class SjlController:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _listen(self, channel: Channel, reader: asyncio.StreamReader) -> None:
-        while True:
-            line = await _line(reader)
-            if self.faults.active("half_open"):
-                continue
-            try:
-                fields, now_s = decode(line), self._clock()
-                if channel == "CMD":
-                    self._post(self.logic.command(fields, now_s))
-                else:
-                    self._post(self.logic.supervise(channel, fields, now_s))
-            except RecordError:
-                self._drop_others(channel)
-                raise
+        try:
+            while True:
+                line = await _line(reader)
+                if not self.faults.active("half_open"):
+                    self._take(channel, decode(line))
+        except RecordError:
+            self._drop_others(channel)
+            raise
+
+    def _take(self, channel: Channel, fields: list[str]) -> None:
+        if channel == "CMD":
+            self._post(self.logic.command(fields, self._clock()))
+        else:
+            self._post(self.logic.supervise(channel, fields, self._clock()))
 
     def _drop_others(self, channel: Channel) -> None:
         """After a protocol violation the robot drops every channel, not only that one."""
