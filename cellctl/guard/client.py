@@ -1,7 +1,6 @@
 """The daemon's side of the guard. Used from the event loop only."""
 
 import asyncio
-import itertools
 from typing import Any
 
 import numpy as np
@@ -10,12 +9,13 @@ from scipy.spatial.transform import RigidTransform
 from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
-from cellctl.errors.force import GuardDied, GuardRefused, SensorSilent
+from cellctl.errors.force import GuardDied, SensorSilent
 from cellctl.force.compensation import Compensation
 from cellctl.guard.child import GuardChild
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import Message, fault_from_json, limits_to_json, trip_from_json
 from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult, TripReason
+from cellctl.guard.requests import Requests
 
 _log = log.get(__name__)
 
@@ -47,8 +47,7 @@ class GuardClient:
         self._child: GuardChild | None = None
         self._started: asyncio.Future[None] | None = None
         self._stopping = False
-        self._ids = itertools.count(1)
-        self._answers: dict[int, asyncio.Future[Any]] = {}
+        self._requests = Requests(settings.reply_timeout_s)
         self._trip: GuardTrip | None = None
         self._tripped = asyncio.Event()
         self._serial = ""
@@ -126,7 +125,7 @@ class GuardClient:
 
     async def tare(self, duration_s: float) -> TareResult:
         """Average over the next ``duration_s`` and subtract that from then on."""
-        result = await self._request("tare", duration_s=duration_s, extra_s=duration_s)
+        result = await self._request("tare", duration_s, duration_s=duration_s)
         return TareResult(
             np.array(result["mean"]), np.array(result["sigma"]), int(result["samples"])
         )
@@ -228,20 +227,8 @@ class GuardClient:
             "lock_memory": settings.lock_memory,
         }
 
-    async def _request(self, do: str, *, extra_s: float = 0.0, **fields: Any) -> Any:
-        child = self._require_child()
-        number = next(self._ids)
-        answer: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        self._answers[number] = answer
-        timeout_s = self._settings.reply_timeout_s + extra_s
-        try:
-            child.send({"id": number, "do": do, **fields})
-            async with asyncio.timeout(timeout_s):
-                return await answer
-        except TimeoutError:
-            raise GuardDied(f"no answer to {do} within {timeout_s:g} s") from None
-        finally:
-            del self._answers[number]
+    async def _request(self, do: str, wait_s: float = 0.0, **fields: Any) -> Any:
+        return await self._requests.ask(self._require_child().send, {"do": do, **fields}, wait_s)
 
     def _require_child(self) -> GuardChild:
         if self._child is None or not self._child.alive:
@@ -251,7 +238,7 @@ class GuardClient:
     def _take(self, message: Message) -> None:
         event = message.get("event")
         if event is None:
-            self._take_answer(message)
+            self._requests.take(message)
         elif event == "trip":
             self._latch(trip_from_json(message["trip"]))
         elif event == "ready":
@@ -265,15 +252,6 @@ class GuardClient:
             fault = fault_from_json(message)
             _log.error("guard reports a fault", fault=str(fault))
             self._settle_start(fault)
-
-    def _take_answer(self, message: Message) -> None:
-        answer = self._answers.get(message["id"])
-        if answer is None or answer.done():
-            return
-        if "refused" in message:
-            answer.set_exception(GuardRefused(message["refused"]))
-        else:
-            answer.set_result(message["result"])
 
     def _channel(self, *, up: bool, fault: CellError | None) -> None:
         if up:
@@ -305,6 +283,4 @@ class GuardClient:
     def _fail(self, fault: GuardDied) -> None:
         """Whoever waits for the guard hears that it will not answer."""
         self._settle_start(fault)
-        for answer in self._answers.values():
-            if not answer.done():
-                answer.set_exception(fault)
+        self._requests.fail(fault)
