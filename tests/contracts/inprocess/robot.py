@@ -1,0 +1,133 @@
+"""A robot in memory: the shortest honest implementation of the interface."""
+
+import asyncio
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.clock import now_s
+from cellctl.errors.base import CellError
+from cellctl.errors.link import LinkLost, StaleData
+from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, TargetOutOfBounds
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.robot import Robot, RobotMode, RobotState
+
+HOME = RigidTransform.from_translation([1.5, 0.0, 1.0])
+MAX_SPEED_M_S = 0.2
+MAX_STEP_M = 0.0005
+REACH_M = 2.0
+_TICK_S = 0.005
+
+
+class InProcessRobot(Robot):
+    """Moves at constant speed in real time; a linear motion leaves the joints as they are."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.flange = HOME
+        self.joints_rad: Array = np.zeros(6)
+        self.commands = 0
+        self.frozen_at_s: float | None = None
+        self._connected = False
+        self._latched = False
+        self._motion: asyncio.Task[None] | None = None
+        self._end: CellError | None = None
+
+    @property
+    def moving(self) -> bool:
+        """A motion runs."""
+        return self._motion is not None
+
+    async def connect(self) -> None:
+        self._connected = True
+
+    async def disconnect(self) -> None:
+        self._halt(LinkLost("disconnected"))
+        self._connected = False
+
+    def cut(self) -> None:
+        """As when the cable breaks for a moment."""
+        self._halt(LinkLost("cable"))
+
+    def state(self, max_age_s: float = 0.25) -> RobotState:
+        if not self._connected:
+            raise LinkLost("not connected")
+        time_s = self.frozen_at_s or now_s()
+        if now_s() - time_s > max_age_s:
+            raise StaleData("frozen")
+        return RobotState(
+            time_s=time_s,
+            base_T_flange=self.flange,
+            joints_rad=self.joints_rad,
+            mode=RobotMode.REMOTE,
+            emergency_stop=False,
+            drives_on=True,
+            moving=self.moving,
+            stop_latched=self._latched,
+            error_code=0,
+            speed_override_ratio=1.0,
+        )
+
+    async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
+        if not (np.all(np.abs(joints_rad) < np.pi) and 0.0 < speed_ratio <= 1.0):
+            raise TargetOutOfBounds("joints")
+        way_rad = float(np.abs(joints_rad - self.joints_rad).max())
+        return await self._move(self.flange, joints_rad, way_rad / speed_ratio)
+
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        if not (np.linalg.norm(base_T_flange.translation) < REACH_M and acceleration_m_s2 > 0):
+            raise TargetOutOfBounds("reach")
+        if not 0.0 < speed_m_s <= MAX_SPEED_M_S:
+            raise TargetOutOfBounds("speed")
+        duration_s = self.state().distance_to(base_T_flange)[0] / speed_m_s
+        return await self._move(base_T_flange, self.joints_rad, duration_s)
+
+    async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
+        if self.state().distance_to(base_T_flange)[0] > MAX_STEP_M:
+            raise TargetOutOfBounds("step")
+        return await self.move_linear(base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=1.0)
+
+    async def stop(self) -> None:
+        self.state()
+        self._halt(MotionAborted("stop"))
+        self._latched = True
+
+    async def rearm(self) -> None:
+        self.state()
+        self._latched = False
+
+    def _halt(self, reason: CellError) -> None:
+        if self._motion is not None:
+            self._latched, self._end = True, reason
+            self._motion.cancel()
+            self._motion = None
+
+    async def _move(self, flange: RigidTransform, joints_rad: Array, time_s: float) -> RobotState:
+        self.state()
+        if self._motion is not None:
+            raise MotionRejected("busy")
+        if self._latched:
+            raise NotRearmed("latched")
+        self.commands += 1
+        self._end = None
+        motion = self._motion = asyncio.create_task(self._run(flange, joints_rad, time_s))
+        try:
+            await asyncio.wait({motion})
+        except asyncio.CancelledError:
+            await self.stop()
+            raise
+        if self._end is not None:
+            raise self._end
+        return self.state()
+
+    async def _run(self, flange: RigidTransform, joints_rad: Array, time_s: float) -> None:
+        start, way = self.flange, self.flange.inv() * flange
+        begun_s = now_s()
+        while (elapsed_s := now_s() - begun_s) < time_s:
+            self.flange = start * RigidTransform.from_exp_coords(
+                way.as_exp_coords() * elapsed_s / time_s
+            )
+            await asyncio.sleep(_TICK_S)
+        self.flange, self.joints_rad, self._motion = flange, joints_rad, None
