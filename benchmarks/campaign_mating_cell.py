@@ -22,10 +22,10 @@ from fakes.world.world import World
 
 SCENARIO = Path(__file__).parent.parent / "config" / "fake-cell.toml"
 TICK_S = 1e-3
-POSITION_SIGMA_M = 1.5e-5
-"""What the measure-compensate loop leaves against truth, each axis (its threshold is 50 µm)."""
-ANGLE_SIGMA_RAD = float(np.deg2rad(0.0015))
-"""The same in rotation (threshold 0.005°)."""
+THRESHOLD = np.repeat([5e-5, np.deg2rad(0.005)], 3)
+"""What the measure-compensate loop may leave, each axis; the draw is uniform within."""
+VISION_SIGMA = np.repeat([5e-6, np.deg2rad(0.0005)], 3)
+"""How well it knows what it left."""
 
 
 @dataclass(slots=True)
@@ -96,9 +96,8 @@ class MatingCell:
 
     def measured(self) -> UncertainPose:
         """M_T_D as vision measures it at the end of its loop."""
-        sigma = np.repeat([POSITION_SIGMA_M / 3.0, ANGLE_SIGMA_RAD / 3.0], 3)
-        error = _displacement(self.rng.normal(0.0, sigma))
-        return UncertainPose(self.true_pose() * error, np.diag(sigma**2))
+        error = _displacement(self.rng.normal(0.0, VISION_SIGMA))
+        return UncertainPose(self.true_pose() * error, np.diag(VISION_SIGMA**2))
 
     def calibrated_deck(self) -> RigidTransform:
         """As the deck-flange calibration gives it: what encoders and truth say together."""
@@ -120,8 +119,7 @@ class MatingCell:
         self._wait()
         parts = world.placed.parts
         assert parts is not None
-        sigma = np.repeat([POSITION_SIGMA_M, ANGLE_SIGMA_RAD], 3)
-        left = _displacement(np.clip(self.rng.normal(0.0, sigma), -3.0 * sigma, 3.0 * sigma))
+        left = _displacement(self.rng.uniform(-THRESHOLD, THRESHOLD))
         wanted = parts.cell_T_frame * pose_from_xyzabc([0, 0, 25, 0, 0, 0]) * left
         for _ in range(4):
             deck = world.snapshot().cell_T_deck
