@@ -23,7 +23,11 @@
 - Several frames of an unmoved scene: ``clean = clean_pair(…)`` once (float32, no noise, not
   rounded), then ``expose(clean, options, rng)`` for each; only the noise differs.
 - ``render_scene(scene, options)`` takes a whole ``CameraScene`` of the world with its seeds.
-- Cost per camera on one core: about 0.4 s for a plate, 0.06 s for another exposure.
+- What is measured (holes, discs, prints of the nearest object) is exact: edges within 0.001 px of
+  the analytic projection, blur from 4 × 4 cells a pixel or in closed form. Outlines of plates and
+  things behind the nearest object are only good to look at.
+- A head with a small ``image_size_px`` and a shifted ``centre_px`` renders a cut-out in 0.02 s.
+- Cost per camera on one core: about 0.25 s for a plate or board, 0.05 s for another exposure.
 """
 
 from collections.abc import Sequence

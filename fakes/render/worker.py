@@ -44,7 +44,10 @@ def make_pool(workers: int = 1) -> ProcessPoolExecutor:
     """Processes for ``render_frame``; shut the pool down when the servers have stopped."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read by the children's numpy
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(workers, mp_context=context, initializer=_initialise)
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_initialise)
+    for _ in range(workers):
+        pool.submit(os.getpid)  # starts a process now, not at the first exposure
+    return pool
 
 
 def render_frame(
