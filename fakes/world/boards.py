@@ -37,7 +37,7 @@ def chessboard_view(scenario: Scenario, seed: int, head: HeadName, number: int) 
 
 
 def _random_view(scenario: Scenario, rng: np.random.Generator) -> RigidTransform:
-    """Over the depth of the stereo overlap, sideways, tilted, turned by any quarter."""
+    """Over the depth of the stereo overlap, sideways, tilted and turned a little."""
     board = scenario.chessboard
     side = rng.uniform(-1, 1, 2) * np.array(board.offset_mm)
     between = Rotation.from_euler("y", -_half_toe_in(scenario))
@@ -45,7 +45,7 @@ def _random_view(scenario: Scenario, rng: np.random.Generator) -> RigidTransform
     place = between.apply([across + side[0], side[1], depth])
     heading, tilt = rng.uniform(0, 2 * np.pi), np.deg2rad(board.tilt_deg) * np.sqrt(rng.random())
     lean = Rotation.from_rotvec(tilt * np.array([np.cos(heading), np.sin(heading), 0.0]))
-    turn_rad = rng.integers(2) * np.pi / 2 + rng.uniform(-1, 1) * board.turn_rad
+    turn_rad = rng.uniform(-1, 1) * board.turn_rad
     facing = between * Rotation.from_euler("x", np.pi) * lean * Rotation.from_euler("z", turn_rad)
     return RigidTransform.from_components(place * MM, facing)
 

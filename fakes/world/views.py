@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario import HeadName
-from fakes.world.frames import MM, stream_seed
+from fakes.world.frames import MM, from_written, stream_seed
 from fakes.world.scene import CameraScene, SceneChessboard, ScenePlate, SceneTargetBoard
 from fakes.world.snapshot import Snapshot
 from fakes.world.truth import board_discs
@@ -18,6 +18,12 @@ _SLOPE_MAX = 0.5
 def camera_pose(world: Snapshot, head: HeadName) -> RigidTransform:
     """True cell_T_camera of a head's left camera."""
     cell_T_flange = world.flanges[world.scenario.heads[head].robot]
+    return cell_T_flange * world.truth.heads[head].flange_T_head
+
+
+def measuring_camera_pose(world: Snapshot, head: HeadName) -> RigidTransform:
+    """cell_T_camera as it would be with the head at its taught measuring pose, roughly."""
+    cell_T_flange = from_written(world.scenario.taught[world.scenario.heads[head].robot]["measure"])
     return cell_T_flange * world.truth.heads[head].flange_T_head
 
 

@@ -22,7 +22,7 @@ from fakes.world.sensor import ForceReading
 from fakes.world.snapshot import Placed, Snapshot
 from fakes.world.targets import SeenTarget, seen_targets
 from fakes.world.truth import draw, draw_parts
-from fakes.world.views import camera_pose, camera_scene
+from fakes.world.views import camera_scene, measuring_camera_pose
 
 _HISTORY = 1024
 
@@ -73,9 +73,10 @@ class World:
         self.placed = replace(self.placed, target_board=pose)
 
     def place_chessboard(self, head: HeadName, number: int) -> None:
-        """Hold the chessboard under a head where it is now; each number is another view."""
+        """Lay the chessboard under the measuring pose of a head; each number is another placement."""
         view = chessboard_view(self.scenario, self.seed, head, number)
-        self.placed = replace(self.placed, chessboard=camera_pose(self.snapshot(), head) * view)
+        station = measuring_camera_pose(self.snapshot(), head)
+        self.placed = replace(self.placed, chessboard=station * view)
 
     def remove_boards(self) -> None:
         """Take both boards away."""
