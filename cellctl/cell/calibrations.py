@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from cellctl import __version__
+from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import (
     KINDS,
@@ -17,11 +18,14 @@ from cellctl.calibration.files import (
     read_calibration_set,
     write_stored,
 )
+from cellctl.calibration.stereo_result import StereoResult
 from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationExpired, CalibrationRecordInvalid
 from cellctl.force.compensation import Compensation
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.procedures.payload_result import compensation_from_document
+from cellctl.vision.stereo_head import StereoHead
 
 PAYLOAD = "payload"
 ALL_KINDS = (*KINDS, PAYLOAD)
@@ -60,6 +64,14 @@ class CalibrationFolder:
         except (KeyError, TypeError, ValueError) as error:
             raise CalibrationRecordInvalid(f"{PAYLOAD}: {error!r}") from error
         return Calibrations(geometry, compensation, {**geometry.ids, PAYLOAD: payload.id})
+
+    def head(self, name: str) -> StereoHead:
+        """One stereo head, for procedures that need it before the set is complete."""
+        return StereoResult.from_record(read_calibration(self.path, name).record).head
+
+    def c_T_base(self) -> UncertainPose:
+        """The base frame, likewise."""
+        return BaseFrameResult.from_record(read_calibration(self.path, "base_frame").record).c_T_base
 
     def store(
         self, kind: str, record: Mapping[str, Any], serial_number: str, valid_for: timedelta

@@ -2,12 +2,12 @@
 
 import asyncio
 from collections.abc import Awaitable
-from dataclasses import dataclass
 from pathlib import Path
 
 from cellctl import log, plugins
+from cellctl.cell.head_station import HeadStation
 from cellctl.config import CellConfig
-from cellctl.config.devices import AuxiliaryRobot, Device
+from cellctl.config.devices import Device
 from cellctl.errors import CellError
 from cellctl.errors.link import ConnectTimeout
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -17,16 +17,6 @@ from cellctl.interfaces import Robot, StereoCamera, TargetTracker
 from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
-
-
-@dataclass(frozen=True, slots=True)
-class HeadStation:
-    """A stereo head with the robot that carries it."""
-
-    name: str
-    camera: StereoCamera
-    robot: Robot
-    config: AuxiliaryRobot
 
 
 class Cell:

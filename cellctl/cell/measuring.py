@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.devices import Cell, HeadStation
+from cellctl.cell.devices import Cell
+from cellctl.cell.head_station import HeadStation
 from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import UncertaintyTooLarge
 from cellctl.geometry.pose import MM, Array

@@ -7,7 +7,7 @@ from cellctl.calibration.board import BoardView, CalibrationBoard
 from cellctl.calibration.board_images import ImagePair, detect_view
 from cellctl.calibration.stereo import calibrate_stereo
 from cellctl.calibration.stereo_picture import stereo_picture
-from cellctl.cell.devices import HeadStation
+from cellctl.cell.head_station import HeadStation
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome

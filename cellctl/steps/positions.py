@@ -6,7 +6,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.devices import Cell, HeadStation
+from cellctl.cell.devices import Cell
+from cellctl.cell.head_station import HeadStation
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.interfaces import RobotState
 

@@ -1,0 +1,94 @@
+"""A run in Maintenance mode: one procedure, chosen by its number."""
+
+from collections.abc import Awaitable, Callable
+from datetime import timedelta
+
+from cellctl import log
+from cellctl.cell.archive import Archive
+from cellctl.cell.calibrations import CalibrationFolder
+from cellctl.cell.devices import Cell
+from cellctl.cell.job import Job, SafePoint
+from cellctl.cell.progress import ProgressBoard
+from cellctl.cell.step import Step
+from cellctl.errors import CellError
+from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.plc.commands import LineCommand
+from cellctl.plc.result import Result
+from cellctl.procedures.base_frame import calibrate_base
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.procedures.payload import identify_payload_on_cell
+from cellctl.procedures.stereo_head import calibrate_head
+from cellctl.procedures.target_board import measure_board
+from cellctl.records.store import RunStore
+
+_log = log.get(__name__)
+
+Procedure = Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
+
+PROCEDURES: dict[int, Procedure] = {
+    Step.CALIBRATE_HEAD_1: lambda context: calibrate_head(context, context.cell.head_1),
+    Step.CALIBRATE_HEAD_2: lambda context: calibrate_head(context, context.cell.head_2),
+    Step.CALIBRATE_BASE_FRAME: calibrate_base,
+    Step.CALIBRATE_BOARD_1: lambda context: measure_board(context, context.cell.head_1),
+    Step.CALIBRATE_BOARD_2: lambda context: measure_board(context, context.cell.head_2),
+    Step.IDENTIFY_PAYLOAD: identify_payload_on_cell,
+}
+
+
+def is_procedure(number: int) -> bool:
+    """True when Maintenance has a procedure with this number."""
+    return number in PROCEDURES
+
+
+class Maintenance(Job):
+    """Runs a procedure and stores what passed."""
+
+    def __init__(
+        self,
+        cell: Cell,
+        archive: Archive,
+        board: ProgressBoard,
+        calibrations: CalibrationFolder,
+        command: LineCommand,
+    ) -> None:
+        self.number = command.recipe_id
+        self.serial = command.serial
+        self._cell = cell
+        self._archive = archive
+        self._board = board
+        self._calibrations = calibrations
+        self._command = command
+
+    async def start(self) -> None:
+        """Nothing to bring anywhere: each procedure begins where it needs to."""
+        self._board.update(step=Step(self.number))
+
+    async def execute(self, safe_point: SafePoint) -> None:
+        """Run the procedure; raises ``ResultOutOfLimits`` when its verdict is bad."""
+        context = ProcedureContext(self._cell, self._calibrations, self._board, safe_point)
+        outcome = await PROCEDURES[self.number](context)
+        if outcome is None:
+            _log.info("measured, waiting for its counterpart")
+            return
+        await self._keep(outcome)
+
+    async def close(self, fault: CellError | None, *, stopped: bool) -> Result:
+        """Procedures keep no run row: their record is the calibration itself."""
+        self._board.update(step=Step.NONE)
+        return Result.GOOD if fault is None and not stopped else Result.BAD
+
+    async def _keep(self, outcome: ProcedureOutcome) -> None:
+        """Store a result that passed, its picture beside it; a bad one is only logged."""
+        for warning in outcome.warnings:
+            _log.warning("calibration", item=outcome.item, warning=warning)
+        if not outcome.passed:
+            raise ResultOutOfLimits(f"{outcome.item}: see the checks in the log")
+        days = self._cell.config.procedures.validity_days
+        stored = self._calibrations.store(
+            outcome.item, outcome.record, outcome.serial_number, timedelta(days=days)
+        )
+        if outcome.picture_png is not None:
+            picture = self._calibrations.path / f"{outcome.item}.png"
+            picture.write_bytes(outcome.picture_png)
+        await self._archive.do(RunStore.add_calibration, stored)
+        _log.info("calibration stored", item=outcome.item, id=stored.id)

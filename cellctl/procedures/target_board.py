@@ -1,0 +1,90 @@
+"""Procedures 104 and 105: the target board before head I, then head II (paper fig. 3, eq. 1 to 3)."""
+
+import asyncio
+
+import numpy as np
+
+from cellctl.calibration.board_pose import (
+    BoardPoint,
+    BoardPose,
+    fit_board,
+    points_from_targets,
+    target_board_discs,
+)
+from cellctl.calibration.board_transfer import (
+    BoardPlacement,
+    TransferResult,
+    calibrate_board_transfer,
+)
+from cellctl.calibration.transfer_picture import transfer_picture
+from cellctl.cell.head_station import HeadStation
+from cellctl.geometry.pose import MM
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.vision.average import average
+from cellctl.vision.features import Hole
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.stereo_head import StereoHead
+
+DISC_DIAMETER_M = 20 * MM
+PAIRS = 4
+
+
+async def measure_board(
+    context: ProcedureContext, station: HeadStation
+) -> ProcedureOutcome | None:
+    """Measure the board with head and large-field head; solve once both heads have seen it.
+
+    Returns None while the other head's turn is still to come.
+    """
+    calibrations = context.calibrations
+    await station.robot.move_joint(
+        np.radians(station.config.measuring_joints_deg),
+        speed_ratio=station.config.speed_percent / 100,
+    )
+    model = calibrations.head(station.name)
+    context.board.update(message=f"{station.name}: target board")
+    in_head, in_large_field = await asyncio.gather(
+        _in_head(context, station, model), _in_large_field(context)
+    )
+    calibrations.placements[station.name] = BoardPlacement(in_large_field, in_head)
+    if len(calibrations.placements) < 2:
+        return None
+    result = _solve(context)
+    return ProcedureOutcome(
+        item="board_transfer",
+        record=result.to_record(),
+        passed=result.passed,
+        warnings=result.warnings,
+        picture_png=transfer_picture(result),
+        serial_number=await context.cell.tracker.serial_number(),
+    )
+
+
+def _solve(context: ProcedureContext) -> TransferResult:
+    calibrations = context.calibrations
+    one, two = calibrations.placements["head_1"], calibrations.placements["head_2"]
+    return calibrate_board_transfer(calibrations.c_T_base(), [one], [two])
+
+
+async def _in_head(
+    context: ProcedureContext, station: HeadStation, model: StereoHead
+) -> BoardPose:
+    drawing = target_board_discs()
+    discs = [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
+    found = []
+    for _ in range(PAIRS):
+        pair = await station.camera.grab()
+        found.append(
+            await context.cell.workers.run(measure_pair, pair.left, pair.right, model, discs)
+        )
+    points = [
+        BoardPoint(hole.name, hole.position_m, hole.covariance_m2)
+        for hole in average(found).holes
+    ]
+    return fit_board(drawing, points)
+
+
+async def _in_large_field(context: ProcedureContext) -> BoardPose:
+    drawing = target_board_discs()
+    seen = await context.cell.tracker.measure(context.cell.config.procedures.tracker_frames)
+    return fit_board(drawing, points_from_targets(seen, drawing))

@@ -1,0 +1,103 @@
+"""The cell file: every error at once, with key, value and what is allowed."""
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.app import app
+from cellctl.config import load_cell, problems
+from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
+
+CONFIG = Path(__file__).parents[3] / "config"
+
+
+@pytest.mark.parametrize("name", ["cell.fake.toml", "cell.toml"])
+def test_the_shipped_cell_files_are_good(name: str):
+    assert problems(CONFIG / name) == []
+
+
+def changed(tmp_path: Path, **replacements: str) -> Path:
+    """The fake cell's file with some lines replaced, next to its feature files."""
+    text = (CONFIG / "cell.fake.toml").read_text()
+    for old, new in replacements.values():
+        assert old in text
+        text = text.replace(old, new, 1)
+    (tmp_path / "features").symlink_to(CONFIG / "features")
+    path = tmp_path / "cell.toml"
+    path.write_text(text)
+    return path
+
+
+def test_all_errors_are_reported_together(tmp_path: Path):
+    path = changed(
+        tmp_path,
+        threshold=("threshold_mm = 0.05", "threshold_mm = -1.0"),
+        thickness=("deck_thickness_mm = 15.0", "deck_thicknes_mm = 15.0"),
+        port=("port = 5020", 'port = "many"'),
+    )
+    found = {problem.key: problem for problem in problems(path)}
+    assert set(found) == {
+        "plc.port",
+        "recipes.0.compensation.threshold_mm",
+        "recipes.0.deck_thickness_mm",
+        "recipes.0.deck_thicknes_mm",
+    }
+    assert "greater than 0" in found["recipes.0.compensation.threshold_mm"].allowed
+    assert found["recipes.0.compensation.threshold_mm"].value == "-1.0"
+    assert found["recipes.0.deck_thickness_mm"].value == "(missing)"
+
+
+def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path):
+    path = changed(tmp_path, speed=("max_speed_mm_s = 100.0", "max_speed_mm_s = 1e9"))
+    (problem,) = problems(path)
+    assert problem.key == "robots.main.settings.max_speed_mm_s"
+    with pytest.raises(ConfigInvalid, match="max_speed_mm_s"):
+        load_cell(path)
+
+
+def test_an_unknown_driver_lists_the_installed_ones(tmp_path: Path):
+    path = changed(tmp_path, driver=('driver = "target-server"', 'driver = "laser"'))
+    (problem,) = problems(path)
+    assert (problem.key, problem.number) == ("tracker.driver", 103)
+    assert "target-server" in problem.allowed
+
+
+def test_real_and_simulated_devices_do_not_mix(tmp_path: Path):
+    path = changed(tmp_path, mix=("simulated = true", "simulated = false"))
+    (problem,) = problems(path)
+    assert problem.number == 104
+
+
+def test_a_missing_feature_file_is_an_error(tmp_path: Path):
+    path = changed(tmp_path, feature=("features/deck.toml", "features/none.toml"))
+    (problem,) = problems(path)
+    assert problem.key == "recipes.0.deck_features"
+
+
+@pytest.mark.parametrize("content", [b"= broken", b"\xff\xfe", None])
+def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
+    path = tmp_path / "cell.toml"
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(ConfigUnreadable, match=r"cell\.toml"):
+        problems(path)
+
+
+def test_recipe_numbers_must_differ():
+    raw: dict[str, Any] = tomllib.loads((CONFIG / "cell.fake.toml").read_text())
+    raw["recipes"] *= 2
+    from cellctl.config import CellConfig
+
+    with pytest.raises(ValueError, match="recipe ids must differ"):
+        CellConfig.model_validate(raw)
+
+
+def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
+    path = changed(tmp_path, threshold=("threshold_mm = 0.05", "threshold_mm = 7"))
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert result.exit_code == 1
+    assert "recipes.0.compensation" in result.output
+    assert CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")]).exit_code == 0
