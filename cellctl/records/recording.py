@@ -1,0 +1,133 @@
+"""Force curves as MCAP files: readable by common viewers, and up to a cut when cut off.
+
+Small compressed chunks, each flushed to the disk, bound what a power cut can take. A recording
+under way is called ``*.part``; who finds one reads it like any other.
+"""
+
+import io
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from types import TracebackType
+from typing import IO, Any, Self
+
+import numpy as np
+from mcap.exceptions import McapError
+from mcap.records import Message, Metadata
+from mcap.stream_reader import StreamReader
+from mcap.writer import CompressionType, Writer
+
+from cellctl.errors.records import RecordingUnreadable, RecordNotWritten
+from cellctl.force.curve import ForceCurve
+from cellctl.geometry.pose import MM, Array
+
+MEDIA_TYPE = "application/x-mcap"
+_TOPIC = "/mating/force"
+_FACTS = "facts"
+_CHUNK_BYTES = 64 * 1024
+_FIELDS = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
+_SCHEMA = {
+    "title": "mating.Force",
+    "description": "deck frame, gravity removed, tared; travel along the approach",
+    "type": "object",
+    "properties": {name: {"type": "number"} for name in ("time_s", "travel_mm", *_FIELDS)},
+}
+_RECORD_LIMIT = 16 * 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A curve read back."""
+
+    curve: ForceCurve
+    facts: Mapping[str, str]
+    complete: bool
+    """False when the file was cut off; the curve then ends early."""
+
+
+class CurveWriter:
+    """Writes samples to a stream; a context, ended properly also on an exception."""
+
+    def __init__(self, stream: IO[bytes], started: datetime, facts: Mapping[str, str]) -> None:
+        """``started`` is the wall-clock time of ``time_s`` zero of this file."""
+        self._stream = stream
+        self._start_ns = int(started.timestamp() * 1e9)
+        self._writer = Writer(stream, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
+        self._writer.start(profile="", library="cellctl")
+        schema = json.dumps(_SCHEMA).encode()
+        schema_id = self._writer.register_schema("mating.Force", "jsonschema", schema)
+        self._channel = self._writer.register_channel(_TOPIC, "json", schema_id)
+        self._writer.add_metadata(_FACTS, dict(facts))
+        self._count = 0
+
+    def add(self, time_s: float, travel_m: float, wrench: Array) -> None:
+        """One sample; travel may be NaN."""
+        values = {"time_s": round(time_s, 6)}
+        if np.isfinite(travel_m):
+            values["travel_mm"] = round(travel_m / MM, 5)
+        values |= {name: round(float(v), 4) for name, v in zip(_FIELDS, wrench, strict=True)}
+        time_ns = self._start_ns + int(time_s * 1e9)
+        self._writer.add_message(self._channel, time_ns, json.dumps(values).encode(), time_ns)
+        self._count += 1
+
+    def sync(self) -> None:
+        """Everything so far on the disk; raises ``RecordNotWritten``."""
+        try:
+            self._writer.flush()
+            self._stream.flush()
+            os.fdatasync(self._stream.fileno())
+        except OSError as error:
+            raise RecordNotWritten(f"force recording: {error.strerror}") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._writer.finish()
+
+
+def encode_curve(curve: ForceCurve, started: datetime, facts: Mapping[str, str]) -> bytes:
+    """A finished recording of a whole curve; its time starts at zero."""
+    stream = io.BytesIO()
+    with CurveWriter(stream, started, facts) as writer:
+        begin_s = curve.time_s[0] if len(curve.time_s) else 0.0
+        samples = zip(curve.time_s - begin_s, curve.travel_m, curve.wrench, strict=True)
+        for time_s, travel_m, wrench in samples:
+            writer.add(float(time_s), float(travel_m), wrench)
+    return stream.getvalue()
+
+
+def read_recording(source: bytes | Path) -> Recording:
+    """Read a recording as far as it goes; raises ``RecordingUnreadable`` when that is nowhere."""
+    data = source if isinstance(source, bytes) else source.read_bytes()
+    rows: list[list[float]] = []
+    facts: dict[str, str] = {}
+    complete = True
+    try:
+        for record in _records(data):
+            if isinstance(record, Message):
+                values = json.loads(record.data)
+                names = ("time_s", "travel_mm", *_FIELDS)
+                rows.append([values.get(name, np.nan) for name in names])
+            elif isinstance(record, Metadata):
+                facts = dict(record.metadata)
+    except (McapError, ValueError, EOFError) as error:
+        complete = False
+        if not rows:
+            raise RecordingUnreadable(str(error) or type(error).__name__) from error
+    table = np.array(rows, dtype=float).reshape(-1, 8)
+    curve = ForceCurve(table[:, 0], table[:, 2:], table[:, 1] * MM)
+    return Recording(curve, facts, complete)
+
+
+def _records(data: bytes) -> Iterator[Any]:
+    reader = StreamReader(io.BytesIO(data), record_size_limit=_RECORD_LIMIT)
+    yield from reader.records
