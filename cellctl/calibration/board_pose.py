@@ -12,6 +12,8 @@ from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.interfaces.target_tracker import Target
 
 _MIN_DISCS = 4
+_MAX_RMS_M = 2e-3
+"""Beyond this the discs are confused or it is another board."""
 _OUTLIER_CHI2 = 25.0
 """Squared normalised residual (3 coordinates) of a disc that does not belong: p below 2e-5."""
 
@@ -68,7 +70,8 @@ def fit_board(
 ) -> BoardPose:
     """Pose of the board; ``disc_sigma_m`` is the drawing's own uncertainty per coordinate.
 
-    Raises ``BoardPoseInvalid`` with fewer than four discs, discs on a line, or an unknown name.
+    Raises ``BoardPoseInvalid`` with fewer than four discs, discs on a line, an unknown
+    name, or discs that do not fit the drawing.
     """
     unknown = [point.name for point in points if point.name not in drawing]
     if unknown:
@@ -86,7 +89,10 @@ def fit_board(
         point.name: float(np.linalg.norm(residual))
         for point, residual in zip(used, residuals, strict=True)
     }
-    return BoardPose(pose, distances, tuple(outliers), chi2_ratio)
+    board = BoardPose(pose, distances, tuple(outliers), chi2_ratio)
+    if board.rms_m > _MAX_RMS_M:
+        raise BoardPoseInvalid(f"the discs are {board.rms_m / MM:.1f} mm rms off their drawing")
+    return board
 
 
 def _fit(

@@ -103,12 +103,14 @@ def _maximum_likelihood(
     z: RigidTransform,
 ) -> tuple[Solution, RigidTransform, RigidTransform]:
     """Two rounds, because the weights depend a little on X and Z."""
+    back_turns, measured = _stacked(poses, setup)
     for _ in range(2):
         whitening = _whitening(poses, setup, noise, x, z)
         x_0, z_0 = x, z
 
         def residuals(delta: Array) -> Array:
-            raw = _residuals(poses, setup, _moved(x_0, delta[:6]), _moved(z_0, delta[6:]))  # noqa: B023
+            x_1, z_1 = _moved(x_0, delta[:6]), _moved(z_0, delta[6:])  # noqa: B023
+            raw = _compare(back_turns, measured, x_1, z_1)
             return np.asarray(np.einsum("nij,nj->ni", whitening, raw).ravel())  # noqa: B023
 
         solution = solve(residuals, np.zeros(12))
@@ -120,14 +122,23 @@ def _residuals(
     poses: Sequence[HandEyePose], setup: Setup, x: RigidTransform, z: RigidTransform
 ) -> Array:
     """Measured against predicted camera_T_board, shape (n, 6)."""
-    back = x.inv()
-    rows = []
-    for pose in poses:
-        predicted = back * _turn(pose.base_T_flange, setup).inv() * z
-        measured = pose.camera_T_board.pose
-        turn = (measured.rotation * predicted.rotation.inv()).as_rotvec()
-        rows.append(np.concatenate([measured.translation - predicted.translation, turn]))
-    return np.stack(rows)
+    return _compare(*_stacked(poses, setup), x, z)
+
+
+def _stacked(poses: Sequence[HandEyePose], setup: Setup) -> tuple[RigidTransform, RigidTransform]:
+    """All turns, inverted, and all measured camera_T_board."""
+    turns = [_turn(pose.base_T_flange, setup).inv() for pose in poses]
+    return RigidTransform.concatenate(turns), RigidTransform.concatenate(
+        [pose.camera_T_board.pose for pose in poses]
+    )
+
+
+def _compare(
+    back_turns: RigidTransform, measured: RigidTransform, x: RigidTransform, z: RigidTransform
+) -> Array:
+    predicted = x.inv() * back_turns * z
+    turn = (measured.rotation * predicted.rotation.inv()).as_rotvec()
+    return np.concatenate([measured.translation - predicted.translation, turn], axis=1)
 
 
 def _whitening(

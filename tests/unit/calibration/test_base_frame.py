@@ -76,7 +76,7 @@ def error(result: BaseFrameResult) -> Array:
 
 
 def test_accuracy_and_honest_covariance() -> None:
-    results = [calibrate(seed) for seed in range(30)]
+    results = [calibrate(seed) for seed in range(20)]
     errors = np.stack([error(result) for result in results])
     rms = np.sqrt((errors**2).mean(axis=0))
     assert (rms[:3] < 6e-5).all()
