@@ -206,7 +206,7 @@ class SjlController:
             *("1" if flag else "0" for flag in flags),
             str(logic.error_code),
             "0" if self.faults.active("override_zero") else "100",
-            *pose_fields(self._arm.encoder_pose(now_s)),
+            *pose_fields(self._arm.encoder_matrix(now_s)),
             *joint_fields(self._arm.joints(now_s).tolist()),
         ]
 

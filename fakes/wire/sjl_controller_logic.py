@@ -132,9 +132,9 @@ class Controller:
         """What has become due: dead man, panel, end of a motion, end of a stop."""
         self._supervise_links(time_s)
         self._supervise_panel(time_s)
-        if self.arm.moving(time_s):
+        if self.arm.moving(time_s) or not (self._motion or self._stops):
             return []
-        pose = pose_fields(self.arm.encoder_pose(time_s))
+        pose = pose_fields(self.arm.encoder_matrix(time_s))
         out: Outbox = []
         motion, self._motion = self._motion, None
         if motion is not None and not self.faults.use("never_done"):
@@ -154,7 +154,7 @@ class Controller:
         if self._motion is not None:
             raise RefusedMotionError("BUSY")
         self.latched = False
-        pose = pose_fields(self.arm.encoder_pose(time_s))
+        pose = pose_fields(self.arm.encoder_matrix(time_s))
         return [("CMD", ["ACK", str(seq)]), ("CMD", ["DONE", str(seq), *pose])]
 
     def _move(self, word: str, seq: int, values: list[float], time_s: float) -> Outbox:

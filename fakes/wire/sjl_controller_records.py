@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
-from fakes.world.frames import to_written
+from fakes.world.frames import Array, matrix_to_written
 
 RECORD_MAX = 255
 """Bytes, with the LF."""
@@ -42,9 +41,9 @@ def fixed(value: float, decimals: int) -> str:
     return text[1:] if text.startswith("-") and not text.strip("-0.") else text
 
 
-def pose_fields(base_T_flange: RigidTransform) -> list[str]:
-    """x, y, z, a, b, c with 4 decimals."""
-    return [fixed(value, 4) for value in to_written(base_T_flange)]
+def pose_fields(base_T_flange: Array) -> list[str]:
+    """x, y, z, a, b, c with 4 decimals, from a 4x4 matrix."""
+    return [fixed(value, 4) for value in matrix_to_written(base_T_flange)]
 
 
 def joint_fields(joints_rad: Sequence[float]) -> list[str]:

@@ -18,7 +18,10 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from fakes.scenario import Chain
 from fakes.world.frames import MM, Array
 
-_AXES = np.array([[0, 0, 1], [0, 1, 0], [0, 1, 0], [1, 0, 0], [0, 1, 0], [1, 0, 0]], dtype=float)
+_FIRST, _SECOND = np.array([[0, 2, 2, 1, 2, 1], [1, 0, 0, 2, 0, 2]])
+"""The two coordinates that each joint mixes: z, y, y, x, y, x are the axes."""
+_EACH = np.arange(6)
+_TURNS = np.tile(np.eye(4), (6, 1, 1))
 _FLANGE = Rotation.from_euler("y", 90, degrees=True)
 _SINGULAR_RAD = np.deg2rad(0.5)
 
@@ -63,21 +66,16 @@ def perturbed_links(
 
 def forward_matrix(links: Links, joints_rad: Array) -> Array:
     """base_T_flange as a 4x4 matrix."""
-    result: Array = links.matrices[0]
     angles = joints_rad + links.joint_offsets_rad
-    cosines, sines = np.cos(angles).tolist(), np.sin(angles).tolist()
-    for index, (c, s) in enumerate(zip(cosines, sines, strict=True)):
-        turn = np.eye(4)
-        first, second = _PLANES[index]
-        turn[first, first] = turn[second, second] = c
-        turn[second, first] = s
-        turn[first, second] = -s
-        result = result @ turn @ links.matrices[index + 1]
+    turns = _TURNS.copy()
+    cosines, sines = np.cos(angles), np.sin(angles)
+    turns[_EACH, _FIRST, _FIRST] = turns[_EACH, _SECOND, _SECOND] = cosines
+    turns[_EACH, _SECOND, _FIRST] = sines
+    turns[_EACH, _FIRST, _SECOND] = -sines
+    result: Array = links.matrices[0]
+    for step in turns @ links.matrices[1:]:
+        result = result @ step
     return result
-
-
-_PLANES = [((1, 2), (2, 0), (0, 1))[int(np.argmax(axis))] for axis in _AXES]
-"""The two axes that a joint mixes: (y, z) about x, (z, x) about y, (x, y) about z."""
 
 
 def forward(links: Links, joints_rad: Array) -> RigidTransform:

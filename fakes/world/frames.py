@@ -1,6 +1,7 @@
 """Poses of the world: the written form, small displacements, seeded random streams."""
 
 from collections.abc import Sequence
+from math import atan2, degrees, hypot
 from zlib import crc32
 
 import numpy as np
@@ -21,8 +22,16 @@ def from_written(xyz_mm_abc_deg: Sequence[float]) -> RigidTransform:
 
 def to_written(pose: RigidTransform) -> list[float]:
     """x, y, z in mm and A, B, C in degrees."""
-    abc_deg = pose.rotation.as_euler("ZYX", degrees=True, suppress_warnings=True)
-    return [float(value) for value in (*(pose.translation / MM), *abc_deg)]
+    return matrix_to_written(pose.as_matrix())
+
+
+def matrix_to_written(matrix: Array) -> list[float]:
+    """The same from a 4x4 matrix, in plain floats because controllers report 200 times a second."""
+    (r00, r01, _, x), (r10, r11, _, y), (r20, r21, r22, z), _ = matrix.tolist()
+    level = hypot(r00, r10)
+    b = atan2(-r20, level)
+    a, c = (atan2(r10, r00), atan2(r21, r22)) if level > 1e-9 else (atan2(-r01, r11), 0.0)
+    return [x / MM, y / MM, z / MM, degrees(a), degrees(b), degrees(c)]
 
 
 def displacement(translation_m: ArrayLike, rotation_rad: ArrayLike) -> RigidTransform:

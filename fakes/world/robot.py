@@ -115,6 +115,10 @@ class RobotArm:
         """base_T_flange as the controller believes it."""
         return forward(self._nominal, self.joints(time_s))
 
+    def encoder_matrix(self, time_s: float) -> Array:
+        """The same as a 4x4 matrix."""
+        return forward_matrix(self._nominal, self.joints(time_s))
+
     def flange_matrix(self, time_s: float) -> Array:
         """True cell_T_flange as a 4x4 matrix."""
         along = self._profile.at(time_s)

@@ -39,7 +39,10 @@ def test_golden_records_both_ways(record: str):
 
 def test_golden_pose_and_joints():
     pose = from_written([1900, -0.125, 927, 90, 0, 180])
-    assert ",".join(pose_fields(pose)) == "1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000"
+    assert (
+        ",".join(pose_fields(pose.as_matrix()))
+        == "1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000"
+    )
     joints = np.deg2rad([0, -45, 90, 0, 45, 0])
     assert joint_fields(joints.tolist())[1] == "-45.00000"
 
