@@ -1,0 +1,78 @@
+"""Every installed driver: right interface, a ``Config``, a full folder, and a contract class."""
+
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+from cellctl.interfaces import FtSensor, Robot, StereoCamera, StopChannel, TargetTracker
+from tests.contracts import test_ft_sensors, test_heads, test_robots, test_stop_channels
+from tests.contracts.ft_sensor import FtSensorContract
+from tests.contracts.robot import RobotContract
+from tests.contracts.stereo_camera import StereoCameraContract
+from tests.contracts.stop_channel import StopChannelContract
+from tests.contracts.target_tracker import TargetTrackerContract
+
+KINDS: dict[str, tuple[type, type]] = {
+    "cellctl.robot": (Robot, RobotContract),
+    "cellctl.stop_channel": (StopChannel, StopChannelContract),
+    "cellctl.camera": (StereoCamera, StereoCameraContract),
+    "cellctl.target_tracker": (TargetTracker, TargetTrackerContract),
+    "cellctl.ft_sensor": (FtSensor, FtSensorContract),
+}
+MODULES = (test_ft_sensors, test_heads, test_robots, test_stop_channels)
+POINTS = [point for group in KINDS for point in entry_points(group=group)]
+FILES = ("README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py")
+WITHOUT_IO = ("asyncio", "socket", "serial", "can")
+
+
+def described(point: EntryPoint) -> str:
+    return f"{point.group}:{point.name}"
+
+
+def test_every_kind_has_a_driver() -> None:
+    assert {point.group for point in POINTS} == set(KINDS)
+
+
+@pytest.mark.parametrize("point", POINTS, ids=described)
+def test_implements_its_interface(point: EntryPoint) -> None:
+    driver = point.load()
+    assert issubclass(driver, KINDS[point.group][0])
+    assert not getattr(driver, "__abstractmethods__", None)
+    assert issubclass(driver.Config, BaseModel)
+    assert driver.Config.model_config["extra"] == "forbid"
+    assert driver.Config.model_config["frozen"]
+
+
+@pytest.mark.parametrize("point", POINTS, ids=described)
+def test_has_a_contract_class(point: EntryPoint) -> None:
+    driver, contract = point.load(), KINDS[point.group][1]
+    classes = [cls for module in MODULES for cls in vars(module).values() if isinstance(cls, type)]
+    tested = [
+        cls
+        for cls in classes
+        if issubclass(cls, contract) and getattr(cls, "driver", None) is driver
+    ]
+    assert tested, f"no class with driver = {driver.__name__} derives from {contract.__name__}"
+    clauses = {name for name in vars(contract) if name.startswith("test_")}
+    assert not clauses & set(vars(tested[0])), "a contract clause is overridden"
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_contract_also_runs_in_memory(kind: str) -> None:
+    contract = KINDS[kind][1]
+    classes = [cls for module in MODULES for cls in vars(module).values() if isinstance(cls, type)]
+    names = [cls.__name__ for cls in classes if issubclass(cls, contract)]
+    assert any("InProcess" in name for name in names)
+
+
+@pytest.mark.parametrize("point", POINTS, ids=described)
+def test_folder(point: EntryPoint) -> None:
+    source = import_module(point.module).__file__
+    assert source is not None
+    folder = Path(source).parent
+    assert [name for name in FILES if not (folder / name).is_file()] == []
+    protocol = (folder / "protocol.py").read_text()
+    assert [name for name in WITHOUT_IO if f"import {name}" in protocol] == []

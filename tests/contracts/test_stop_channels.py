@@ -1,0 +1,72 @@
+"""The contract of the stop channel: in memory, and the SIASUN driver on its fake controller."""
+
+from collections.abc import Iterator
+from contextlib import AsyncExitStack
+
+import numpy as np
+import pytest
+
+from cellctl.interfaces.stop_channel import StopChannel
+from drivers.robot.siasun.stop_channel import SiasunStopChannel
+from tests.contracts.inprocess.stop_channel import InProcessStopChannel
+from tests.contracts.loop_thread import LoopThread
+from tests.contracts.stop_channel import StopBench, StopChannelContract
+from tests.wire.sjl_rig import READY_DEG, Rig, sjl_rig
+
+
+class InProcessBench(StopBench):
+    def __init__(self) -> None:
+        self.memory = InProcessStopChannel()
+        self.channel: StopChannel = self.memory
+
+    def start_motion(self) -> None:
+        self.memory.start_motion()
+
+    def moving(self) -> bool:
+        return self.memory.moving()
+
+    def cut(self) -> None:
+        self.memory.lost = True
+
+
+class SiasunBench(StopBench):
+    def __init__(self, thread: LoopThread, rig: Rig) -> None:
+        self._thread = thread
+        self._rig = rig
+        self.channel: StopChannel = SiasunStopChannel(rig.guard)
+        thread.call(rig.controller.start)
+
+    def start_motion(self) -> None:
+        def begin() -> None:
+            target = np.radians([30.0, *READY_DEG[1:]])
+            self._rig.arm.start_joint(self._rig.controller._clock(), target, 10.0)
+
+        self._thread.call(begin)
+
+    def moving(self) -> bool:
+        return self._thread.call(lambda: self._rig.arm.moving(self._rig.controller._clock()))
+
+    def cut(self) -> None:
+        self._thread.call(self._rig.wires["GRD"].reset)
+
+
+class TestInProcessStopChannel(StopChannelContract):
+    @pytest.fixture
+    def bench(self) -> Iterator[StopBench]:
+        bench = InProcessBench()
+        yield bench
+        bench.channel.close()
+
+
+class TestSiasunStopChannel(StopChannelContract):
+    driver = SiasunStopChannel
+
+    @pytest.fixture
+    def bench(self) -> Iterator[StopBench]:
+        with LoopThread() as thread:
+            stack = AsyncExitStack()
+            rig = thread.run(stack.enter_async_context(sjl_rig(channels=("GRD",))))
+            bench = SiasunBench(thread, rig)
+            yield bench
+            bench.channel.close()
+            thread.run(stack.aclose())
