@@ -88,3 +88,34 @@ def test_contact_never_pulls(scenario: Scenario):
     for _ in range(40):
         mass.touch(STEP_S, np.zeros(4), np.zeros(4), np.zeros(6))
         assert mass.normal_forces.min() >= 0
+
+
+@pytest.mark.parametrize(
+    ("speed_mm_s", "latency_s", "peak_n"),
+    [
+        (0.2, 0.002, 37), (0.2, 0.05, 44), (0.5, 0.002, 42), (0.5, 0.05, 58), (1, 0.002, 53),
+        (1, 0.05, 84), (2, 0.002, 62), (2, 0.05, 132), (5, 0.002, 124), (5, 0.05, 297),
+    ],
+)  # fmt: skip
+def test_stop_at_35_n_overshoots_as_an_independent_integrator_found(
+    scenario: Scenario, speed_mm_s: float, latency_s: float, peak_n: float
+):
+    """200 kg behind 1e6 N/m onto 3e6 N/m, 5 ms low-pass, 35 N, then latency and 0.5 m/s²."""
+    stiff = payload(scenario, damping_ratio=0.05)
+    mass = Suspension(stiff, MASS_KG, pads(3e6, 2 * 0.05 * np.sqrt(3e6 * MASS_KG)))
+    gap, rate, filtered, peak, braking_s = speed_mm_s * 5e-4, -speed_mm_s * 1e-3, 0.0, 0.0, np.inf
+    for index in range(24_000):
+        now_s = index * STEP_S
+        braking = now_s > braking_s and rate < 0
+        inertia = np.array([0, 0, -0.5 * MASS_KG if braking else 0, 0, 0, 0], dtype=float)
+        rate = min(0.0, rate + 0.5 * STEP_S) if braking else rate
+        mass.touch(STEP_S, np.full(4, gap), np.full(4, rate), inertia)
+        gap += rate * STEP_S
+        peak = max(peak, mass.normal_forces.sum())
+        if index % 4 == 0:
+            filtered += (mass.spring_wrench[2] - filtered) * (1 - np.exp(-0.2))
+            if filtered > 35 and np.isinf(braking_s):
+                braking_s = now_s + latency_s
+        if now_s > braking_s + 0.3:
+            break
+    assert peak == pytest.approx(peak_n, rel=0.03)
