@@ -1,6 +1,7 @@
 """Measure the named holes of a part in one stereo pair."""
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -13,6 +14,7 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.camera import X_AXIS
 from cellctl.vision.diagnose import fault_without_layout
 from cellctl.vision.features import Hole
 from cellctl.vision.image_checks import check_pair
@@ -20,9 +22,9 @@ from cellctl.vision.layout import Assignment, Spot, assignments
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement, away_normal
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.registration import kabsch, on_a_line
-from cellctl.vision.rim import Rejection, Rim, View, coarse_rim, measure_rim
+from cellctl.vision.rim import Rejection, Rim, Sight, coarse_rim, measure_rim, measure_thread
 from cellctl.vision.search import NEAR, WIDE, spots_anywhere, spots_near
-from cellctl.vision.stereo import epipolar_distances_px, midpoints, triangulate
+from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, midpoints, triangulate
 from cellctl.vision.stereo_head import StereoHead
 
 SEARCH_RADIUS_M = 12e-3
@@ -35,6 +37,9 @@ _COARSE_EPIPOLAR_PX, _FINE_EPIPOLAR_PX = 2.5, 0.35
 _SIZE_AGREEMENT = 0.02
 _SAME_PLACE_M = 2e-3
 _MAX_TRIED = 6
+_SIDES = ("left", "right")
+
+_T = TypeVar("_T")
 
 
 def measure_pair(
@@ -60,12 +65,14 @@ def measure_pair(
             left, right, head, holes, camera_T_part=camera_T_part, search_radius_m=search_radius_m
         )
     found = _find(left, right, head, holes, camera_T_part, search_radius_m)
-    views = (View(left, head.left), View(right, head.right))
+    images = (left, right)
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
     for assignment in found[:_MAX_TRIED]:
         try:
-            good.append(_measure(views, head, holes, assignment, camera_T_part, layout_tolerance_m))
+            good.append(
+                _measure(images, head, holes, assignment, camera_T_part, layout_tolerance_m)
+            )
         except VisionError as fault:
             faults.append(fault)
     if not good:
@@ -115,7 +122,7 @@ def _distinct(found: Sequence[Assignment]) -> list[Assignment]:
 
 
 def _measure(
-    views: tuple[View, View],
+    images: tuple[Image, Image],
     head: StereoHead,
     holes: Sequence[Hole],
     assignment: Assignment,
@@ -124,14 +131,27 @@ def _measure(
 ) -> PairMeasurement:
     positions_m = assignment.positions_m
     normal = _plane_normal(holes, positions_m, camera_T_part)
-    positions_m = _coarse_positions(views, head, holes, positions_m, normal)
+    positions_m = _coarse_positions(images, head, holes, positions_m, normal)
     _check_layout(holes, positions_m, tolerance_m + 0.5e-3)
     normal = _plane_normal(holes, positions_m, camera_T_part)
-    measured = tuple(
-        _measure_hole(views, head, hole, position_m, normal)
-        for hole, position_m in zip(holes, positions_m, strict=True)
-    )
-    result = PairMeasurement("default", measured)
+    measured: dict[str, HoleMeasurement] = {}
+    blurs: list[tuple[float, float]] = []
+    for index in sorted(range(len(holes)), key=lambda index: holes[index].kind == "thread"):
+        hole = holes[index]
+        sights = _sights(images, head, positions_m[index], normal)
+        if hole.kind == "thread":
+            known = np.median(blurs, axis=0) if blurs else None
+            blur_px = None if known is None else (float(known[0]), float(known[1]))
+            rims = _or_missing(hole, measure_thread(sights, hole, _FINE_REACH_PX, blur_px))
+        else:
+            left, right = (
+                _or_missing(hole, measure_rim(sight, hole, _FINE_REACH_PX), side)
+                for side, sight in zip(_SIDES, sights, strict=True)
+            )
+            blurs.append((left.blur_px, right.blur_px))
+            rims = left, right, joint_covariance(left.covariance_px2, right.covariance_px2)
+        measured[hole.name] = _stereo(head, hole, *rims)
+    result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     _check_layout(holes, result.positions_m, tolerance_m)
     return result
 
@@ -150,7 +170,7 @@ def _plane_normal(
 
 
 def _coarse_positions(
-    views: tuple[View, View],
+    images: tuple[Image, Image],
     head: StereoHead,
     holes: Sequence[Hole],
     positions_m: Array,
@@ -158,11 +178,9 @@ def _coarse_positions(
 ) -> Array:
     pixels = np.zeros((2, len(holes), 2))
     for index, (hole, position_m) in enumerate(zip(holes, positions_m, strict=True)):
-        for camera, (view, place, away) in enumerate(_both(views, head, position_m, normal)):
-            found = coarse_rim(view, hole, place, away, _COARSE_REACH_PX)
-            if isinstance(found, Rejection):
-                raise HoleMissing(f"{hole.name} ({_side(camera)}): {found.reason}")
-            pixels[camera, index] = found
+        for camera, sight in enumerate(_sights(images, head, position_m, normal)):
+            found = coarse_rim(sight, hole, _COARSE_REACH_PX)
+            pixels[camera, index] = _or_missing(hole, found, _SIDES[camera])
     distances = np.diag(epipolar_distances_px(head, pixels[0], pixels[1]))
     for hole, distance in zip(holes, distances, strict=True):
         if distance > _COARSE_EPIPOLAR_PX:
@@ -170,16 +188,10 @@ def _coarse_positions(
     return midpoints(head, pixels[0], pixels[1])
 
 
-def _measure_hole(
-    views: tuple[View, View], head: StereoHead, hole: Hole, position_m: Array, normal: Array
+def _stereo(
+    head: StereoHead, hole: Hole, left: Rim, right: Rim, covariance_px2: Array
 ) -> HoleMeasurement:
-    rims: list[Rim] = []
-    for camera, (view, place, away) in enumerate(_both(views, head, position_m, normal)):
-        rim = measure_rim(view, hole, place, away, _FINE_REACH_PX)
-        if isinstance(rim, Rejection):
-            raise HoleMissing(f"{hole.name} ({_side(camera)}): {rim.reason}")
-        rims.append(rim)
-    left, right = rims
+    """Both rims to a point, if they can be of the same hole."""
     epipolar_px = float(
         epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
     )
@@ -187,9 +199,7 @@ def _measure_hole(
         raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
     if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:
         raise HoleMissing(f"{hole.name}: left and right image show rims of different size")
-    point = triangulate(
-        head, left.point_px, right.point_px, left.covariance_px2, right.covariance_px2
-    )
+    point = triangulate(head, left.point_px, right.point_px, covariance_px2)
     return HoleMeasurement(
         name=hole.name,
         kind=hole.kind,
@@ -206,16 +216,23 @@ def _measure_hole(
     )
 
 
-def _both(
-    views: tuple[View, View], head: StereoHead, position_m: Array, normal: Array
-) -> list[tuple[View, Array, Array]]:
-    """View, place and plane normal for the left and for the right camera."""
-    in_right = head.rotation @ position_m + head.translation_m
-    return [(views[0], position_m, normal), (views[1], in_right, head.rotation @ normal)]
+def _sights(
+    images: tuple[Image, Image], head: StereoHead, position_m: Array, normal: Array
+) -> tuple[Sight, Sight]:
+    """Where both cameras see a hole."""
+    turn = head.rotation
+    in_right = turn @ position_m + head.translation_m
+    return (
+        Sight(images[0], head.left, position_m, normal, X_AXIS),
+        Sight(images[1], head.right, in_right, turn @ normal, turn @ X_AXIS),
+    )
 
 
-def _side(camera: int) -> str:
-    return ("left", "right")[camera]
+def _or_missing(hole: Hole, found: _T | Rejection, side: str = "") -> _T:
+    """What was found, or ``HoleMissing`` with the reason."""
+    if isinstance(found, Rejection):
+        raise HoleMissing(f"{hole.name}{side and f' ({side})'}: {found.reason}")
+    return found
 
 
 def _check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float) -> None:

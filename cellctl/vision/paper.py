@@ -21,7 +21,7 @@ from cellctl.vision.features import Hole
 from cellctl.vision.layout import Spot, assignments, pair_spots
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 from cellctl.vision.search import WIDE, working_distance_m
-from cellctl.vision.stereo import epipolar_distances_px, triangulate
+from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, triangulate
 from cellctl.vision.stereo_head import CameraModel, StereoHead
 
 CENTRE_SIGMA_PX = 0.03
@@ -139,7 +139,9 @@ def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
     if not (isinstance(left, _Found) and isinstance(right, _Found)):
         raise TypeError("spots of this method carry their ellipse")
     covariance = np.eye(2) * CENTRE_SIGMA_PX**2
-    point = triangulate(head, left.centre_px, right.centre_px, covariance, covariance)
+    point = triangulate(
+        head, left.centre_px, right.centre_px, joint_covariance(covariance, covariance)
+    )
     epipolar = epipolar_distances_px(head, left.centre_px[None], right.centre_px[None])
     return HoleMeasurement(
         name=hole.name,

@@ -58,7 +58,7 @@ def edge_circle(
     ``smoothed`` is the patch's grey values after a light blur. ``radius`` is the expected one;
     circles that differ from it by more than ``radius_tolerance`` (a ratio) are not considered.
     """
-    px = plane_units_per_px(patch)
+    px = patch.unit_px
     reach = reach_px * px + radius_tolerance * radius
     edges = _radial_edges(smoothed, patch, camera, centre, radius, reach, px, bright=bright)
     if len(edges.points) < 12:
@@ -67,12 +67,6 @@ def edge_circle(
     if start is None:
         return None
     return _refined(edges, start, patch, camera, px)
-
-
-def plane_units_per_px(patch: PlanePatch) -> float:
-    """Size of a pixel in the patch's plane units."""
-    height, width = patch.jacobian.shape[:2]
-    return float(np.sqrt(abs(np.linalg.det(patch.jacobian[height // 2, width // 2]))))
 
 
 def plane_to_px(camera: CameraModel, patch: PlanePatch, points: Array) -> Array:

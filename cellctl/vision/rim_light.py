@@ -15,7 +15,7 @@ from cellctl.vision.rim_model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 8.0, 4.0, 60.0
+_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 8.0, 4.0, 30.0
 _THREAD_BAND = 0.15
 """Radial extent, in radii, over which the flanks of a thread change by about their contrast."""
 
@@ -38,15 +38,23 @@ class Surface:
     """Index of the border at which it begins; None for the outermost surface."""
     inner: int | None
     """Index of the border at which it ends; None for the innermost surface."""
-    columns: Array
-    """Shape (n, terms)."""
+    terms: Array
+    """Shape (terms, n)."""
     sigma_grey: Array
     """Prior standard deviation of each term's amplitude, shape (terms,); infinite when free."""
+    ring: bool = False
+    """It is the ring, whose grey several cameras see alike."""
 
-    def share(self, borders: Sequence[Border]) -> Array:
+    def share(self, edges: Sequence[Border]) -> Array:
         """Part of each pixel that it covers, shape (n,)."""
-        inner = 1.0 if self.inner is None else borders[self.inner].outside
-        return np.asarray(inner - (0.0 if self.outer is None else borders[self.outer].outside))
+        inner = 1.0 if self.inner is None else edges[self.inner].outside
+        return np.asarray(inner - (0.0 if self.outer is None else edges[self.outer].outside))
+
+    def by_shape(self, edges: Sequence[Border], amplitudes: Array) -> Array:
+        """Derivative of its contribution by the shape, shape (p, n)."""
+        inner = 0.0 if self.inner is None else edges[self.inner].by_shape
+        outer = 0.0 if self.outer is None else edges[self.outer].by_shape
+        return np.asarray((amplitudes @ self.terms) * (inner - outer))
 
 
 def surfaces(
@@ -65,7 +73,8 @@ def surfaces(
 
     found = [Surface(None, 0, *_plate(points(None, 0), shape, light))]
     if shape.ring_ratio is not None:
-        found.append(Surface(0, rim, *_free(_around(points(0, rim), shape))))
+        terms, sigma = _free(_around(points(0, rim), shape))
+        found.append(Surface(0, rim, terms, sigma, ring=True))
     if shape.wall_ratio is not None:
         found.append(Surface(rim, rim + 1, *_wall(points(rim, rim + 1), shape)))
     found.append(Surface(rim, None, *_inside(points(rim, None), shape, light)))
@@ -79,58 +88,61 @@ def _middle(
     outer: int | None,
     inner: int | None,
 ) -> Array:
-    """Middle of what each pixel collects of a surface, shape (n, 2)."""
+    """Middle of what each pixel collects of a surface, shape (2, n)."""
     share = np.ones_like(pixels.grey) if inner is None else edges[inner].outside
     slope = np.zeros_like(pixels.points) if inner is None else edges[inner].by_pixel
     if outer is not None:
         share, slope = share - edges[outer].outside, slope - edges[outer].by_pixel
-    shift_px = shape.blur_px**2 * slope / np.maximum(share, _LEAST_SHARE)[:, None]
-    length = np.hypot(shift_px[:, 0], shift_px[:, 1])
-    shift_px *= np.minimum(1.0, 3.0 * shape.blur_px / np.maximum(length, 1e-9))[:, None]
-    return np.asarray(pixels.points + (pixels.jacobian @ shift_px[:, :, None])[:, :, 0])
+    shift_px = slope * (shape.blur_px**2 / np.maximum(share, _LEAST_SHARE))
+    length = np.sqrt(shift_px[0] ** 2 + shift_px[1] ** 2)
+    shift_px *= np.minimum(1.0, 3.0 * shape.blur_px / np.maximum(length, 1e-9))
+    by_pixel = pixels.jacobian
+    return np.asarray(pixels.points + by_pixel[:, 0] * shift_px[0] + by_pixel[:, 1] * shift_px[1])
 
 
-def _free(columns: Array) -> tuple[Array, Array]:
-    return columns, np.full(columns.shape[1], np.inf)
+def _free(terms: Array) -> tuple[Array, Array]:
+    return terms, np.full(len(terms), np.inf)
 
 
 def _polar(points: Array, shape: RimShape) -> tuple[Array, Array, Array]:
     """Radius over the rim's, cosine and sine of the azimuth."""
-    x, y = ((points - shape.centre) / shape.radius).T
-    radius = np.maximum(np.hypot(x, y), 1e-6)
+    x, y = (points - shape.centre[:, None]) / shape.radius
+    radius = np.maximum(np.sqrt(x * x + y * y), 1e-6)
     return radius, x / radius, y / radius
 
 
 def _around(points: Array, shape: RimShape) -> Array:
     _, cos, sin = _polar(points, shape)
-    return np.column_stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
-
-
-def _linear(points: Array, shape: RimShape) -> Array:
-    radius, cos, sin = _polar(points, shape)
-    above = radius - 1.0
-    return np.column_stack([above, above * cos, above * sin])
+    return np.stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
 
 
 def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
-    if light.cone:
-        return _free(np.hstack([_around(points, shape), _linear(points, shape)]))
-    return _free(np.column_stack([np.ones(len(points)), (points - shape.centre) / shape.radius]))
+    if not light.cone:
+        flat = (points - shape.centre[:, None]) / shape.radius
+        return _free(np.stack([np.ones_like(flat[0]), *flat]))
+    around = _around(points, shape)
+    above = _polar(points, shape)[0] - 1.0
+    return _free(np.concatenate([around, above * around[:3]]))
 
 
 def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
     depth = wall_depth(points, shape)
-    met = (points - shape.centre) / shape.radius + depth[:, None] * points
-    length = np.maximum(np.hypot(met[:, 0], met[:, 1]), 1e-9)
+    met = (points - shape.centre[:, None]) / shape.radius + depth * points
+    met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
-    columns = np.column_stack(
-        [fade, fade * met[:, 0] / length, fade * met[:, 1] / length, fade * depth, 1.0 - fade]
-    )
-    return columns, np.array([np.inf, np.inf, np.inf, _WALL_FADE_GREY, _WALL_OFFSET_GREY])
+    terms = np.stack([fade, fade * met[0], fade * met[1], fade * depth, 1.0 - fade])
+    return terms, np.array([np.inf, np.inf, np.inf, _WALL_FADE_GREY, _WALL_OFFSET_GREY])
 
 
 def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
-    if light.thread:
-        columns = np.hstack([_around(points, shape)[:, :3], _linear(points, shape) / _THREAD_BAND])
-        return columns, np.array([np.inf, *[_THREAD_GREY] * 5])
-    return _free(np.ones((len(points), 1)))
+    if not light.thread:
+        return _free(np.ones((1, points.shape[1])))
+    radius, cos, sin = _polar(points, shape)
+    double_cos, double_sin = cos * cos - sin * sin, 2.0 * sin * cos
+    triple_cos, triple_sin = (
+        cos * double_cos - sin * double_sin,
+        sin * double_cos + cos * double_sin,
+    )
+    level = np.stack([np.ones_like(cos), cos, sin, double_cos, double_sin, triple_cos, triple_sin])
+    terms = np.concatenate([level, level * ((radius - 1.0) / _THREAD_BAND)])
+    return terms, np.array([np.inf, *[_THREAD_GREY] * (len(terms) - 1)])

@@ -4,6 +4,8 @@ Up to four surfaces meet at a hole: the plate, the ring of a chamfer, the visibl
 and the dark inside. Their borders are circles in coordinates of the rim's plane: the outer edge of
 the ring, the rim, and the lower edge of the wall, which lies h below a plane at distance D and is
 therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs all.
+
+Arrays hold one pixel a column: this is the inner loop of every measurement.
 """
 
 from dataclasses import dataclass
@@ -18,19 +20,16 @@ _SQRT_2PI = float(np.sqrt(2.0 * np.pi))
 
 @dataclass(frozen=True, slots=True)
 class RimPixels:
-    """The pixels of a fit, flattened."""
+    """The pixels of a fit."""
 
     points: Array
-    """Shape (n, 2): in the rim's plane, in units of its distance."""
+    """Shape (2, n): in the rim's plane, in units of its distance."""
     jacobian: Array
-    """Shape (n, 2, 2): derivative of ``points`` by the pixel."""
+    """Shape (2, 2, n): derivative of ``points`` by the pixel's column and row."""
     grey: Array
     """Shape (n,)."""
-
-    @property
-    def unit_px(self) -> float:
-        """Plane units in a pixel."""
-        return float(np.sqrt(np.abs(np.mean(np.linalg.det(self.jacobian)))))
+    unit_px: float
+    """Plane units in a pixel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +66,9 @@ class Border:
     outside: Array
     """Shape (n,), 0 to 1."""
     by_shape: Array
-    """Derivatives by ``RimShape.vector``, shape (n, p)."""
+    """Derivatives by ``RimShape.vector``, shape (p, n)."""
     by_pixel: Array
-    """Derivatives by the pixel's column and row, shape (n, 2)."""
+    """Derivatives by the pixel's column and row, shape (2, n)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,44 +76,46 @@ class _Circle:
     """Signed distance of pixels from a circle, positive outside."""
 
     distance_px: Array
-    by_shape: Array
-    direction: Array
-    """Unit vector of growing distance in the image, shape (n, 2)."""
     unit: Array
-    """Unit vector of growing distance in the plane, shape (n, 2)."""
-    scale: Array
-    """Plane units per px along that direction."""
+    """Unit vector of growing distance in the plane, shape (2, n)."""
+    direction: Array
+    """Unit vector of growing distance in the image, shape (2, n)."""
+    px: Array
+    """Pixels in a plane unit along that direction, shape (n,)."""
 
 
 def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     """Borders between neighbouring surfaces, from the outermost to the innermost."""
-    size = len(shape.vector)
-    rim = _circle(pixels, shape.centre, shape.radius, size)
+    rim = _circle(pixels, shape.centre, shape.radius)
+    by_rim = _by_centre_and_radius(rim, shape)
     # A blurred disc of radius r shows its half level nearer to its centre by blur²/(2 r).
-    bend_px = 0.5 * shape.blur_px**2 * float(np.mean(rim.scale)) / shape.radius
-    found = [_blurred(rim, shape.blur_px, bend_px)]
+    bend_px = 0.5 * shape.blur_px**2 / (shape.radius * float(np.mean(rim.px)))
+    found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
     if shape.ring_ratio is not None:
-        ring = _circle(pixels, shape.centre, shape.radius * shape.ring_ratio, size)
-        ring.by_shape[:, -1] = ring.by_shape[:, 2] * shape.radius
-        ring.by_shape[:, 2] *= shape.ring_ratio
-        found.insert(0, _blurred(ring, shape.blur_px, bend_px))
+        ring = _circle(pixels, shape.centre, shape.radius * shape.ring_ratio)
+        by_ring = _by_centre_and_radius(ring, shape)
+        by_ring[-1] = by_ring[2] * shape.radius
+        by_ring[2] *= shape.ring_ratio
+        found.insert(0, _blurred(ring, by_ring, shape.blur_px, bend_px))
     if shape.wall_ratio is not None:
-        low = _lower_edge(pixels, shape, size)
+        shrink = 1.0 + shape.wall_ratio
+        low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
+        by_low = _by_centre_and_radius(low, shape) / shrink
+        by_low[4] = (shape.centre @ low.unit + shape.radius) * low.px / shrink**2
         seen = low.distance_px > rim.distance_px
         inner = _Circle(
             np.where(seen, low.distance_px, rim.distance_px),
-            np.where(seen[:, None], low.by_shape, rim.by_shape),
-            np.where(seen[:, None], low.direction, rim.direction),
             rim.unit,
-            rim.scale,
+            np.where(seen, low.direction, rim.direction),
+            rim.px,
         )
-        found.append(_blurred(inner, shape.blur_px, bend_px))
+        found.append(_blurred(inner, np.where(seen, by_low, by_rim), shape.blur_px, bend_px))
     return found
 
 
 def rim_distance_px(pixels: RimPixels, centre: Array, radius: float) -> Array:
     """Signed distance of pixels from a circle of the plane, positive outside."""
-    return _circle(pixels, centre, radius, 4).distance_px
+    return _circle(pixels, centre, radius).distance_px
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:
@@ -122,36 +123,34 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
 
     The ray through ``q`` in the plane runs along ``q`` as it goes deeper; 0 outside the rim.
     """
-    offset = points - shape.centre
-    a = (points**2).sum(axis=1) + 1e-9
-    b = (offset * points).sum(axis=1)
-    c = np.minimum((offset**2).sum(axis=1) - shape.radius**2, 0.0)
+    x, y = points
+    dx, dy = x - shape.centre[0], y - shape.centre[1]
+    a = x * x + y * y + 1e-9
+    b = dx * x + dy * y
+    c = np.minimum(dx * dx + dy * dy - shape.radius**2, 0.0)
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 
 
-def _circle(pixels: RimPixels, centre: Array, radius: float, size: int) -> _Circle:
-    offset = pixels.points - centre
-    length = np.hypot(offset[:, 0], offset[:, 1])
-    unit = offset / np.maximum(length, 1e-12)[:, None]
-    gradient = np.einsum("nij,ni->nj", pixels.jacobian, unit)
-    scale = np.hypot(gradient[:, 0], gradient[:, 1])
-    by_shape = np.zeros((len(length), size))
-    by_shape[:, :2] = -unit / scale[:, None]
-    by_shape[:, 2] = -1.0 / scale
-    return _Circle((length - radius) / scale, by_shape, gradient / scale[:, None], unit, scale)
+def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:
+    offset = pixels.points - centre[:, None]
+    length = np.sqrt(offset[0] ** 2 + offset[1] ** 2)
+    unit = offset / np.maximum(length, 1e-12)
+    direction = pixels.jacobian[0] * unit[0] + pixels.jacobian[1] * unit[1]
+    px = 1.0 / np.sqrt(direction[0] ** 2 + direction[1] ** 2)
+    return _Circle((length - radius) * px, unit, direction * px, px)
 
 
-def _lower_edge(pixels: RimPixels, shape: RimShape, size: int) -> _Circle:
-    shrink = 1.0 + (shape.wall_ratio or 0.0)
-    low = _circle(pixels, shape.centre / shrink, shape.radius / shrink, size)
-    low.by_shape[:, :3] /= shrink
-    low.by_shape[:, 4] = (low.unit @ shape.centre + shape.radius) / (low.scale * shrink**2)
-    return low
+def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:
+    """Derivatives of the distance by centre and radius; the other rows are zero."""
+    derivatives = np.zeros((len(shape.vector), len(circle.px)))
+    derivatives[:2] = -circle.unit * circle.px
+    derivatives[2] = -circle.px
+    return derivatives
 
 
-def _blurred(circle: _Circle, blur_px: float, bend_px: float) -> Border:
+def _blurred(circle: _Circle, by_distance: Array, blur_px: float, bend_px: float) -> Border:
     z = (circle.distance_px + bend_px) / blur_px
     density = np.exp(-0.5 * z * z) / (_SQRT_2PI * blur_px)
-    by_shape = circle.by_shape * density[:, None]
-    by_shape[:, 3] = -z * density
-    return Border(np.asarray(ndtr(z)), by_shape, circle.direction * density[:, None])
+    by_shape = by_distance * density
+    by_shape[3] = -z * density
+    return Border(np.asarray(ndtr(z)), by_shape, circle.direction * density)

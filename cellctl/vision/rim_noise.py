@@ -26,19 +26,20 @@ def weights_of(residuals: Array, outside: Array) -> Array:
 
 
 def scatter_factor(scores: Array, azimuth: Array, covariance: Array) -> Array:
-    """Matrix that widens a covariance for errors that are not independent, shape (2, 2).
+    """Matrix that widens a covariance for errors that are not independent, shape (k, k).
 
-    ``scores`` (n, 2) is what each pixel's residual contributes to the centre. Errors of texture,
+    ``scores`` (k, n) is what each pixel's residual contributes to the centre. Errors of texture,
     scratches and an imperfect model of the light are alike in neighbouring pixels: their sums over
     sectors of azimuth scatter more than ``covariance`` says. Returned is F with F C Fᵀ ≥ C.
     """
     sector = ((azimuth + np.pi) / (2.0 * np.pi) * _SECTORS).astype(int) % _SECTORS
-    sums = np.zeros((_SECTORS, 2))
-    np.add.at(sums, sector, scores)
-    seen = sums.T @ sums * (_SECTORS / (_SECTORS - 3.0))
+    sums = np.stack([np.bincount(sector, row, minlength=_SECTORS) for row in scores])
+    seen = sums @ sums.T * (_SECTORS / (_SECTORS - 3.0))
     root = np.linalg.cholesky(covariance)
     whitened = np.linalg.solve(root, np.linalg.solve(root, seen).T)
-    whitened = (1.0 - _SHRINK) * whitened + _SHRINK * np.trace(whitened) / 2.0 * np.eye(2)
+    whitened = (1.0 - _SHRINK) * whitened + _SHRINK * np.trace(whitened) / len(seen) * np.eye(
+        len(seen)
+    )
     values, vectors = np.linalg.eigh(whitened)
     wide = vectors @ np.diag(np.sqrt(np.maximum(values, 1.0))) @ vectors.T
     return np.asarray(root @ wide @ np.linalg.inv(root))

@@ -18,8 +18,8 @@ class StereoPoint:
     """Shape (3,), in the left camera."""
     covariance_m2: Array
     """Shape (3, 3)."""
-    epipolar_px: float
-    """Weighted misfit of the two image points, in standard deviations (one degree of freedom)."""
+    misfit_sigmas: float
+    """How far the two image points are from one ray pair, in standard deviations."""
 
 
 def essential_matrix(rotation: Array, translation: Array) -> Array:
@@ -62,25 +62,26 @@ def midpoints(head: StereoHead, left_px: Array, right_px: Array) -> Array:
 
 
 def triangulate(
-    head: StereoHead,
-    left_px: Array,
-    right_px: Array,
-    left_covariance_px2: Array,
-    right_covariance_px2: Array,
+    head: StereoHead, left_px: Array, right_px: Array, covariance_px2: Array
 ) -> StereoPoint:
-    """Maximum-likelihood point for two image points with covariances."""
+    """Maximum-likelihood point for two image points with their joint covariance, shape (4, 4)."""
     point = midpoints(head, left_px[None], right_px[None])[0]
-    weight = np.zeros((4, 4))
-    weight[:2, :2] = np.linalg.inv(left_covariance_px2)
-    weight[2:, 2:] = np.linalg.inv(right_covariance_px2)
+    weight = np.linalg.inv(covariance_px2)
     for _ in range(3):
         residual, jacobian = _reprojection(head, point, left_px, right_px)
         normal = jacobian.T @ weight @ jacobian
         point = point + np.linalg.solve(normal, jacobian.T @ weight @ residual)
     residual, jacobian = _reprojection(head, point, left_px, right_px)
     normal = jacobian.T @ weight @ jacobian
-    misfit = float(np.sqrt(max(residual @ weight @ residual, 0.0)))
-    return StereoPoint(point, np.linalg.inv(normal), misfit)
+    misfit = float(np.sqrt(max(float(residual @ weight @ residual), 0.0)))
+    return StereoPoint(point, np.asarray(np.linalg.inv(normal), dtype=float), misfit)
+
+
+def joint_covariance(left_px2: Array, right_px2: Array) -> Array:
+    """Covariance of two independent image points, shape (4, 4)."""
+    joint = np.zeros((4, 4))
+    joint[:2, :2], joint[2:, 2:] = left_px2, right_px2
+    return joint
 
 
 def _reprojection(
