@@ -23,25 +23,34 @@ class TripleDecoder:
         self._ids = data_ids
         self._parts: list[float] = []
         self._number = 0
+        self._torn = False
 
     def feed(self, data: bytes) -> Sequence[Reply | Frame]:
         """Take whole records, return the samples that became complete."""
         found: list[Frame] = []
         for identifier, payload in RECORD.iter_unpack(data):
-            have = len(self._parts) // 2
-            if identifier != self._ids[have]:
-                self._drop(RECORD.size * (have + (identifier != self._ids[0])))
+            if identifier not in self._ids:
+                continue
+            if identifier != self._ids[len(self._parts) // 2]:
+                self._tear(identifier)
                 if identifier != self._ids[0]:
                     continue
+            if not self._parts and self._torn:
+                self._torn = False
+                self._count()
             self._parts += _PAIR.unpack(payload)
             if len(self._parts) == 6:
                 found.append(Frame(self._number, (tuple(self._parts),)))
-                self._number = (self._number + 1) % _NUMBERS
                 self._parts.clear()
+                self._count()
         return found
 
-    def _drop(self, skipped: int) -> None:
-        self.skipped_bytes += skipped
-        if self._parts:
-            self._number = (self._number + 1) % _NUMBERS
-            self._parts.clear()
+    def _tear(self, identifier: int) -> None:
+        """Drop what has been collected of a sample, and a message that begins none."""
+        messages = len(self._parts) // 2 + (identifier != self._ids[0])
+        self.skipped_bytes += RECORD.size * messages
+        self._parts.clear()
+        self._torn = True
+
+    def _count(self) -> None:
+        self._number = (self._number + 1) % _NUMBERS

@@ -79,8 +79,8 @@ class SriConfig(BaseModel):
                 raise ValueError("transport serial needs `device`")
             frames_hz = self.baud / _BITS_PER_BYTE / self.layout.total_bytes
             if self.rate_hz / self.points > frames_hz:
-                most = frames_hz * self.points
-                raise ValueError(f"{self.baud} baud carries at most {most:.0f} Hz in this format")
+                most = int(frames_hz * self.points)
+                raise ValueError(f"{self.baud} baud carries at most {most} Hz in this format")
         if self.transport == "can":
             if not self.can_channel:
                 raise ValueError("transport can needs `can_channel`")

@@ -8,6 +8,8 @@ _WINDOW_S = 0.5
 _PAUSE_S = 0.25
 """An estimate this far behind has missed a pause of the stream: start from the arrival again."""
 
+_PACE_DOUBT = 0.02
+
 
 class SampleClock:
     """One stream of equally spaced samples; restart it when the numbering restarts."""
@@ -28,6 +30,7 @@ class SampleClock:
         self._last_s = 0.0
         self._started = False
         self._origin_s: float | None = None
+        self._arrival_origin_s = 0.0
         self._periods = 0
         self._least_delay_s = 0.0
 
@@ -51,18 +54,24 @@ class SampleClock:
             delay_s = 0.0
         self._least_delay_s = min(delay_s, self._least_delay_s)
         if self._periods >= _WINDOW_S * self._nominal_hz:
-            self._end_window()
+            self._end_window(bound_s)
         self._last_s = max(self._estimate_s, self._last_s + 0.01 * self._period_s)
         return self._last_s
 
-    def _end_window(self) -> None:
-        """Tie the phase to the least delayed sample, learn the pace, judge the rate."""
+    def _end_window(self, bound_s: float) -> None:
+        """Tie the phase to the least delayed sample, learn the pace, judge the rate.
+
+        The tied phases give the pace finely, plain arrivals give it whatever the pace was before.
+        """
         self._estimate_s += self._least_delay_s
         if self._origin_s is not None:
-            self._period_s = (self._estimate_s - self._origin_s) / self._periods
+            fine_s = (self._estimate_s - self._origin_s) / self._periods
+            coarse_s = (bound_s - self._arrival_origin_s) / self._periods
+            self._period_s = fine_s if abs(fine_s / coarse_s - 1.0) < _PACE_DOUBT else coarse_s
             self.rate_hz = 1.0 / self._period_s
             if abs(self.rate_hz / self._nominal_hz - 1.0) > self._tolerance:
                 self.deviations += 1
         self._origin_s = self._estimate_s
+        self._arrival_origin_s = bound_s
         self._periods = 0
         self._least_delay_s = float("inf")

@@ -1,0 +1,26 @@
+import pytest
+from pydantic import ValidationError
+
+from drivers.ftsensor.sri.config import SriConfig
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"transport": "serial"}, "device"),
+        ({"transport": "serial", "device": "/dev/ttyUSB0"}, "at most 371 Hz"),
+        ({"transport": "can"}, "can_channel"),
+        ({"transport": "can", "can_channel": "can0", "unit": "C"}, "unit E"),
+        ({"transport": "udp"}, "transport"),
+        ({"transport": "tcp", "filter_weights": (0, 0)}, "positive sum"),
+        ({"transport": "tcp", "rate": 5}, "Extra"),
+    ],
+)
+def test_what_does_not_fit_is_refused(settings: dict[str, object], words: str) -> None:
+    with pytest.raises(ValidationError, match=words):
+        SriConfig.model_validate(settings)
+
+
+def test_a_faster_line_carries_more() -> None:
+    config = SriConfig(transport="serial", device="/dev/ttyUSB0", baud=460_800)
+    assert config.rate_hz == 1000.0
