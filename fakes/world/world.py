@@ -73,7 +73,7 @@ class World:
         self.placed = replace(self.placed, target_board=pose)
 
     def place_chessboard(self, head: HeadName, number: int) -> None:
-        """Lay the chessboard under the measuring pose of a head; each number is another placement."""
+        """Lay the chessboard where a head measures; each number is another placement."""
         view = chessboard_view(self.scenario, self.seed, head, number)
         station = measuring_camera_pose(self.snapshot(), head)
         self.placed = replace(self.placed, chessboard=station * view)
