@@ -43,7 +43,7 @@ class Trial:
     final_true_n: float = float("nan")
     final_sensed_n: float = float("nan")
     true_gap_mm: float = float("nan")
-    """Of the middle of the deck above its seat while holding, at rest."""
+    """Of the middle of the deck above its seat while holding, less what the contact gives way."""
     speed_mm_s: float = 0.0
     slow_s: float = 0.0
     duration_s: float = 0.0
@@ -96,8 +96,9 @@ class _Watcher:
         world = self.cell.world
         parts = world.placed.parts
         assert parts is not None
-        self.trial.final_true_n = world.payload.contact_force_n
+        force_n = self.trial.final_true_n = world.payload.contact_force_n
         above_m = self.cell.true_pose().translation[2] - parts.deck_thickness_m
+        above_m += force_n / self.trial.stiffness_n_m
         self.trial.true_gap_mm = float(above_m) * 1e3
 
 

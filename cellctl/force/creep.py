@@ -62,6 +62,9 @@ class CreepState:
     """k_hat."""
     force_n: float
     travel_m: float
+    anchor_force_n: float
+    anchor_travel_m: float
+    """Force and travel from which the stiffness is being measured."""
     steps: int = 0
 
 
@@ -72,7 +75,7 @@ def begin(
     stiffness = law.stiffness_n_m
     if shown_n_m is not None:
         stiffness = min(stiffness, law.stiffness_margin_ratio * shown_n_m)
-    return CreepState(stiffness, force_n, travel_m)
+    return CreepState(stiffness, force_n, travel_m, force_n, travel_m)
 
 
 def done(law: CreepLaw, state: CreepState) -> bool:
@@ -97,20 +100,22 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
 def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float) -> CreepState:
     """State after a step was driven and the force read again at standstill.
 
-    The stiffness is corrected from a step that was long against the arm's own error: downwards
-    with the noise of force and length counted as stiffness, and by at most half.
+    The stiffness is corrected as soon as the steps since the last correction add up to a way that
+    is long against the arm's own error: downwards with the noise of force and length counted as
+    stiffness, and by at most half.
     """
-    stiffness = state.stiffness_n_m
-    moved_m, rose_n = abs(travel_m - state.travel_m), abs(force_n - state.force_n)
+    after = replace(state, force_n=force_n, travel_m=travel_m, steps=state.steps + 1)
+    moved_m = abs(travel_m - state.anchor_travel_m)
     unsure_m = 3.0 * law.step_sigma_m
-    if moved_m > 2.0 * unsure_m:
-        noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
-        shown = law.stiffness_margin_ratio * (rose_n + noise_n) / (moved_m - unsure_m)
-        stiffness = min(max(shown, 0.5 * stiffness), law.stiffness_n_m)
+    if moved_m <= 2.0 * unsure_m:
+        return after
+    noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
+    rose_n = abs(force_n - state.anchor_force_n)
+    shown = law.stiffness_margin_ratio * (rose_n + noise_n) / (moved_m - unsure_m)
+    stiffness = min(max(shown, 0.5 * state.stiffness_n_m), law.stiffness_n_m)
     return replace(
-        state,
+        after,
         stiffness_n_m=float(stiffness),
-        force_n=force_n,
-        travel_m=travel_m,
-        steps=state.steps + 1,
+        anchor_force_n=force_n,
+        anchor_travel_m=travel_m,
     )

@@ -70,17 +70,18 @@ def require_excitation(base_R_sensor: Rotation, method: str) -> Excitation:
     Raises ``TooFewPoses`` or ``PosesDegenerate``.
     """
     found = excitation(base_R_sensor)
-    if found.distinct >= 2 and found.tilt_rad[1] < MIN_TILT_RAD:
-        _refuse_tilt(found)
-    if found.distinct < MIN_POSES[method]:
-        if found.distinct <= 1 and len(base_R_sensor) >= MIN_POSES[method]:
-            raise PosesDegenerate(
-                f"{len(base_R_sensor)} poses but gravity points the same way in the sensor in all "
-                "of them: turning about the vertical tells nothing, tilt about horizontal axes"
-            )
-        raise TooFewPoses(
-            f"{found.distinct} distinct directions of gravity, {method} needs {MIN_POSES[method]}"
+    needed = MIN_POSES[method]
+    if found.distinct == 1 and len(base_R_sensor) >= needed:
+        raise PosesDegenerate(
+            f"{len(base_R_sensor)} poses but gravity points the same way in the sensor in all of "
+            "them: turning about the vertical tells nothing, tilt about horizontal axes"
         )
+    if found.distinct < needed:
+        raise TooFewPoses(
+            f"{found.distinct} distinct directions of gravity, {method} needs {needed}"
+        )
+    if found.tilt_rad[1] < MIN_TILT_RAD:
+        _refuse_tilt(found)
     return found
 
 

@@ -28,8 +28,9 @@ class SeatLimits:
     depth_m: float = 1e-4
     """Greatest distance between reached and expected depth, elastic travel taken off."""
     lateral_n: float = 20.0
-    moment_n_m: float = 15.0
-    """Each of the three moments about the middle of the deck's outer face."""
+    moment_n_m: tuple[float, float, float] = (14.0, 24.0, 8.0)
+    """About x, y and z of the deck. A deck that is tilted within its tolerance may rest on an edge:
+    the force times half the width or length must be allowed, and no more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +42,7 @@ class SeatVerdict:
     """Expected minus reached depth; positive: the deck stands above its seat."""
     lateral_n: float
     moment_n_m: float
-    """Greatest of the three."""
+    """Greatest of the three magnitudes."""
     findings: tuple[SeatFinding, ...]
 
     @property
@@ -72,14 +73,14 @@ def judge_seat(
     force_n = float(wrench[2])
     gap_m = expected_m - (travel_m - force_n / stiffness_n_m)
     lateral_n = float(np.hypot(wrench[0], wrench[1]))
-    moment_n_m = float(np.abs(wrench[3:]).max())
+    moments = np.abs(wrench[3:])
     tests = (
         (SeatFinding.FORCE_LOW, force_n < limits.force_low_n),
         (SeatFinding.FORCE_HIGH, force_n > limits.force_high_n),
         (SeatFinding.HIGH, gap_m > limits.depth_m),
         (SeatFinding.DEEP, gap_m < -limits.depth_m),
         (SeatFinding.LATERAL, lateral_n > limits.lateral_n),
-        (SeatFinding.MOMENT, moment_n_m > limits.moment_n_m),
+        (SeatFinding.MOMENT, bool((moments > limits.moment_n_m).any())),
     )
     findings = tuple(finding for finding, found in tests if found)
-    return SeatVerdict(force_n, gap_m, lateral_n, moment_n_m, findings)
+    return SeatVerdict(force_n, gap_m, lateral_n, float(moments.max()), findings)

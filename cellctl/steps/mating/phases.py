@@ -95,8 +95,7 @@ async def take_over(attempt: Attempt) -> None:
     """After the touch stop: release the latches and watch the force of the creep instead."""
     await attempt.guard.acknowledge()
     await attempt.guard.arm(contact_limits(attempt.plan.settings))
-    if attempt.robot.state().stop_latched:
-        await attempt.robot.rearm()
+    await attempt.robot.rearm()
 
 
 async def _touch_at_standstill(attempt: Attempt) -> float:

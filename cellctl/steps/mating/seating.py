@@ -88,8 +88,7 @@ async def back_off(attempt: Attempt) -> None:
     await attempt.guard.acknowledge()
     await attempt.guard.disarm()
     here = attempt.robot.state().base_T_flange
-    if attempt.robot.state().stop_latched:
-        await attempt.robot.rearm()
+    await attempt.robot.rearm()
     back_m = min(settings.back_off_m, plan.travel_of(here))
     if back_m <= settings.smallest_step_m:
         return
