@@ -1,10 +1,7 @@
 """The contracts of the heads: in memory, and every driver against its wire fake."""
 
 import asyncio
-import zlib
-from collections.abc import AsyncIterator, Callable
-from concurrent.futures import Executor, Future
-from typing import Any
+from collections.abc import AsyncIterator
 
 import numpy as np
 import pytest
@@ -16,7 +13,6 @@ from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
 from drivers.camera.target_server.config import TargetServerConfig
 from drivers.camera.target_server.driver import TargetServerTracker
-from fakes.render.worker import Frame
 from fakes.wire.frame_server import FrameServer
 from fakes.wire.target_server import TargetServer
 from fakes.world.targets import SeenTarget
@@ -24,6 +20,7 @@ from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.contracts.stereo_camera import CameraBench, StereoCameraContract
 from tests.contracts.target_tracker import TargetTrackerContract, TrackerBench
+from tests.wire.ramp import Ramp
 
 TARGETS: dict[str, Array] = {
     "F1": np.array([0.0123456, 0.0, 5.98616]),
@@ -47,32 +44,10 @@ class InProcessCameraBench(CameraBench):
         self.memory.cut = True
 
 
-class Ramp(Executor):
-    """Takes the renderer's place: small images at once, different each time."""
-
-    def __init__(self) -> None:
-        self.exposures = 0
-
-    def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> "Future[Any]":
-        self.exposures += 1
-        payload = bytes((self.exposures + k) % 256 for k in range(2 * 8 * 6))
-        future: Future[Any] = Future()
-        future.set_result(Frame(8, 6, payload, zlib.crc32(payload)))
-        return future
-
-
-class Scene:
-    """All that the frame server itself reads of a scene."""
-
-    def __init__(self, time_s: float) -> None:
-        self.time_s = time_s
-
-
 class FrameServerBench(CameraBench):
     def __init__(self) -> None:
         self.pool = Ramp()
-        scene: Any = lambda: Scene(float(self.pool.exposures))  # noqa: E731
-        self.server = FrameServer("127.0.0.1", 0, scene, self.pool)
+        self.server = FrameServer("127.0.0.1", 0, self.pool.scene, self.pool)
 
     async def start(self) -> None:
         await self.server.start()
