@@ -6,6 +6,7 @@ import signal
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from functools import partial
 from typing import ParamSpec, TypeVar
 
 from cellctl.errors.internal import WorkerDied
@@ -27,29 +28,14 @@ class VisionWorkers:
     async def run(self, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """Run a pure function in a worker; its exceptions come back unchanged."""
         loop = asyncio.get_running_loop()
-        call = _Call(function, args, kwargs)
         try:
-            return await loop.run_in_executor(self._pool, call)
+            return await loop.run_in_executor(self._pool, partial(function, *args, **kwargs))
         except BrokenProcessPool as error:
             raise WorkerDied("a vision worker ended unexpectedly") from error
 
     def close(self) -> None:
         """End the workers; work that has not begun is dropped."""
         self._pool.shutdown(wait=True, cancel_futures=True)
-
-
-class _Call:
-    """A call that can be pickled, unlike a closure."""
-
-    def __init__(
-        self, function: Callable[..., R], args: tuple[object, ...], kwargs: dict[str, object]
-    ) -> None:
-        self._function = function
-        self._args = args
-        self._kwargs = kwargs
-
-    def __call__(self) -> R:
-        return self._function(*self._args, **self._kwargs)  # type: ignore[return-value]
 
 
 def _initialise() -> None:

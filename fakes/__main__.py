@@ -60,7 +60,7 @@ def plc(context: typer.Context) -> None:
 @app.command(context_settings=_FORWARDED)
 def demo(context: typer.Context) -> None:
     """Run a whole demonstration; see ``demo --help``."""
-    from fakes import demo as orchestrator
+    from fakes.demo import app as orchestrator
 
     orchestrator.app(args=context.args, prog_name="python -m fakes demo")
 

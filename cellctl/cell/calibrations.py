@@ -24,7 +24,7 @@ from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationExpired, CalibrationRecordInvalid
 from cellctl.force.compensation import Compensation
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.procedures.payload_result import compensation_from_document
+from cellctl.force.payload_result import compensation_from_document
 from cellctl.vision.stereo_head import StereoHead
 
 PAYLOAD = "payload"

@@ -1,7 +1,8 @@
 """The devices and services of one cell, built from its file and connected together."""
 
 import asyncio
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Callable
+from functools import partial
 from pathlib import Path
 
 from cellctl import log, plugins
@@ -17,6 +18,9 @@ from cellctl.interfaces import Robot, StereoCamera, TargetTracker
 from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
+
+LINK_AGE_S = 1.0
+"""A robot silent for this long is reported even while nothing moves."""
 
 
 class Cell:
@@ -55,6 +59,14 @@ class Cell:
     def robots(self) -> tuple[Robot, Robot, Robot]:
         """Main, auxiliary 1, auxiliary 2."""
         return self.main, self.aux_1, self.aux_2
+
+    def health_checks(self) -> dict[str, Callable[[], object]]:
+        """A call for each device that raises its fault when it is not well; none of them blocks."""
+        checks: dict[str, Callable[[], object]] = {
+            f"robots.{robot.name}": partial(robot.state, LINK_AGE_S) for robot in self.robots
+        }
+        checks["guard"] = self.guard.check
+        return checks
 
     async def connect(self) -> None:
         """Connect everything at once; raises one fault that names every failing device."""

@@ -24,11 +24,10 @@ class StatusView:
         self._board = board
         self._desk = desk
 
-    def snapshot(self, job: Job | None, last: Job | None, result: Result) -> CellStatus:
-        """Everything at this moment."""
+    def snapshot(self, job: Job | None, result: Result) -> CellStatus:
+        """Everything at this moment; ``job`` is the present or the last one."""
         machine, progress = self._machine, self._board.current
         calibrations = self._desk.calibrations
-        shown = job or last
         faults = machine.faults
         return CellStatus(
             state=machine.state,
@@ -46,15 +45,15 @@ class StatusView:
             hold_requested=machine.hold_requested,
             alarms=tuple(fault.number for fault in faults),
             first_out_alarm=faults[0].number if faults else 0,
-            recipe_active=shown.number if shown else 0,
-            run_number=shown.run_number if shown else 0,
+            recipe_active=job.number if job else 0,
+            run_number=job.run_number if job else 0,
             run_result=result,
             validity_h=calibrations.validity_h(),
             error_mm_deg=progress.error_mm_deg,
             force_peaks=progress.force_peaks,
             force_z_n=self._force_z_n(),
             force_limit_n=progress.force_limit_n,
-            serial=shown.serial if shown else "",
+            serial=job.serial if job else "",
         )
 
     def _any_manual(self) -> bool:

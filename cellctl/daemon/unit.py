@@ -36,6 +36,7 @@ class Unit:
         self._board = ProgressBoard()
         self._desk = OrderDesk(cell, archive, self._board)
         self._job: Job | None = None
+        self._last_job: Job | None = None
         self._reports: set[asyncio.Task[None]] = set()
         self._port: PlcPort | None = None
         self._coupling: LineCoupling | None = None
@@ -83,7 +84,7 @@ class Unit:
     def publish(self) -> None:
         """Show the line what is going on."""
         if self._port is not None:
-            self._port.publish(self._view.snapshot(self._job, self._result))
+            self._port.publish(self._view.snapshot(self._job or self._last_job, self._result))
 
     async def _resetting(self) -> None:
         await self._cell.rearm()
@@ -119,6 +120,7 @@ class Unit:
     async def _close_job(self, *, stopped: bool) -> None:
         job, self._job = self._job, None
         if job is not None:
+            self._last_job = job
             with log.bound(run=job.run_number):
                 self._result = await job.close(self.machine.fault, stopped=stopped)
 

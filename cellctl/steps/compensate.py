@@ -2,10 +2,13 @@
 
 import numpy as np
 
+from cellctl.cell.measuring import PartMeasurement
 from cellctl.geometry.pose import MM
-from cellctl.steps.run import AssemblyRun, in_mm_deg
+from cellctl.steps.run import AssemblyRun
+from cellctl.steps.units import in_mm_deg
 from cellctl.vision.compensation import (
     CorrectionLimits,
+    CorrectionMethod,
     Judgement,
     check_correction,
     check_progress,
@@ -28,16 +31,21 @@ async def compensate(run: AssemblyRun) -> None:
     history: list[Judgement] = []
     while True:
         await run.safe_point()
-        judgement = await measure_error(run, len(history) + 1)
+        judgement, measurement = await _measure(run, len(history) + 1)
         history.append(judgement)
-        if judgement.converged:
+        correction = None if judgement.converged else judgement.error
+        await run.journal.iteration(
+            len(history), judgement, run.thresholds, measurement, correction
+        )
+        if correction is None:
             return
+        check_uncertainty(judgement, run.thresholds, measurement.frames)
         check_progress(history, run.thresholds, limits)
-        check_correction(judgement.error, limits)
+        check_correction(correction, limits)
         await _correct(run)
 
 
-async def measure_error(run: AssemblyRun, iteration: int) -> Judgement:
+async def _measure(run: AssemblyRun, iteration: int) -> tuple[Judgement, PartMeasurement]:
     """Measure the deck at the stand-off and judge it against the target (eq. 9, 10, 16)."""
     assert run.c1_T_M is not None
     assert run.base_T_flange is not None
@@ -46,12 +54,10 @@ async def measure_error(run: AssemblyRun, iteration: int) -> Judgement:
     measurement = await run.measure(run.deck_features, predicted)
     run.M_T_D = uncertain_deck_in_frame(run.c1_T_M, measurement.own)
     judgement = judge(run.target_M_T_D, run.M_T_D, run.thresholds)
-    check_uncertainty(judgement, run.thresholds, measurement.frames)
     run.board.update(
         iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist())
     )
-    await run.journal.iteration(iteration, judgement, measurement)
-    return judgement
+    return judgement, measurement
 
 
 async def _correct(run: AssemblyRun) -> None:
@@ -59,7 +65,7 @@ async def _correct(run: AssemblyRun) -> None:
     assert run.c1_T_M is not None
     assert run.M_T_D is not None
     assert run.flange_T_deck is not None
-    rule = "default" if run.recipe.compensation.rule == "compose" else "paper"
+    rule: CorrectionMethod = "default" if run.recipe.compensation.rule == "compose" else "paper"
     commanded = next_target(run.commanded[-1], run.target_M_T_D, run.M_T_D.pose, rule)
     run.commanded.append(commanded)
     run.base_T_flange = flange_target(

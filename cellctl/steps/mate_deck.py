@@ -37,7 +37,7 @@ async def mate_deck(run: AssemblyRun) -> None:
         await run.journal.mating_result(result)
     finally:
         run.board.update(force_peaks=run.journal.force_peaks())
-        await run.journal.force_curve()
+        await run.journal.force_curves()
 
 
 def _plan(run: AssemblyRun) -> MatingPlan:

@@ -12,9 +12,10 @@ from cellctl.cell.job import SafePoint
 from cellctl.cell.measuring import PartMeasurement, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
 from cellctl.config.recipe import Recipe
-from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.steps.journal import Journal
+from cellctl.steps.units import in_mm_deg
 from cellctl.vision.compensation import Thresholds, target_M_T_D
 from cellctl.vision.features import FeatureFile
 
@@ -87,7 +88,3 @@ class AssemblyRun:
 
 StepFunction = Callable[[AssemblyRun], Awaitable[None]]
 
-
-def in_mm_deg(components: Array) -> Array:
-    """x, y, z, rx, ry, rz from m and rad to mm and degrees."""
-    return np.concatenate([components[:3] / MM, np.degrees(components[3:])])

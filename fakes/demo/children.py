@@ -56,8 +56,8 @@ class Child:
             self.lines.put(message if isinstance(message, dict) else {"text": message})
         self.lines.put(None)
 
-    def next_line(self, timeout_s: float) -> dict[str, Any] | None:
-        """The next message, or None when the child has ended; ``queue.Empty`` after the time-out."""
+    def next_line(self, timeout_s: float | None) -> dict[str, Any] | None:
+        """The next message, or None when the child has ended; ``queue.Empty`` after a time-out."""
         return self.lines.get(timeout=timeout_s)
 
     def wait_ready(self, timeout_s: float = START_TIMEOUT_S) -> dict[str, Any]:
@@ -75,6 +75,18 @@ class Child:
     def log_tail(self, lines: int = 12) -> str:
         """The end of the child's log, for a message to the user."""
         return "\n".join(self.log.read_text(encoding="utf-8").splitlines()[-lines:])
+
+    def faults(self) -> list[str]:
+        """Every numbered fault in the log, once, with its remedy."""
+        found: dict[str, None] = {}
+        for line in self.log.read_text(encoding="utf-8").splitlines():
+            try:
+                entry = json.loads(line)
+            except ValueError:
+                continue
+            if "number" in entry and "fault" in entry:
+                found[f"{entry['fault']}\n  remedy: {entry.get('remedy', '')}"] = None
+        return list(found)
 
     def stop(self) -> None:
         """Ask the child to end; after a time-out kill its whole group."""
