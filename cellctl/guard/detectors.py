@@ -42,8 +42,8 @@ class LowPass:
         if state is None:
             self._state, self._time_s = wrench, time_s
             return wrench
-        gain = -math.expm1((self._time_s - time_s) / self.time_constant_s)
-        self._time_s = max(time_s, self._time_s)
+        gain = -math.expm1(-max(0.0, time_s - self._time_s) / self.time_constant_s)
+        self._time_s = time_s
         a, b, c, d, e, f = wrench
         p, q, r, s, t, u = state
         self._state = (

@@ -1,0 +1,63 @@
+"""The guard's plain floats against the arrays of the rest of the code."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.force.compensation import Compensation
+from cellctl.geometry.wrench import Wrench
+from cellctl.guard.compensate import Compensator
+
+
+def nine(rotation: Rotation) -> tuple[float, ...]:
+    return tuple(rotation.as_matrix().ravel().tolist())
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=50)
+def test_equals_the_formulas_on_arrays(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    flange_R_sensor, base_R_flange, sensor_R_deck = Rotation.random(3, rng=rng)
+    sensor_T_deck = RigidTransform.from_components(rng.normal(0, 0.5, 3), sensor_R_deck)
+    down = rng.normal(size=3)
+    load = Compensation(
+        rng.normal(0, 1000, (6, 3)),
+        rng.normal(0, 50, 6),
+        "affine24",
+        base_down=tuple(down / np.linalg.norm(down)),
+    )
+    raw = rng.normal(0, 1000, 6)
+    tare = rng.normal(0, 10, 6)
+
+    guard = Compensator(nine(flange_R_sensor))
+    guard.set_flange(nine(base_R_flange))
+    guard.set_load(load.A.tolist(), load.b.tolist(), load.base_down)
+    guard.set_deck_frame(nine(sensor_R_deck), sensor_T_deck.translation.tolist())
+    guard.set_tare(tuple(tare.tolist()))
+
+    contact = Wrench.from_vector(load.apply(raw, base_R_flange * flange_R_sensor))
+    expected = contact.in_frame(sensor_T_deck.inv()).vector - tare
+    assert guard.apply(tuple(raw.tolist())) == pytest.approx(expected, rel=1e-9, abs=1e-7)
+    assert guard.untared(guard.apply(tuple(raw.tolist()))) == pytest.approx(
+        expected + tare, rel=1e-9, abs=1e-7
+    )
+
+
+def test_a_new_frame_or_load_drops_the_tare() -> None:
+    guard = Compensator()
+    for change in (
+        lambda: guard.set_deck_frame(nine(Rotation.identity()), (0.0, 0.0, 0.0)),
+        lambda: guard.set_load([(0.0, 0.0, 0.0)] * 6, (0.0,) * 6, (0.0, 0.0, -1.0)),
+    ):
+        guard.set_tare((1.0,) * 6)
+        change()
+        assert guard.apply((0.0,) * 6) == (0.0,) * 6
+
+
+def test_only_a_load_that_hangs_needs_the_pose() -> None:
+    guard = Compensator()
+    assert not guard.needs_pose
+    guard.set_load([(0.0, 0.0, 1.0)] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))
+    assert guard.needs_pose
