@@ -51,7 +51,7 @@ class SiasunBench(RobotBench):
             self._started += 1
             begin(*arguments)  # type: ignore[arg-type]
 
-        rig.arm._begin = counted  # type: ignore[method-assign]
+        rig.arm._begin = counted  # type: ignore[method-assign, assignment]
 
     async def connect(self) -> None:
         await self.rig.connect()

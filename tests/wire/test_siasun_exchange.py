@@ -446,6 +446,17 @@ class TestConnecting:
         with pytest.raises(ConnectTimeout, match="SR500A CMD"):
             await SiasunRobot("main", config(connect_timeout_s=0.05)).connect()
 
+    async def test_disconnect_ends_a_pending_connect(self) -> None:
+        settings = config()
+        robot = SiasunRobot("main", settings)
+        connecting = asyncio.create_task(robot.connect())
+        peer = await Peer.greeted(settings.command_port, "CMD")
+        await robot.disconnect()
+        async with asyncio.timeout(0.5):
+            with pytest.raises(LinkLost):
+                await connecting
+        await peer.close()
+
     async def test_port_in_use(self) -> None:
         settings = config()
         server = await asyncio.start_server(lambda r, w: None, "127.0.0.1", settings.state_port)

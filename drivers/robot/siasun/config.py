@@ -60,7 +60,7 @@ class SiasunConfig(_Section):
             "joints_min_deg": (self.joints_min_deg, self.joints_max_deg),
         }
         for key, (lower, upper) in pairs.items():
-            if any(low >= high for low, high in zip(lower, upper, strict=True)):
+            if not all(low < high for low, high in zip(lower, upper, strict=True)):
                 raise ValueError(f"{key} must lie below its maximum in every component")
         return self
 

@@ -69,8 +69,11 @@ class SjlChannel:
             raise faults.cannot_listen(host, port, error) from error
 
     async def wait_connected(self) -> None:
-        """Until a session stands; raises at once when the wrong robot or job program calls."""
+        """Until a session stands; raises at once when the wrong robot or job program calls, and
+        when the channel is closed meanwhile."""
         while not self._accepted:
+            if self._server is None:
+                raise LinkLost(f"{self} was disconnected")
             if isinstance(self._refused, VersionMismatch):
                 raise self._refused
             self._changed.clear()
@@ -101,6 +104,7 @@ class SjlChannel:
         server, self._server = self._server, None
         if server is not None:
             server.close()
+        self._changed.set()
         if client is not None:
             client.abort()
             await client.closed.wait()

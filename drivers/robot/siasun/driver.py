@@ -43,13 +43,17 @@ class SiasunRobot(Robot):
         """Why moves are refused until ``rearm``."""
         self._command = CommandChannel(name, config, self._on_command_lost)
         self._state = StateChannel(name, config, self._on_stopped, self._on_state_lost)
-        self._listening = False
+        self._connecting = asyncio.Lock()
+        self._connected = False
 
     async def connect(self) -> None:
         """Listen and wait for both channels and a first state report. Idempotent."""
-        if self._listening:
-            return
-        self._listening = True
+        async with self._connecting:
+            if not self._connected:
+                await self._connect()
+                self._connected = True
+
+    async def _connect(self) -> None:
         host, timeout_s = self._config.listen_host, self._config.connect_timeout_s
         try:
             await self._command.channel.listen(host, self._config.command_port)
@@ -194,7 +198,7 @@ class SiasunRobot(Robot):
                 raise LinkLost(f"{channel} is not connected")
 
     async def _close(self) -> None:
-        self._listening = False
+        self._connected = False
         self._command.fail(LinkLost(f"{self.name} was disconnected"))
         await self._command.channel.close()
         await self._state.close()

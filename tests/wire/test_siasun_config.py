@@ -1,0 +1,49 @@
+"""Settings of the SIASUN driver: what is refused before any hardware is touched."""
+
+import pytest
+from pydantic import ValidationError
+
+from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
+
+GOOD: dict[str, object] = {
+    "robot_name": "SR500A",
+    "command_port": 7001,
+    "state_port": 7002,
+    "workspace_min_mm": [900.0, -900.0, 300.0],
+    "workspace_max_mm": [2500.0, 900.0, 2200.0],
+    "max_speed_mm_s": 250.0,
+}
+
+
+def test_the_good_one() -> None:
+    assert SiasunConfig.model_validate(GOOD).listen_host == "127.0.0.1"
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("robot_name", "sr500a"),
+        ("robot_name", "X" * 17),
+        ("command_port", 0),
+        ("command_port", 7002),
+        ("workspace_min_mm", [2500.0, -900.0, 300.0]),
+        ("workspace_min_mm", [float("nan"), -900.0, 300.0]),
+        ("workspace_max_mm", [2500.0, 900.0]),
+        ("max_speed_mm_s", 0.0),
+        ("max_speed_mm_s", float("inf")),
+        ("max_joint_speed_percent", 101),
+        ("max_step_mm", -0.1),
+        ("joints_min_deg", [361.0] * 6),
+        ("stale_s", 0.0),
+        ("max_deadman_s", float("nan")),
+        ("speed", 100.0),
+    ],
+)
+def test_what_is_refused(key: str, value: object) -> None:
+    with pytest.raises(ValidationError):
+        SiasunConfig.model_validate(GOOD | {key: value})
+
+
+def test_the_guard_needs_its_own_port() -> None:
+    with pytest.raises(ValidationError, match="guard_port"):
+        SiasunStopChannelConfig.model_validate({"robot_name": "SR500A"})
