@@ -1,0 +1,84 @@
+"""Force against time and against travel (paper, figure 12)."""
+
+import itertools
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from cellctl.force.curve import ForceCurve
+from cellctl.geometry.pose import MM, Array
+from cellctl.records.plots.style import ACCENT, GOOD, INK, LIMIT, SECOND, label_line, style, to_svg
+
+_BINS = 700
+
+
+def force_by_time(curve: ForceCurve, target_n: float | None, limit_n: float | None) -> str:
+    """Force along the approach and across it, over time."""
+    with style():
+        figure = Figure(figsize=(7.2, 2.7), layout="constrained")
+        axes = figure.subplots()
+        time_s = curve.time_s - (curve.time_s[0] if len(curve.time_s) else 0.0)
+        _draw(axes, time_s, curve)
+        axes.set_xlabel("time, s")
+        _finish(axes, time_s, curve, target_n, limit_n)
+        return to_svg(figure)
+
+
+def force_by_travel(curve: ForceCurve, target_n: float | None, limit_n: float | None) -> str:
+    """Force along the approach over the travel from the stand-off."""
+    with style():
+        figure = Figure(figsize=(7.2, 2.7), layout="constrained")
+        axes = figure.subplots()
+        known = np.isfinite(curve.travel_m)
+        travel_mm = curve.travel_m[known] / MM
+        axes.plot(travel_mm, curve.wrench[known, 2], color=ACCENT, linewidth=0.9, label="Fz")
+        axes.set_xlabel("travel from the stand-off, mm")
+        kept = ForceCurve(curve.time_s[known], curve.wrench[known], curve.travel_m[known])
+        _finish(axes, travel_mm, kept, target_n, limit_n)
+        return to_svg(figure)
+
+
+def envelope(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
+    """At most ``2 · bins`` points that keep every peak: least and greatest of each stretch."""
+    if len(x) <= 2 * bins:
+        return x, y
+    edges = np.linspace(0, len(x), bins + 1).astype(int)
+    kept = []
+    for begin, end in itertools.pairwise(edges):
+        pair = {begin + int(np.argmin(y[begin:end])), begin + int(np.argmax(y[begin:end]))}
+        kept.extend(sorted(pair))
+    return x[kept], y[kept]
+
+
+def _draw(axes: Axes, x: Array, curve: ForceCurve) -> None:
+    lateral = np.hypot(curve.wrench[:, 0], curve.wrench[:, 1])
+    lateral_label = "√(Fx² + Fy²)"
+    axes.plot(*envelope(x, lateral), color=SECOND, linewidth=0.8, label=lateral_label)
+    axes.plot(*envelope(x, curve.wrench[:, 2]), color=ACCENT, linewidth=0.9, label="Fz")
+    axes.legend(loc="upper left", ncols=2)
+
+
+def _finish(
+    axes: Axes, x: Array, curve: ForceCurve, target_n: float | None, limit_n: float | None
+) -> None:
+    axes.set_ylabel("force, N")
+    if target_n is not None:
+        label_line(axes, target_n, f"target {target_n:g} N", GOOD, dashed=True)
+    if limit_n is not None:
+        label_line(axes, limit_n, f"limit {limit_n:g} N", LIMIT)
+    force_n = curve.wrench[:, 2]
+    if not len(force_n):
+        return
+    peak = int(np.argmax(force_n))
+    axes.plot(x[peak], force_n[peak], "o", markersize=4, color=INK)
+    axes.annotate(
+        f"peak {force_n[peak]:.1f} N",
+        (x[peak], force_n[peak]),
+        xytext=(-6, 4),
+        textcoords="offset points",
+        ha="right",
+        fontsize=7,
+    )
+    top = max(float(force_n.max()), limit_n or 0.0) * 1.15
+    axes.set_ylim(min(float(force_n.min()) * 1.1, -2.0), max(top, 5.0))
