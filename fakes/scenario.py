@@ -250,6 +250,8 @@ class LargeField(Section):
 class Scenario(Section):
     """The whole file."""
 
+    hardware_seed: int
+    """Draws the devices of the cell, which calibrations belong to."""
     sensor_port: int
     control_port: int
     robots: dict[RobotName, Robot]

@@ -18,7 +18,8 @@ def truth_report(world: Snapshot) -> dict[str, Any]:
     """True poses, pin holes, contact forces."""
     camera_1, camera_2 = camera_pose(world, "head_1"), camera_pose(world, "head_2")
     report: dict[str, Any] = {
-        "seed": world.truth.seed,
+        "seed": world.seed,
+        "hardware_seed": world.truth.hardware_seed,
         "time_s": world.time_s,
         "load": world.loads,
         "base_T_flange_mm_deg": to_written(world.flanges["main"]),

@@ -24,6 +24,8 @@ class Snapshot:
     """True poses; ``cell`` is the base frame of the main robot."""
 
     scenario: Scenario
+    seed: int
+    """Of the run: parts, noise, placements; the devices have a seed of their own."""
     truth: WorldTruth
     time_s: float
     placed: Placed

@@ -22,7 +22,7 @@ class SeenTarget:
 
 def seen_targets(world: Snapshot, frames: int, exposure: int) -> tuple[SeenTarget, ...]:
     """Targets in view, with the noise of so many exposures."""
-    settings, rng = world.scenario.large_field, stream(world.truth.seed, "targets", exposure)
+    settings, rng = world.scenario.large_field, stream(world.seed, "targets", exposure)
     head_T_cell = world.truth.large_field.cell_T_head.inv()
     sigma_m = settings.noise_mm * MM / np.sqrt(frames)
     seen = []

@@ -66,7 +66,7 @@ class PartsTruth:
 class WorldTruth:
     """Everything that stays the same for the whole life of a fake cell."""
 
-    seed: int
+    hardware_seed: int
     robots: dict[RobotName, RobotTruth]
     heads: dict[HeadName, HeadTruth]
     sensor: SensorTruth
@@ -75,11 +75,11 @@ class WorldTruth:
 
 
 def draw(scenario: Scenario, seed: int) -> WorldTruth:
-    """The cell of a seed; the same seed gives the same cell, bit by bit."""
+    """The devices of a hardware seed; the same seed gives the same devices, bit by bit."""
     rng = stream(seed, "chessboard")
     bow_x, bow_y = rng.uniform(-1, 1, 2) * scenario.chessboard.bow_spread_mm * MM
     return WorldTruth(
-        seed=seed,
+        hardware_seed=seed,
         robots={name: _robot(scenario, seed, name) for name in scenario.robots},
         heads={name: _head(scenario, seed, name) for name in scenario.heads},
         sensor=_sensor(scenario, seed),

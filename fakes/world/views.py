@@ -41,7 +41,7 @@ def camera_scene(world: Snapshot, head: HeadName, exposure: int) -> CameraScene:
         target_board=_target_board(world, camera_T_cell),
         chessboard=_chessboard(world, camera_T_cell),
         light_seed=truth.light_seed,
-        noise_seed=stream_seed(world.truth.seed, "exposure", head, exposure),
+        noise_seed=stream_seed(world.seed, "exposure", head, exposure),
     )
 
 
@@ -87,7 +87,7 @@ def _target_board(world: Snapshot, camera_T_cell: RigidTransform) -> SceneTarget
         size_m=(board.size_mm[0] * MM, board.size_mm[1] * MM),
         disc_diameter_m=board.disc_diameter_mm * MM,
         discs=board_discs(world.scenario),
-        seed=stream_seed(world.truth.seed, "target board texture"),
+        seed=stream_seed(world.seed, "target board texture"),
     )
 
 
@@ -102,5 +102,5 @@ def _chessboard(world: Snapshot, camera_T_cell: RigidTransform) -> SceneChessboa
         square_m=board.square_mm * MM,
         size_m=(board.size_mm[0] * MM, board.size_mm[1] * MM),
         bow_m=world.truth.chessboard_bow_m,
-        seed=stream_seed(world.truth.seed, "chessboard texture"),
+        seed=stream_seed(world.seed, "chessboard texture"),
     )

@@ -28,11 +28,11 @@ _HISTORY = 1024
 
 
 class World:
-    """One cell, drawn from a scenario by a seed."""
+    """One cell: its devices by the scenario's hardware seed, all else by ``seed``."""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
         self.scenario, self.seed = scenario, seed
-        self.truth = draw(scenario, seed)
+        self.truth = draw(scenario, scenario.hardware_seed)
         self.arms = {
             name: RobotArm(robot, self.truth.robots[name], seed)
             for name, robot in scenario.robots.items()
@@ -122,6 +122,7 @@ class World:
             deck = RigidTransform.from_matrix(self._flange) * self.payload.deck_in_flange()
         return Snapshot(
             scenario=self.scenario,
+            seed=self.seed,
             truth=self.truth,
             time_s=self.time_s,
             placed=self.placed,
