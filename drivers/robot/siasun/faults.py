@@ -1,5 +1,7 @@
 """Where the controller's words and the sockets' errors become numbered faults of the cell."""
 
+import os
+
 from cellctl.errors.base import CellError
 from cellctl.errors.link import PortInUse
 from cellctl.errors.robot import (
@@ -52,4 +54,5 @@ def abortion(robot: str, reason: str) -> CellError:
 
 def cannot_listen(host: str, port: int, error: OSError) -> CellError:
     """Fault of a listening socket that could not be had."""
-    return PortInUse(f"cannot listen on {host}:{port}: {error.strerror or error}")
+    words = os.strerror(error.errno) if (error.errno or 0) > 0 else str(error)
+    return PortInUse(f"cannot listen on {host}:{port}: {words}")
