@@ -1,9 +1,13 @@
 """What the guard is told to watch, and how it is set up. Plain floats: no arrays in the guard."""
 
+from __future__ import annotations
+
 import math
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from scipy.spatial.transform import RigidTransform
+if TYPE_CHECKING:
+    from scipy.spatial.transform import RigidTransform
 
 Six = tuple[float, float, float, float, float, float]
 """Fx, Fy, Fz in N, Mx, My, Mz in N·m."""
@@ -72,11 +76,18 @@ class GuardLimits:
             raise ValueError("guard limits are positive numbers; at least two frozen samples")
 
 
+def _identity() -> RigidTransform:
+    """Imported here, so that the guard, which reads this module too, stays free of arrays."""
+    from scipy.spatial.transform import RigidTransform
+
+    return RigidTransform.identity()
+
+
 @dataclass(frozen=True, slots=True)
 class GuardSettings:
     """How the guard process is set up, for its whole life."""
 
-    flange_T_sensor: RigidTransform = field(default_factory=RigidTransform.identity)
+    flange_T_sensor: RigidTransform = field(default_factory=_identity)
     beat_s: float = 0.02
     """Interval of the heartbeat to the robot; at most a third of its dead man."""
     stop_confirm_s: float = 0.1

@@ -1,7 +1,10 @@
 """What the guard reports: samples, tare, trip, health."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
@@ -15,8 +18,10 @@ from cellctl.errors.force import (
     SensorSilent,
 )
 from cellctl.errors.link import LinkLost
-from cellctl.geometry.pose import Array
 from cellctl.interfaces.ft_sensor import FtHealth
+
+if TYPE_CHECKING:
+    from cellctl.geometry.pose import Array
 
 
 class TripReason(Enum):

@@ -1,10 +1,18 @@
-"""What a driver offers to the core: one interface a file. Values are SI, frozen and time-stamped."""
+"""What a driver offers to the core: one interface a file. Values are SI, frozen and time-stamped.
 
-from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
-from cellctl.interfaces.robot import Robot, RobotMode, RobotState
-from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
-from cellctl.interfaces.stop_channel import FlangeState, StopChannel
-from cellctl.interfaces.target_tracker import Target, TargetTracker
+Names are looked up when they are used: the guard imports two of these modules and must not load
+the arrays that the others need (cellctl/guard/process.py).
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
+    from cellctl.interfaces.robot import Robot, RobotMode, RobotState
+    from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
+    from cellctl.interfaces.stop_channel import FlangeState, StopChannel
+    from cellctl.interfaces.target_tracker import Target, TargetTracker
 
 __all__ = [
     "FlangeState",
@@ -20,3 +28,18 @@ __all__ = [
     "TargetTracker",
     "WrenchSample",
 ]
+
+_MODULES = {
+    "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
+    "robot": ("Robot", "RobotMode", "RobotState"),
+    "stereo_camera": ("StereoCamera", "StereoPair"),
+    "stop_channel": ("FlangeState", "StopChannel"),
+    "target_tracker": ("Target", "TargetTracker"),
+}
+_HOMES = {name: module for module, names in _MODULES.items() for name in names}
+
+
+def __getattr__(name: str) -> object:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)

@@ -1,0 +1,293 @@
+"""The guard as a process: what trips it, what it tells, and what happens when somebody dies."""
+
+import asyncio
+import os
+import signal
+import time
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.force import GuardDied, GuardRefused, SensorSetupWrong
+from cellctl.errors.link import ConnectTimeout
+from cellctl.force.compensation import Compensation
+from cellctl.guard.client import GuardClient
+from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
+from cellctl.guard.report import TripReason
+from fakes.wire.sri_box import SriBox
+from tests.cell.guard_rig import NOTHING, PATIENT, SETTINGS, rig, until
+from tests.wire.siasun_peer import free_ports
+
+
+async def test_it_publishes_and_beats_without_being_armed() -> None:
+    async with rig() as cell:
+        await until(lambda: len(cell.robot.beats_s) > 20)
+        gaps = np.diff(cell.robot.beats_s)
+        assert np.median(gaps) == pytest.approx(SETTINGS.beat_s, rel=0.2)
+        begin_s = cell.client.latest().time_s
+        await until(lambda: cell.client.latest().time_s > begin_s + 0.2)
+        curve = cell.client.samples(begin_s)
+        assert len(curve.time_s) == pytest.approx(100, abs=25)
+        assert not curve.overrun
+        health = cell.client.health()
+        assert (health.alive, health.armed, health.latched) == (True, False, False)
+        assert health.stop_channel_up
+        assert health.resident_peak_bytes > 1e6
+        assert "M8128B1-FAKE" in health.sensor_serial
+        cell.client.check()
+        assert cell.robot.stops_s == []
+
+
+async def test_a_force_stops_the_robot_latches_and_is_reported() -> None:
+    async with rig() as cell:
+        await cell.client.arm(PATIENT)
+        assert await cell.client.wait_trip(0.05) is None
+        cell.force[2] = 30.0
+        trip = await cell.client.wait_trip(2.0)
+        assert trip is not None
+        assert (trip.reason, trip.component) == (TripReason.RAW_LIMIT, 2)
+        await cell.robot.stopped()
+        cell.force[2] = 0.0
+        with pytest.raises(GuardRefused, match="latched"):
+            await cell.client.arm(PATIENT)
+        assert cell.client.health().latched
+        assert cell.client.health().peak_raw[2] > 20.0
+        await cell.client.acknowledge()
+        assert cell.client.trip is None
+        cell.robot.latched = False
+        await until(lambda: not cell.client.health().latched)
+        await cell.client.arm(replace(PATIENT, touch=CusumTouch()))
+        assert await cell.client.wait_trip(0.1) is None
+        cell.force[2] = 12.0
+        trip = await cell.client.wait_trip(2.0)
+        assert trip is not None
+        assert trip.touch
+        await cell.robot.stopped(2)
+
+
+SHORT = GuardLimits(stale_s=0.1, flange_age_s=1.0)
+SENSOR_FAULTS = (
+    ("silent", SHORT, TripReason.SENSOR_SILENT),
+    ("frozen", PATIENT, TripReason.SENSOR_FROZEN),
+    ("nan", PATIENT, TripReason.SENSOR_INVALID),
+    ("corrupt_every", PATIENT, TripReason.SENSOR_INVALID),
+    ("saturated", replace(PATIENT, raw=UNLIMITED), TripReason.SENSOR_SATURATED),
+    ("half_open", SHORT, TripReason.SENSOR_SILENT),
+)
+
+
+async def test_every_fault_of_the_sensor() -> None:
+    async with rig(range=(5000.0,) * 3 + (500.0,) * 3) as cell:
+        for fault, limits, reason in SENSOR_FAULTS:
+            healthy_s = time.monotonic()
+            await until(lambda since_s=healthy_s: cell.client.latest().time_s > since_s)
+            await cell.client.arm(limits)
+            stops = len(cell.robot.stops_s)
+            cell.box.faults.inject(fault)
+            trip = await cell.client.wait_trip(2.0)
+            assert trip is not None, fault
+            assert trip.reason is reason, fault
+            await cell.robot.stopped(stops + 1)
+            cell.box.faults.clear()
+            await cell.client.acknowledge()
+            cell.robot.latched = False
+
+
+async def test_a_lost_sensor_link_trips_and_reading_comes_back_by_itself() -> None:
+    async with rig(reconnect_s=0.1) as cell:
+        await cell.client.arm(GuardLimits(stale_s=0.05, flange_age_s=1.0))
+        cell.box.drop_clients()
+        trip = await cell.client.wait_trip(2.0)
+        assert trip is not None
+        assert trip.reason is TripReason.SENSOR_SILENT
+        await until(lambda: cell.client.health().sensor.reconnects == 1)
+        assert cell.client.trip is trip
+        assert cell.client.health().latched
+
+
+async def test_a_mute_robot_trips_by_the_age_of_its_pose() -> None:
+    async with rig() as cell:
+        await cell.client.arm(replace(PATIENT, flange_age_s=0.15))
+        cell.robot.mute = True
+        trip = await cell.client.wait_trip(2.0)
+        assert trip is not None
+        assert trip.reason is TripReason.FLANGE_STALE
+        await cell.robot.stopped()
+
+
+async def test_a_lost_stop_channel_trips_and_arming_is_refused() -> None:
+    async with rig() as cell:
+        await cell.client.arm(PATIENT)
+        cell.robot.peer.writer.close()
+        trip = await cell.client.wait_trip(2.0)
+        assert trip is not None
+        assert trip.reason is TripReason.STOP_CHANNEL_LOST
+        await cell.client.acknowledge()
+        with pytest.raises(GuardRefused, match="stop channel"):
+            await cell.client.arm(PATIENT)
+
+
+async def test_an_ignored_stop_is_repeated_and_then_the_beats_end() -> None:
+    async with rig() as cell:
+        cell.robot.deaf = 1
+        await cell.client.arm(PATIENT)
+        cell.force[0] = 30.0
+        await cell.robot.stopped(2)
+        await until(lambda: cell.robot.latched)
+        assert cell.robot.stops_s[1] - cell.robot.stops_s[0] < 0.3
+
+        cell.force[0] = 0.0
+        await cell.client.acknowledge()
+        cell.robot.latched, cell.robot.deaf = False, 10**6
+        await until(lambda: cell.client.health().flange_age_s < 0.1)
+        before = len(cell.robot.stops_s)
+        await cell.client.arm(PATIENT)
+        cell.force[0] = 30.0
+        await cell.robot.stopped(before + 20)
+        late_s = cell.robot.beats_s[-1] - cell.robot.stops_s[before]
+        assert late_s < SETTINGS.stop_confirm_s + 0.15
+
+
+async def test_the_death_of_the_guard_is_told_and_the_beats_end() -> None:
+    async with rig() as cell:
+        taring = asyncio.create_task(cell.client.tare(5.0))
+        await cell.client.set_compensation(NOTHING)  # its answer says that the tare was heard
+        os.kill(cell.client.pid, signal.SIGKILL)
+        trip = await cell.client.wait_trip(2.0)
+        with pytest.raises(GuardDied):
+            await asyncio.wait_for(taring, 2)
+        assert trip is not None
+        assert trip.reason is TripReason.GUARD_DIED
+        assert "signal 9" in trip.detail
+        await asyncio.wait_for(cell.robot.lost.wait(), 2)
+        assert isinstance(trip.fault(), GuardDied)
+        assert not cell.client.health().alive
+        with pytest.raises(GuardDied):
+            await cell.client.arm(PATIENT)
+        with pytest.raises(GuardDied):
+            cell.client.latest()
+        with pytest.raises(GuardDied):
+            cell.client.check()
+
+
+async def test_a_hung_guard_is_noticed() -> None:
+    async with rig() as cell:
+        os.kill(cell.client.pid, signal.SIGSTOP)
+        beats = len(cell.robot.beats_s)
+        await until(lambda: not cell.client.health().alive, 3.0)
+        assert len(cell.robot.beats_s) <= beats + 2
+        with pytest.raises(GuardDied, match="old"):
+            cell.client.check()
+        os.kill(cell.client.pid, signal.SIGCONT)
+
+
+async def test_ctrl_c_is_not_for_the_guard_but_sigterm_is() -> None:
+    async with rig() as cell:
+        os.kill(cell.client.pid, signal.SIGINT)
+        begin_s = time.monotonic()
+        await until(lambda: cell.client.latest().time_s > begin_s + 0.1)
+        assert cell.robot.stops_s == []
+        os.kill(cell.client.pid, signal.SIGTERM)
+        await cell.robot.stopped()
+        await asyncio.wait_for(cell.robot.lost.wait(), 2)
+
+
+async def test_an_ordinary_end_stops_the_robot_too() -> None:
+    async with rig() as cell:
+        await cell.client.stop()
+        await cell.robot.stopped()
+        assert cell.client.trip is None
+        await cell.client.stop()
+
+
+async def test_tare_and_deck_frame() -> None:
+    async with rig() as cell:
+        cell.force[2] = -100.0
+        load = Compensation(np.vstack([np.diag([100.0] * 3), np.zeros((3, 3))]), np.zeros(6), "x")
+        await cell.client.set_compensation(load)
+        turned = RigidTransform.from_translation([0.1, 0.0, 0.0])
+        await cell.client.set_deck_frame(turned)
+        tare = await cell.client.tare(0.1)
+        # The scripted robot's flange looks down (C = 180°): gravity is +z of the sensor.
+        assert tare.mean[2] == pytest.approx(-200.0, abs=0.5)
+        assert tare.mean[4] == pytest.approx(-0.1 * 200.0, abs=0.5)
+        assert tare.sigma[2] == pytest.approx(0.2, rel=0.5)
+        begin_s = cell.client.latest().time_s
+        await until(lambda: cell.client.latest().time_s > begin_s + 0.1)
+        assert cell.client.samples(begin_s).wrench.mean(axis=0) == pytest.approx([0] * 6, abs=0.2)
+
+        cell.box.faults.inject("silent")
+        with pytest.raises(GuardRefused, match="no samples"):
+            await cell.client.tare(0.05)
+        await until(lambda: cell.client.health().sample_age_s > 0.3)
+        with pytest.raises(GuardRefused, match="old"):
+            await cell.client.arm(replace(PATIENT, stale_s=0.05))
+
+
+async def test_a_new_guard_after_the_death_knows_load_and_frame_but_is_not_armed() -> None:
+    box = SriBox(lambda time_s: [5.0] * 6)
+    sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
+    client = GuardClient("sri", sensor, None, None, SETTINGS)
+    await client.start()
+    offset = Compensation(np.zeros((6, 3)), np.full(6, 2.0), "affine24")
+    await client.set_compensation(offset)
+    first = client.pid
+    os.kill(first, signal.SIGKILL)
+    assert await client.wait_trip(2.0) is not None
+    await client.acknowledge()
+    assert client.pid not in (0, first)
+    assert client.trip is None
+    begin_s = time.monotonic()
+    await until(lambda: (s := client.newest()) is not None and s.time_s > begin_s)
+    assert client.latest().wrench == pytest.approx([3.0] * 6, rel=1e-3)
+    assert not client.health().armed
+    await client.stop()
+    await box.stop()
+
+
+async def test_a_load_that_hangs_needs_a_stop_channel() -> None:
+    box = SriBox(lambda time_s: [0.0] * 6)
+    sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
+    client = GuardClient("sri", sensor, None, None, SETTINGS)
+    await client.start()
+    with pytest.raises(GuardRefused, match="compensation"):
+        await client.arm(PATIENT)
+    with pytest.raises(GuardRefused, match="stop channel"):
+        await client.set_compensation(Compensation(np.ones((6, 3)), np.zeros(6), "affine24"))
+    await client.set_compensation(NOTHING)
+    await client.stop()
+    await box.stop()
+
+
+async def test_a_sensor_that_is_not_there() -> None:
+    (port,) = free_ports(1)
+    sensor = {"transport": "tcp", "host": "127.0.0.1", "port": port}
+    client = GuardClient("sri", sensor, None, None, SETTINGS)
+    with pytest.raises(ConnectTimeout, match=str(port)):
+        await client.start()
+    assert (client.running, client.trip) == (False, None)
+    await client.stop()
+
+
+async def test_a_sensor_that_is_set_wrongly() -> None:
+    box = SriBox(lambda time_s: [0.0] * 6)
+    box.settings.raw_unit = "MV"
+    sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
+    client = GuardClient("sri", sensor, None, None, SETTINGS)
+    with pytest.raises(SensorSetupWrong, match="DCPCU"):
+        await client.start()
+    await box.stop()
+
+
+async def test_a_robot_that_does_not_come() -> None:
+    box = SriBox(lambda time_s: [0.0] * 6)
+    sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
+    (port,) = free_ports(1)
+    stop = {"robot_name": "SR500A", "guard_port": port, "connect_timeout_s": 0.2}
+    client = GuardClient("sri", sensor, "siasun-sjl", stop, SETTINGS)
+    with pytest.raises(ConnectTimeout, match="SR500A"):
+        await client.start()
+    assert not client.running
+    await box.stop()
