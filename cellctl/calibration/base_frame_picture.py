@@ -38,7 +38,7 @@ def _circles(axes: Axes, fit: AxisFit) -> None:
         axes.plot(*circle, linewidth=0.5, color=points[0].get_color())
     axes.plot(0, 0, "k+")
     axes.set(aspect="equal", xlabel="mm", ylabel="mm")
-    axes.legend(fontsize=8, loc="upper right")
+    axes.legend(fontsize=8, loc="center", ncols=2)
 
 
 def _residuals(axes: Axes, result: BaseFrameResult) -> None:

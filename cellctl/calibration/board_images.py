@@ -1,7 +1,7 @@
 """Corners of a calibration board in images, and the wrong images that give none."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -12,8 +12,9 @@ from cellctl.errors.vision import ImageBlack, ImageSaturated
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
-_SEARCH_PX = 1000
-"""Longer side of the image in which a chessboard is searched first."""
+_SEARCH_PX = (1000, 500)
+"""Longer side of the reduced images in which a chessboard is searched."""
+_MAX_CORNERS = 16
 _WINDOW_OF_SQUARE = 0.12
 _MIN_WINDOW_PX, _MAX_WINDOW_PX = 5, 15
 """Half window of the corner refinement: long enough for many edge pixels, short enough to keep off
@@ -82,12 +83,10 @@ def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
     """Corners of the board in one image, or None."""
     if board.charuco is not None:
         return _detect_charuco(image, board, board.charuco)
-    scale = max(1.0, max(image.shape) / _SEARCH_PX)
-    found = _search(image, (board.columns, board.rows), scale)
-    if found is None and scale > 1:
-        found = _search(image, (board.columns, board.rows), 1.0)
+    found = _search(image, (board.columns, board.rows))
     if found is None:
         return None
+    found = _right_handed(found, board)
     rough = Corners(np.arange(len(found)), found)
     pixels = _refine(image, found, _square_px(rough, board))
     if not _first_cell_is_dark(image, pixels, board) and not board.symmetric:
@@ -95,15 +94,42 @@ def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
     return Corners(np.arange(len(pixels)), np.ascontiguousarray(pixels))
 
 
-def _search(image: Image, size: tuple[int, int], scale: float, flags: int = 0) -> Array | None:
+def _search(image: Image, size: tuple[int, int]) -> Array | None:
+    """Corners to a pixel or so, in any of the orders that fit the size.
+
+    The quadrangle search is quick and needs no wide white margin; the sector search sees more
+    under strong tilt or blur, and needs its exhaustive mode where the surroundings are dark.
+    """
+    for longest_px in _SEARCH_PX:
+        small = _reduced(image, longest_px)
+        flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
+        is_found, corners = cv2.findChessboardCorners(
+            small, size, flags=flags | cv2.CALIB_CB_FAST_CHECK
+        )
+        if not is_found:
+            flags = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_NORMALIZE_IMAGE
+            is_found, corners = cv2.findChessboardCornersSB(small, size, flags=flags)
+        if is_found:
+            ratio = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
+            return np.asarray((corners.reshape(-1, 2) + 0.5) * ratio - 0.5, dtype=float)
+    return None
+
+
+def _reduced(image: Image, longest_px: int) -> Image:
+    scale = max(image.shape) / longest_px
+    if scale <= 1:
+        return image
     shape = (round(image.shape[1] / scale), round(image.shape[0] / scale))
-    small = cv2.resize(image, shape, interpolation=cv2.INTER_AREA) if scale > 1 else image
-    flags |= cv2.CALIB_CB_NORMALIZE_IMAGE
-    is_found, corners = cv2.findChessboardCornersSB(small, size, flags=flags)
-    if not is_found:
-        return None
-    ratio = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
-    return np.asarray((corners.reshape(-1, 2) + 0.5) * ratio - 0.5, dtype=float)
+    return np.asarray(cv2.resize(image, shape, interpolation=cv2.INTER_AREA), dtype=np.uint8)
+
+
+def _right_handed(pixels: Array, board: CalibrationBoard) -> Array:
+    """Mirror the rows if need be, so that rows and columns turn like x and y of the image."""
+    grid = pixels.reshape(board.rows, board.columns, 2)
+    along_row, along_column = grid[-1, -1] - grid[-1, 0], grid[-1, 0] - grid[0, 0]
+    area = along_row[0] * along_column[1] - along_row[1] * along_column[0]
+    ordered = grid if area > 0 else grid[:, ::-1]
+    return np.ascontiguousarray(ordered.reshape(-1, 2))
 
 
 def _refine(image: Image, pixels: Array, square_px: float) -> Array:
@@ -180,15 +206,12 @@ def _raise_not_found(pair: ImagePair, board: CalibrationBoard) -> None:
 
 
 def _other_board(image: Image, board: CalibrationBoard) -> str | None:
-    scale = max(1.0, max(image.shape) / _SEARCH_PX)
-    shape = (round(image.shape[1] / scale), round(image.shape[0] / scale))
-    small = cv2.resize(image, shape, interpolation=cv2.INTER_AREA) if scale > 1 else image
-    flags = cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_LARGER
-    if board.charuco is None:
-        is_found, _, meta = cv2.findChessboardCornersSBWithMeta(small, (3, 3), flags=flags)
-        if is_found and meta is not None:
-            return f"a chessboard with about {meta.shape[1]} x {meta.shape[0]} inner corners"
-        return None
-    plain = replace(board, charuco=None)
-    found = _search(image, (plain.columns, plain.rows), scale)
-    return None if found is None else f"the chessboard {plain} without markers"
+    """Another chessboard in the image, by trying sizes; slow, but only for the message."""
+    sizes = [(c, r) for c in range(3, _MAX_CORNERS) for r in range(3, c + 1)]
+    small = _reduced(image, _SEARCH_PX[-1])
+    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
+    for size in sorted(sizes, key=lambda size: -size[0] * size[1]):
+        if cv2.findChessboardCorners(small, size, flags=flags)[0]:
+            without = " without markers" if board.charuco is not None else ""
+            return f"a chessboard with {size[0]} x {size[1]} inner corners{without}"
+    return None

@@ -27,7 +27,8 @@ class Check:
     def __str__(self) -> str:
         relation = "≤" if self.side == "max" else "≥"
         mark = "ok" if self.passed else "OUT OF LIMIT"
-        return f"{self.name} {self.value:.4g} {self.unit} ({relation} {self.limit:.4g}): {mark}"
+        value = f"{self.value:.4g} {self.unit}".rstrip()
+        return f"{self.name} {value} ({relation} {self.limit:.4g}): {mark}"
 
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""
