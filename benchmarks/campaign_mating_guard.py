@@ -15,6 +15,8 @@ from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 from cellctl.interfaces.stop_channel import FlangeState
 
 POLL_S = 0.005
+SLOTS = 600_000
+"""Ten minutes of samples."""
 STOP_CONFIRM_S = 0.1
 """As ``GuardSettings``: a stop that is not latched by then withholds the heartbeat."""
 
@@ -41,9 +43,7 @@ class WorldGuard:
         self._number = 0
         self._stop_s: float | None = None
         self._last: GuardSample | None = None
-        self._times: list[float] = []
-        self._wrenches: list[Array] = []
-        self._raws: list[Array] = []
+        self._kept = np.zeros((SLOTS, 13))
 
     # -- what the process does ------------------------------------------------------------------
     def tick(
@@ -80,9 +80,7 @@ class WorldGuard:
         sample = WrenchSample(time_s, time_s, self._number, *raw.tolist(), saturated)
         wrench = np.array(self._monitor.sample(sample))
         self._last = GuardSample(time_s, time_s, self._number, wrench, raw, 0.0)
-        self._times.append(time_s)
-        self._wrenches.append(wrench)
-        self._raws.append(raw)
+        self._kept[self._number - 1] = (time_s, *wrench, *raw)
 
     # -- what the client offers -----------------------------------------------------------------
     @property
@@ -94,11 +92,9 @@ class WorldGuard:
         return self._last
 
     def samples(self, since_s: float) -> Curve:
-        first = int(np.searchsorted(np.array(self._times), since_s, side="right"))
-        times = np.array(self._times[first:])
-        wrench = np.array(self._wrenches[first:]).reshape(-1, 6)
-        raw = np.array(self._raws[first:]).reshape(-1, 6)
-        return Curve(times, wrench, raw, np.zeros(len(times)), overrun=False)
+        kept = self._kept[: self._number]
+        part = kept[np.searchsorted(kept[:, 0], since_s, side="right") :]
+        return Curve(part[:, 0], part[:, 1:7], part[:, 7:], np.zeros(len(part)), overrun=False)
 
     async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
         self._monitor.require_unarmed()

@@ -1,0 +1,29 @@
+"""Injected failures: the right fault, at rest, below 50 N where physics allows it."""
+
+import pytest
+
+from benchmarks.campaign_mating_failures import FAILURES, run_failure
+
+TRIED_HERE = (
+    "sensor silent, creep",
+    "sensor frozen, guarded travel",
+    "sensor saturated",
+    "NaN-like bytes",
+    "robot link lost, creep",
+    "stop request ignored once",
+    "every stop request ignored",
+    "contact 0.25 mm early",
+)
+"""The rest runs in `make campaign-mating`."""
+
+
+@pytest.mark.parametrize("name", TRIED_HERE)
+def test_failure(name: str) -> None:
+    index = next(i for i, failure in enumerate(FAILURES) if failure.name == name)
+    failure = FAILURES[index]
+    trial = run_failure(index)
+    assert trial.outcome in failure.outcomes, trial.text
+    assert trial.standing
+    assert trial.true_peak_n < 50.0
+    if trial.outcome.startswith("F5"):
+        assert trial.reached_mm - trial.end_travel_mm > 1.5, "backed off"
