@@ -74,7 +74,8 @@ class SriCore:
         if len(weights) == 1:
             return signal
         newest = list(self._history)[-len(weights) :]
-        return np.average(newest, axis=0, weights=weights[-len(newest) :])
+        used = weights[-len(newest) :]
+        return signal if sum(used) == 0.0 else np.average(newest, axis=0, weights=used)
 
     def _spoil(self, data: bytes, data_format: DataFormat) -> bytes:
         if self.faults.nan:

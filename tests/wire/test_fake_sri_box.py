@@ -3,6 +3,8 @@
 import struct
 
 import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
 
 from fakes.wire.sri_box import SriBox
 from fakes.wire.sri_core import SriCore
@@ -135,6 +137,16 @@ def test_a_wrong_matrix_gives_wrong_values() -> None:
     assert b"$OK" in session.receive(f"AT+DCPM={rows}\r\n".encode(), 0.0)
     values = struct.unpack_from("<6f", session.receive(b"AT+GOD\r\n", 1.0), 6)
     assert values[2] == pytest.approx(-0.98, abs=0.05)
+
+
+@given(st.text("AT+SGDMPFOECKWU0123456789=?()$;:,.-\r\n", max_size=80))
+@example("SGDM=(A01);E;1;(WMA:1,0)\r\nAT+GOD\r\n")
+@example("DCPM=(1);(2);(3);(4);(5);(6)\r\n")
+@example("SMPF=nan\r\nAT+ADJZF\r\n")
+def test_no_text_upsets_the_box(text: str) -> None:
+    session = SriSession(SriCore(lambda time_s: WRENCH))
+    session.receive(b"AT+" + text.encode() + b"\r\n", 0.0)
+    assert session.receive(b"AT+ETPT=4010\r\n", 1.0) == b"ACK+ETPT=4010$OK\r\n"
 
 
 def test_stream_has_the_sample_of_each_due_time() -> None:

@@ -34,6 +34,18 @@ async def test_tcp(box: SriBox) -> None:
     await writer.wait_closed()
 
 
+async def test_dropped_clients_may_come_back(box: SriBox) -> None:
+    port = await box.start_tcp()
+    for _ in range(2):
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"AT+SFWV=?\r\n")
+        assert (await asyncio.wait_for(reader.readuntil(b"\n"), 2)).startswith(b"ACK+SFWV=")
+        box.drop_clients()
+        assert await asyncio.wait_for(reader.read(), 2) == b""
+        writer.close()
+        await writer.wait_closed()
+
+
 async def test_stop_closes_clients(box: SriBox) -> None:
     port = await box.start_tcp()
     reader, writer = await asyncio.open_connection("127.0.0.1", port)

@@ -54,5 +54,5 @@ def abortion(robot: str, reason: str) -> CellError:
 
 def cannot_listen(host: str, port: int, error: OSError) -> CellError:
     """Fault of a listening socket that could not be had."""
-    words = os.strerror(error.errno) if (error.errno or 0) > 0 else str(error)
+    words = os.strerror(error.errno) if error.errno and error.errno > 0 else str(error)
     return PortInUse(f"cannot listen on {host}:{port}: {words}")
