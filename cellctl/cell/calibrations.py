@@ -86,6 +86,10 @@ class CalibrationFolder:
         self._seen = None
         return stored
 
+    def stored(self) -> list[StoredCalibration]:
+        """Every record in its envelope; raises when one is missing or damaged."""
+        return [read_calibration(self.path, kind) for kind in ALL_KINDS]
+
     def fault(self, planned: timedelta) -> CellError | None:
         """Why production may not start, or None."""
         try:

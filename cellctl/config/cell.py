@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from cellctl.config.base import JointsDeg, Section
+from cellctl.config.base import JointsDeg, Section, WrittenPose
 from cellctl.config.devices import Device, Force, Heads, Robots
 from cellctl.config.recipe import Recipe
 
@@ -30,6 +30,8 @@ class Procedures(Section):
     stereo_views: Annotated[int, Field(ge=8, le=100)] = 24
     base_frame_joints_deg: JointsDeg
     """Main robot, middle of both arcs: station empty, targets seen by the large-field head."""
+    flange_T_target_board: WrittenPose
+    """Where the target board lies under a measuring head, roughly: it looks the same upside down."""
     circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
     circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0
     tracker_frames: Annotated[int, Field(ge=1, le=200)] = 20

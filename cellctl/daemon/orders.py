@@ -1,5 +1,6 @@
 """What Start asks for: judged before it is taken, turned into a job when the unit starts."""
 
+from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
@@ -10,7 +11,9 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.plc.commands import LineCommand
 from cellctl.procedures.maintenance import Maintenance, is_procedure
-from cellctl.steps.assembly import Assembly
+from cellctl.steps.assembly import PLANNED, Assembly
+
+_log = log.get(__name__)
 
 
 class OrderDesk:
@@ -49,6 +52,8 @@ class OrderDesk:
     def _judge_production(self, command: LineCommand) -> RejectCode:
         if self._cell.config.recipe(command.recipe_id) is None:
             return RejectCode.RECIPE_UNKNOWN
-        return (
-            RejectCode.NONE if self.calibrations.all_valid() else RejectCode.CALIBRATION_INVALID
-        )
+        fault = self.calibrations.fault(PLANNED)
+        if fault is not None:
+            _log.warning("Start refused", number=fault.number, fault=str(fault))
+            return RejectCode.CALIBRATION_INVALID
+        return RejectCode.NONE

@@ -18,7 +18,7 @@ from cellctl.calibration.board_transfer import (
 )
 from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.cell.head_station import HeadStation
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.vision.average import average
 from cellctl.vision.features import Hole
@@ -27,6 +27,8 @@ from cellctl.vision.stereo_head import StereoHead
 
 DISC_DIAMETER_M = 20 * MM
 PAIRS = 4
+SEARCH_RADIUS_M = 35 * MM
+"""Less than half the pitch of the discs."""
 
 
 async def measure_board(
@@ -71,11 +73,21 @@ async def _in_head(
 ) -> BoardPose:
     drawing = target_board_discs()
     discs = [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
+    nominal = pose_from_xyzabc(context.cell.config.procedures.flange_T_target_board)
+    head_T_board = pose_from_xyzabc(station.config.flange_T_head).inv() * nominal
     found = []
     for _ in range(PAIRS):
         pair = await station.camera.grab()
         found.append(
-            await context.cell.workers.run(measure_pair, pair.left, pair.right, model, discs)
+            await context.cell.workers.run(
+                measure_pair,
+                pair.left,
+                pair.right,
+                model,
+                discs,
+                camera_T_part=head_T_board,
+                search_radius_m=SEARCH_RADIUS_M,
+            )
         )
     points = [
         BoardPoint(hole.name, hole.position_m, hole.covariance_m2)

@@ -72,6 +72,8 @@ class Assembly(Job):
         self._calibrations = self._folder.read(PLANNED)
         self._frame_features = read_features(self._cell.folder / self._recipe.frame_features)
         self._deck_features = read_features(self._cell.folder / self._recipe.deck_features)
+        for stored in self._folder.stored():
+            await self._archive.do(RunStore.add_calibration, stored)
         self.run_number = await self._archive.do(
             RunStore.start_run,
             serial=self.serial,

@@ -54,7 +54,7 @@ def _news(before: dict[str, Any], now: dict[str, Any]) -> str:
     if any(before.get(key) != now.get(key) for key in ("state", "step", "iteration", "alarms")):
         parts = [f"{now['state']:11}", f"{now['step'] or '-'}"]
         if now.get("iteration"):
-            parts.append(f"iteration {now['iteration']}: {_errors(now)}")
+            parts.append(f"{now['iteration']:2d}  {_errors(now)}")
         if now.get("alarms"):
             parts.append("alarms " + ", ".join(f"F{number}" for number in now["alarms"]))
         return "  ".join(parts)
@@ -86,4 +86,6 @@ def _errors(now: dict[str, Any]) -> str:
         return " ".join("-" if value is None else f"{value:+.{digits}f}" for value in values)
 
     millimetres, degrees = now.get("error_mm") or [], now.get("error_deg") or []
+    if not any(value is not None for value in (*millimetres, *degrees)):
+        return ""
     return f"{written(millimetres, 3)} mm  {written(degrees, 4)} deg"
