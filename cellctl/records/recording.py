@@ -7,6 +7,7 @@ under way is called ``*.part``; who finds one reads it like any other.
 import io
 import json
 import os
+import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
@@ -19,6 +20,7 @@ from mcap.exceptions import McapError
 from mcap.records import Message, Metadata
 from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
+from zstandard import ZstdError
 
 from cellctl.errors.records import RecordingUnreadable, RecordNotWritten
 from cellctl.force.curve import ForceCurve
@@ -119,7 +121,7 @@ def read_recording(source: bytes | Path) -> Recording:
                 rows.append([values.get(name, np.nan) for name in names])
             elif isinstance(record, Metadata):
                 facts = dict(record.metadata)
-    except (McapError, ValueError, EOFError) as error:
+    except (McapError, ZstdError, ValueError, EOFError, struct.error) as error:
         complete = False
         if not rows:
             raise RecordingUnreadable(str(error) or type(error).__name__) from error
@@ -129,5 +131,6 @@ def read_recording(source: bytes | Path) -> Recording:
 
 
 def _records(data: bytes) -> Iterator[Any]:
-    reader = StreamReader(io.BytesIO(data), record_size_limit=_RECORD_LIMIT)
+    stream = io.BytesIO(data)
+    reader = StreamReader(stream, validate_crcs=True, record_size_limit=_RECORD_LIMIT)
     yield from reader.records

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from cellctl.records.entries import Gauge
-from cellctl.records.plots.style import ACCENT, GOOD, GOOD_FILL, INK, LIMIT, style, to_svg
+from cellctl.records.plots.style import ACCENT, GOOD_FILL, INK, LIMIT, style, to_svg
 
 HOLE_MM = 6.0
 """Pin hole of both parts: a gauge of 6.00 would mean no offset at all."""
@@ -42,6 +42,6 @@ def plug_gauges(gauges: Sequence[Gauge]) -> str:
         axes.set_xlim(least - 0.015, HOLE_MM + 0.012)
         axes.set_xticks(np.arange(LEAST_MM, HOLE_MM + 0.005, 0.02))
         axes.set_xticks(np.arange(LEAST_MM, HOLE_MM + 0.005, 0.01), minor=True)
-        axes.set_xlabel(f"largest gauge that passes, mm (hole {HOLE_MM:.2f})", color=GOOD)
+        axes.set_xlabel(f"largest gauge that passes, mm (hole {HOLE_MM:.2f})")
         axes.grid(axis="y", visible=False)
         return to_svg(figure)

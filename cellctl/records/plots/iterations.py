@@ -44,7 +44,7 @@ def _panel(axes: Axes, iterations: Sequence[Iteration], index: int) -> None:
     extent = max([threshold * 2.0, *(abs(error or 0.0) * 1.8 for _, error, _ in points)])
     axes.set_ylim(-extent, extent)
     ticks = _ticks(threshold, extent)
-    axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_yticks(ticks, [f"{tick:g}".replace("-", "−") for tick in ticks])
     axes.yaxis.set_minor_locator(MaxNLocator(1))
     axes.tick_params(axis="y", which="minor", length=0)
     numbers = [point[0] for point in points]
@@ -57,7 +57,9 @@ def _panel(axes: Axes, iterations: Sequence[Iteration], index: int) -> None:
     axes.set_xlim(0.6, max([*numbers, 2]) + 0.4)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     if points:
-        axes.set_title(f"{errors[-1]:+.4f}", loc="right", color=MUTED, fontweight="normal")
+        axes.set_title(
+            f"{errors[-1]:+.4f}".replace("-", "−"), loc="right", color=MUTED, fontweight="normal"
+        )
 
 
 def _ticks(threshold: float, extent: float) -> list[float]:

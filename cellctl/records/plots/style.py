@@ -57,15 +57,15 @@ def to_svg(figure: Figure) -> str:
 
 
 def label_line(axes: Axes, y: float, text: str, colour: str, *, dashed: bool = False) -> None:
-    """A horizontal line with its meaning written on it, at the right end."""
+    """A horizontal line with its meaning written on it, at its left end."""
     axes.axhline(y, color=colour, linewidth=1.0, linestyle=(0, (5, 3)) if dashed else "-", zorder=1)
     axes.annotate(
         text,
-        (1.0, y),
+        (0.0, y),
         xycoords=("axes fraction", "data"),
-        xytext=(-2, 2),
+        xytext=(4, 2),
         textcoords="offset points",
-        ha="right",
+        ha="left",
         va="bottom",
         color=colour,
         fontsize=7,

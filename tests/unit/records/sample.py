@@ -57,7 +57,7 @@ def fill(store: RunStore, run: int, picture: bytes) -> None:
         )  # fmt: skip
     for name in ("head-1-left", "head-1-right", "head-2-left", "head-2-right"):
         store.add_artefact(run, f"frame-{name}.png", picture, "image/png")
-    recording = encode_curve(force_curve(), datetime.now(UTC), {"attempt": "1"})
+    recording = encode_curve(force_curve(seconds=4.0), datetime.now(UTC), {"attempt": "1"})
     store.add_artefact(run, "force-1.mcap", recording, MEDIA_TYPE)
     store.set_mating(
         run,

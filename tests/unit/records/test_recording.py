@@ -86,3 +86,21 @@ def test_an_exception_still_ends_the_file() -> None:
     with pytest.raises(RuntimeError):
         fail()
     assert read_recording(stream.getvalue()).complete
+
+
+def test_flipped_bits_may_shorten_a_curve_but_never_change_it() -> None:
+    original = curve(2000)
+    data = bytearray(encode_curve(original, STARTED, {}))
+    rng = np.random.default_rng(7)
+    found = 0
+    for position in rng.integers(8, len(data), 60):
+        damaged = bytearray(data)
+        damaged[position] ^= 1 << int(rng.integers(8))
+        try:
+            wrench = read_recording(bytes(damaged)).curve.wrench
+        except RecordingUnreadable:
+            found += 1
+            continue
+        found += len(wrench) < 2000
+        np.testing.assert_allclose(wrench, original.wrench[: len(wrench)], atol=5e-5)
+    assert found > 30
