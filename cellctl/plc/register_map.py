@@ -94,7 +94,7 @@ INPUT: tuple[Item, ...] = (
     Item(3, "mode", "PackML UnitModeCurrent"),
     Item(4, "state_requested", "PackML StateRequested"),
     Item(5, "status", "see the status bits", Kind.BITS),
-    Item(6, "step", "inner step of Execute, see the steps"),
+    Item(6, "step", "inner step of Execute, see plc-integration.md"),
     Item(7, "ack_seq", "last cmd_seq that was taken or refused; 0: none since start"),
     Item(8, "done_seq", "last cmd_seq that has ended"),
     Item(9, "result", "of done_seq, see the results"),

@@ -1,11 +1,13 @@
 """The tables against the standard, pair by pair, and the built machine against the tables."""
 
 import itertools
+from pathlib import Path
 
 import pytest
 
 from cellctl.packml.chart import StateChart
 from cellctl.packml.command import COMMANDS, Command
+from cellctl.packml.document import state_machine_document
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.requests import judge_command, judge_mode
@@ -102,3 +104,8 @@ def test_modes_change_only_where_nothing_runs() -> None:
 
 def test_every_reject_code_has_words() -> None:
     assert all(code.text for code in RejectCode)
+
+
+def test_the_documented_machine_is_current() -> None:
+    page = Path(__file__).parents[3] / "docs/state-machine.md"
+    assert page.read_text(encoding="utf-8") == state_machine_document()
