@@ -12,7 +12,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
-_MAX_EDGES = 30000
+_MAX_EDGES = 12000
 _SUPPORT = 0.42
 """Share of the circumference that must vote for a centre."""
 _NOISE_FACTOR = 5.0
@@ -52,9 +52,9 @@ def find_candidates(
 
 
 def _shrink(smallest_radius_px: float) -> int:
-    """Largest reduction that leaves a radius of 4 px."""
+    """Largest reduction that leaves a radius of 3 px."""
     for shrink in (4, 3, 2):
-        if smallest_radius_px / shrink >= 4.0:
+        if smallest_radius_px / shrink >= 3.0:
             return shrink
     return 1
 
@@ -68,7 +68,7 @@ def _reduced(image: Image, shrink: int) -> Array:
 
 
 def _radii(smallest: float, largest: float) -> Array:
-    count = max(2, int(np.ceil((largest - smallest) / 0.7)) + 1)
+    count = max(2, int(np.ceil((largest - smallest) / 0.8)) + 1)
     return np.linspace(smallest, largest, count)
 
 
@@ -100,7 +100,7 @@ def _vote(shape: tuple[int, ...], edges: tuple[Array, Array, Array], radii: Arra
         inside = (centres >= 0).all(axis=1) & (centres[:, 0] < width) & (centres[:, 1] < height)
         flat = centres[inside, 1] * width + centres[inside, 0]
         counts = np.bincount(flat, minlength=height * width).reshape(height, width)
-        gathered = cv2.boxFilter(counts.astype(np.float32), -1, (3, 3), normalize=False)
+        gathered = cv2.boxFilter(counts.astype(np.uint16), cv2.CV_32F, (3, 3), normalize=False)
         # An edge is about two pixels wide, so a full circle gathers some 4 π r votes.
         votes[index] = gathered / (4.0 * np.pi * radius)
     return votes

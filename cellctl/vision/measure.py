@@ -14,15 +14,23 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.camera import X_AXIS
 from cellctl.vision.diagnose import fault_without_layout
 from cellctl.vision.features import Hole
 from cellctl.vision.image_checks import check_pair
 from cellctl.vision.layout import Assignment, Spot, assignments
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement, away_normal
 from cellctl.vision.paper import measure_pair_by_paper
+from cellctl.vision.plane_patch import X_AXIS
 from cellctl.vision.registration import kabsch, on_a_line
-from cellctl.vision.rim import Rejection, Rim, Sight, coarse_rim, measure_rim, measure_thread
+from cellctl.vision.rim import (
+    Located,
+    Rejection,
+    Rim,
+    Sight,
+    locate_rim,
+    measure_rim,
+    measure_thread,
+)
 from cellctl.vision.search import NEAR, WIDE, spots_anywhere, spots_near
 from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, midpoints, triangulate
 from cellctl.vision.stereo_head import StereoHead
@@ -32,7 +40,7 @@ LAYOUT_TOLERANCE_M = 0.3e-3
 """Largest deviation of a measured hole from the drawing."""
 
 _COARSE_TOLERANCE_M = 2.5e-3
-_COARSE_REACH_PX, _FINE_REACH_PX = 7.0, 1.5
+_COARSE_REACH_PX = 7.0
 _COARSE_EPIPOLAR_PX, _FINE_EPIPOLAR_PX = 2.5, 0.35
 _SIZE_AGREEMENT = 0.02
 _SAME_PLACE_M = 2e-3
@@ -131,22 +139,23 @@ def _measure(
 ) -> PairMeasurement:
     positions_m = assignment.positions_m
     normal = _plane_normal(holes, positions_m, camera_T_part)
-    positions_m = _coarse_positions(images, head, holes, positions_m, normal)
+    located = _locate(images, head, holes, positions_m, normal)
+    positions_m = _positions(head, holes, located)
     _check_layout(holes, positions_m, tolerance_m + 0.5e-3)
     normal = _plane_normal(holes, positions_m, camera_T_part)
     measured: dict[str, HoleMeasurement] = {}
     blurs: list[tuple[float, float]] = []
     for index in sorted(range(len(holes)), key=lambda index: holes[index].kind == "thread"):
-        hole = holes[index]
+        hole, places = holes[index], located[index]
         sights = _sights(images, head, positions_m[index], normal)
         if hole.kind == "thread":
             known = np.median(blurs, axis=0) if blurs else None
             blur_px = None if known is None else (float(known[0]), float(known[1]))
-            rims = _or_missing(hole, measure_thread(sights, hole, _FINE_REACH_PX, blur_px))
+            rims = _or_missing(hole, measure_thread(sights, hole, places, blur_px))
         else:
             left, right = (
-                _or_missing(hole, measure_rim(sight, hole, _FINE_REACH_PX), side)
-                for side, sight in zip(_SIDES, sights, strict=True)
+                _or_missing(hole, measure_rim(sight, hole, place), side)
+                for side, sight, place in zip(_SIDES, sights, places, strict=True)
             )
             blurs.append((left.blur_px, right.blur_px))
             rims = left, right, joint_covariance(left.covariance_px2, right.covariance_px2)
@@ -169,23 +178,35 @@ def _plane_normal(
     return np.asarray(middle / np.linalg.norm(middle))
 
 
-def _coarse_positions(
+def _locate(
     images: tuple[Image, Image],
     head: StereoHead,
     holes: Sequence[Hole],
     positions_m: Array,
     normal: Array,
+) -> list[tuple[Located, Located]]:
+    """Both images of every rim, located by their edges."""
+    found = []
+    for hole, position_m in zip(holes, positions_m, strict=True):
+        left, right = (
+            _or_missing(hole, locate_rim(sight, hole, _COARSE_REACH_PX), side)
+            for side, sight in zip(_SIDES, _sights(images, head, position_m, normal), strict=True)
+        )
+        found.append((left, right))
+    return found
+
+
+def _positions(
+    head: StereoHead, holes: Sequence[Hole], located: Sequence[tuple[Located, Located]]
 ) -> Array:
-    pixels = np.zeros((2, len(holes), 2))
-    for index, (hole, position_m) in enumerate(zip(holes, positions_m, strict=True)):
-        for camera, sight in enumerate(_sights(images, head, position_m, normal)):
-            found = coarse_rim(sight, hole, _COARSE_REACH_PX)
-            pixels[camera, index] = _or_missing(hole, found, _SIDES[camera])
-    distances = np.diag(epipolar_distances_px(head, pixels[0], pixels[1]))
+    left_px, right_px = (
+        np.array([places[camera].point_px for places in located]) for camera in (0, 1)
+    )
+    distances = np.diag(epipolar_distances_px(head, left_px, right_px))
     for hole, distance in zip(holes, distances, strict=True):
         if distance > _COARSE_EPIPOLAR_PX:
             raise HoleMissing(f"{hole.name}: left and right image disagree by {distance:.1f} px")
-    return midpoints(head, pixels[0], pixels[1])
+    return midpoints(head, left_px, right_px)
 
 
 def _stereo(

@@ -1,19 +1,19 @@
 """The rim of one hole in one image or in both: where its centre projects to, and how surely."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.camera import PlanePatch, plane_basis, plane_patch, project
+from cellctl.vision.camera import project
 from cellctl.vision.ellipse import Ellipse, ellipse_from_points
 from cellctl.vision.features import Hole
-from cellctl.vision.rim_edges import EdgeCircle, edge_circle, plane_to_px
+from cellctl.vision.plane_patch import PlanePatch, plane_basis, plane_patch, to_plane
+from cellctl.vision.rim_edges import edge_circle
 from cellctl.vision.rim_fit import RimFit, RingPrior, fit_rim, fit_rim_pair, rim_cost
 from cellctl.vision.rim_light import Light
-from cellctl.vision.rim_model import RimPixels, RimShape, rim_distance_px
+from cellctl.vision.rim_model import RimPixels, RimShape
 from cellctl.vision.stereo_head import CameraModel
 
 _RADIUS_TOLERANCE = 0.07
@@ -21,9 +21,10 @@ _MIN_SUPPORT = 0.55
 _MIN_CONTRAST_GREY = 8.0
 _MAX_MOVE_PX = 2.5
 _BAND_INSIDE_PX, _THREAD_INSIDE_PX, _BAND_OUTSIDE_PX = 6.5, 3.0, 5.5
+_DENSE_PX = 3.0
 _WALL_DEPTHS_M = (0.8e-3, 2.5e-3, 8e-3)
-_BIC_EVIDENCE = 12.0
-_CLEAR_EVIDENCE = 150.0
+_HINT, _EVIDENCE, _CLEAR_EVIDENCE = 2.0, 12.0, 40.0
+"""Gains of the information criterion: worth a look, worth the more complex model, beyond doubt."""
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
 _DIAMETER_SIGMA = 0.01
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
@@ -75,96 +76,28 @@ class Rejection:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
-    """A rim located by its edges."""
+class Located:
+    """A rim located by its edges, to a fraction of a pixel."""
 
-    sight: Sight
-    hole: Hole
-    patch: PlanePatch
-    grey: Array
-    circle: EdgeCircle
-
-    @property
-    def nominal(self) -> float:
-        """Nominal radius in plane units."""
-        return self.hole.diameter_m / 2.0 / self.sight.distance_m
+    point_px: Array
+    """Raw pixel of its centre, shape (2,)."""
+    size_ratio: float
+    """Measured over nominal diameter, if the plane's distance is right."""
+    support: float
+    """Share of the circumference that shows an edge."""
 
 
-def coarse_rim(sight: Sight, hole: Hole, reach_px: float) -> Array | Rejection:
-    """Raw pixel of the centre from edge points alone; good to a fraction of a pixel."""
-    found = _locate(sight, hole, reach_px)
-    if isinstance(found, Rejection):
-        return found
-    return plane_to_px(sight.camera, found.patch, found.circle.centre[None])[0]
-
-
-def measure_rim(sight: Sight, hole: Hole, reach_px: float) -> Rim | Rejection:
-    """Measure a rim in one image, its place known to ``reach_px`` and its plane to a degree."""
-    found = _locate(sight, hole, reach_px)
-    if isinstance(found, Rejection):
-        return found
-    fit = _fit_alone(found)
-    refusal = _refusal(found, fit, fit.shapes[0])
-    return refusal or _rim(found, fit, fit.shapes[0], fit.covariance[:2, :2])
-
-
-def measure_thread(
-    sights: tuple[Sight, Sight],
-    hole: Hole,
-    reach_px: float,
-    blur_px: tuple[float, float] | None,
-) -> tuple[Rim, Rim, Array] | Rejection:
-    """Measure the rim of a thread and its chamfer in both images at once.
-
-    ``blur_px`` is the blur of other rims in these images, where there are any. Third of the result
-    is the joint covariance of both points, shape (4, 4), px².
-    """
-    located = []
-    for sight in sights:
-        found = _locate(sight, hole, reach_px)
-        if isinstance(found, Rejection):
-            return found
-        located.append(found)
-    left, right = located
-    blurs, blur_sigma = ((_BLUR_PX, _BLUR_PX), _BLUR_SIGMA_PX)
-    if blur_px is not None:
-        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
-    starts = tuple(
-        RimShape(found.circle.centre, found.nominal, blur, None, _CHAMFER_RATIO)
-        for found, blur in zip(located, blurs, strict=True)
-    )
-    fit = fit_rim_pair(
-        (_band(left), _band(right)),
-        (starts[0], starts[1]),
-        Light(thread=True),
-        RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
-    )
-    for found, shape in zip(located, fit.shapes, strict=True):
-        refusal = _refusal(found, fit, shape)
-        if refusal is not None:
-            return refusal
-    jacobian = np.zeros((4, 4))
-    jacobian[:2, :2] = _px_by_plane(left, fit.shapes[0])
-    jacobian[2:, 2:] = _px_by_plane(right, fit.shapes[1])
-    joint = jacobian @ fit.covariance[:4, :4] @ jacobian.T + np.eye(4) * _FLOOR_PX**2
-    rims = [
-        _rim(found, fit, fit.shapes[index], fit.covariance[part, part])
-        for index, (found, part) in enumerate(zip(located, (slice(2), slice(2, 4)), strict=True))
-    ]
-    return rims[0], rims[1], joint
-
-
-def _locate(sight: Sight, hole: Hole, reach_px: float) -> _Found | Rejection:
-    cut = _cut(sight, hole, reach_px)
-    if cut is None:
+def locate_rim(sight: Sight, hole: Hole, reach_px: float) -> Located | Rejection:
+    """Find the rim within ``reach_px`` of where it should be, by its edges alone."""
+    patch = _patch(sight, hole, reach_px)
+    if patch is None:
         return Rejection("lies outside the image")
-    patch, grey = cut
+    nominal = hole.diameter_m / 2.0 / sight.distance_m
     circle = edge_circle(
-        np.asarray(cv2.GaussianBlur(grey, (0, 0), 1.0), dtype=float),
+        sight.image,
         patch,
-        sight.camera,
         patch.basis @ sight.centre_m / sight.distance_m,
-        hole.diameter_m / 2.0 / sight.distance_m,
+        nominal,
         reach_px=reach_px,
         radius_tolerance=_RADIUS_TOLERANCE,
         bright=hole.kind == "disc",
@@ -173,102 +106,182 @@ def _locate(sight: Sight, hole: Hole, reach_px: float) -> _Found | Rejection:
         return Rejection("no round edge of the nominal size")
     if circle.support < _MIN_SUPPORT:
         return Rejection(f"only {circle.support:.0%} of the rim has an edge")
-    return _Found(sight, hole, patch, grey, circle)
+    return Located(patch.to_px(circle.centre[None])[0], circle.radius / nominal, circle.support)
 
 
-def _cut(sight: Sight, hole: Hole, reach_px: float) -> tuple[PlanePatch, Array] | None:
+def measure_rim(sight: Sight, hole: Hole, located: Located) -> Rim | Rejection:
+    """Measure a located rim in one image; its plane must be known to about a degree."""
+    task = _task(sight, hole, located)
+    if isinstance(task, Rejection):
+        return task
+    fit = _fit_alone(task)
+    refusal = _refusal(task, fit, fit.shapes[0])
+    return refusal or _rim(task, fit, fit.shapes[0], fit.covariance[:2, :2])
+
+
+def measure_thread(
+    sights: tuple[Sight, Sight],
+    hole: Hole,
+    located: tuple[Located, Located],
+    blur_px: tuple[float, float] | None,
+) -> tuple[Rim, Rim, Array] | Rejection:
+    """Measure the rim of a thread and its chamfer in both images at once.
+
+    ``blur_px`` is the blur of other rims in these images, where there are any. Third of the result
+    is the joint covariance of both points, shape (4, 4), px².
+    """
+    tasks = []
+    for sight, place in zip(sights, located, strict=True):
+        task = _task(sight, hole, place)
+        if isinstance(task, Rejection):
+            return task
+        tasks.append(task)
+    left, right = tasks
+    blurs, blur_sigma = ((_BLUR_PX, _BLUR_PX), _BLUR_SIGMA_PX)
+    if blur_px is not None:
+        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
+    starts = [
+        RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO)
+        for task, blur in zip(tasks, blurs, strict=True)
+    ]
+    fit = fit_rim_pair(
+        (left.pixels, right.pixels),
+        (starts[0], starts[1]),
+        Light(thread=True),
+        RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
+    )
+    for task, shape in zip(tasks, fit.shapes, strict=True):
+        refusal = _refusal(task, fit, shape)
+        if refusal is not None:
+            return refusal
+    jacobian = np.zeros((4, 4))
+    jacobian[:2, :2] = left.patch.px_by_point(fit.shapes[0].centre)
+    jacobian[2:, 2:] = right.patch.px_by_point(fit.shapes[1].centre)
+    joint = jacobian @ fit.covariance[:4, :4] @ jacobian.T + np.eye(4) * _FLOOR_PX**2
+    rims = [
+        _rim(task, fit, fit.shapes[index], fit.covariance[part, part])
+        for index, (task, part) in enumerate(zip(tasks, (slice(2), slice(2, 4)), strict=True))
+    ]
+    return rims[0], rims[1], joint
+
+
+@dataclass(frozen=True, slots=True)
+class _Task:
+    """A located rim with the pixels that its model describes."""
+
+    sight: Sight
+    hole: Hole
+    patch: PlanePatch
+    pixels: RimPixels
+    centre: Array
+    """Start in plane units, shape (2,)."""
+    radius: float
+    """Start in plane units."""
+    nominal: float
+    """Nominal radius in plane units."""
+
+
+def _patch(sight: Sight, hole: Hole, reach_px: float) -> PlanePatch | None:
+    """The plane round a hole's expected place, or None when it is cut off by the image's border."""
     middle = project(sight.camera, sight.centre_m[None])[0]
     focal = float(sight.camera.camera_matrix[0, 0])
     radius_px = focal * hole.diameter_m / 2.0 / float(sight.centre_m[2])
-    half = int(np.ceil(radius_px * (1.0 + _RADIUS_TOLERANCE) + reach_px + _BAND_OUTSIDE_PX + 2.0))
-    x0, y0 = (int(value) - half for value in np.rint(middle))
-    size = 2 * half + 1
-    height, width = sight.image.shape
-    if x0 < 0 or y0 < 0 or x0 + size > width or y0 + size > height:
+    half = radius_px * (1.0 + _RADIUS_TOLERANCE) + reach_px + _BAND_OUTSIDE_PX + 2.0
+    size = np.array(sight.image.shape[::-1])
+    if (middle < half).any() or (middle > size - 1 - half).any():
         return None
-    grey = sight.image[y0 : y0 + size, x0 : x0 + size].astype(float)
     basis = plane_basis(sight.normal, sight.across)
-    return plane_patch(sight.camera, sight.normal, basis, (x0, y0), (size, size)), grey
+    return plane_patch(sight.camera, sight.normal, basis, middle, half)
 
 
-def _fit_alone(found: _Found) -> RimFit:
-    """The simplest model of the rim that the grey values do not contradict."""
-    pixels, circle = _band(found), found.circle
-    light = Light(cone=found.hole.countersink_m is not None)
-    bare = RimShape(circle.centre, circle.radius, _BLUR_PX)
-    if found.hole.kind == "disc":
-        return fit_rim(pixels, bare, light)
-    depths = [depth / found.sight.distance_m for depth in _WALL_DEPTHS_M]
-    walls = [RimShape(circle.centre, circle.radius, _BLUR_PX, depth) for depth in depths]
-    costs = [rim_cost(pixels, wall, light) for wall in walls]
-    best = walls[int(np.argmin(costs))]
-    walled = None
-    if min(costs) < rim_cost(pixels, bare, light) - _CLEAR_EVIDENCE:
-        walled = fit_rim(pixels, best, light)
-        if walled.converged:
-            return walled
-    plain = fit_rim(pixels, bare, light)
-    centre, radius = plain.shapes[0].centre, plain.shapes[0].radius
-    again = [RimShape(centre, radius, plain.shapes[0].blur_px, depth) for depth in depths]
-    costs = [rim_cost(pixels, wall, light) for wall in again]
-    if min(costs) > rim_cost(pixels, plain.shapes[0], light) - _BIC_EVIDENCE:
-        return plain
-    walled = fit_rim(pixels, again[int(np.argmin(costs))], light)
-    return walled if walled.converged and walled.bic < plain.bic - _BIC_EVIDENCE else plain
+def _task(sight: Sight, hole: Hole, located: Located) -> _Task | Rejection:
+    patch = _patch(sight, hole, 1.0)
+    if patch is None:
+        return Rejection("lies outside the image")
+    nominal = hole.diameter_m / 2.0 / sight.distance_m
+    centre = to_plane(sight.camera, located.point_px[None], patch.normal, patch.basis)[0]
+    radius = nominal * located.size_ratio
+    pixels = _band(sight, hole, patch, located.point_px, radius)
+    return _Task(sight, hole, patch, pixels, centre, radius, nominal)
 
 
-def _band(found: _Found) -> RimPixels:
-    """The pixels near the rim that the model describes."""
-    patch, circle, hole = found.patch, found.circle, found.hole
-    everything = RimPixels(patch.points, patch.jacobian, found.grey.ravel(), patch.unit_px)
-    distance = rim_distance_px(everything, circle.centre, circle.radius)
-    radius_px = circle.radius / patch.unit_px
+def _band(
+    sight: Sight, hole: Hole, patch: PlanePatch, middle_px: Array, radius: float
+) -> RimPixels:
+    """The pixels near the rim: all where it lies, one in three where only levels are needed."""
+    radius_px = radius / patch.unit_px
     inside, outside = min(_BAND_INSIDE_PX, 0.5 * radius_px), _BAND_OUTSIDE_PX
     if hole.kind == "thread":
         inside = _THREAD_INSIDE_PX
     elif hole.countersink_m is not None:
         ring_px = radius_px * (hole.countersink_m / hole.diameter_m - 1.0)
         outside = min(outside, max(2.0, 0.7 * ring_px))
-    mask = (distance > -inside) & (distance < outside)
-    return RimPixels(
-        np.ascontiguousarray(patch.points[:, mask]),
-        np.ascontiguousarray(patch.jacobian[:, :, mask]),
-        everything.grey[mask],
-        patch.unit_px,
+    x0, y0 = np.floor(middle_px - 1.15 * radius_px - outside).astype(int)
+    x1, y1 = np.ceil(middle_px + 1.15 * radius_px + outside).astype(int) + 1
+    height, width = sight.image.shape
+    columns, rows = np.meshgrid(
+        np.arange(max(x0, 0), min(x1, width)), np.arange(max(y0, 0), min(y1, height))
     )
+    # In the middle of the patch the map to the plane is linear enough to choose pixels by.
+    _, jacobian = patch.from_px(middle_px[:1], middle_px[1:])
+    dx, dy = columns - middle_px[0], rows - middle_px[1]
+    along, across = (jacobian[i, 0, 0] * dx + jacobian[i, 1, 0] * dy for i in (0, 1))
+    distance = np.hypot(along, across) / patch.unit_px - radius_px
+    wanted = (distance > -inside) & (distance < outside)
+    wanted &= (np.abs(distance) < _DENSE_PX) | ((columns + rows) % 3 == 0)
+    columns, rows = columns[wanted], rows[wanted]
+    points, jacobians = patch.from_px(columns.astype(float), rows.astype(float))
+    grey = sight.image[rows, columns].astype(float)
+    return RimPixels(points, jacobians, grey, patch.unit_px)
 
 
-def _refusal(found: _Found, fit: RimFit, shape: RimShape) -> Rejection | None:
-    moved_px = float(np.linalg.norm(shape.centre - found.circle.centre)) / found.patch.unit_px
+def _fit_alone(task: _Task) -> RimFit:
+    """The simplest model of the rim that the grey values do not contradict."""
+    pixels, light = task.pixels, Light(cone=task.hole.countersink_m is not None)
+    bare = RimShape(task.centre, task.radius, _BLUR_PX)
+    if task.hole.kind == "disc":
+        return fit_rim(pixels, bare, light)
+    sparse, distance_m = pixels.every(4), task.sight.distance_m
+    walls = [replace(bare, wall_ratio=depth_m / distance_m) for depth_m in _WALL_DEPTHS_M]
+    costs = [rim_cost(sparse, wall, light) for wall in walls]
+    order = np.argsort(costs)
+    if rim_cost(sparse, bare, light) - costs[order[0]] > _CLEAR_EVIDENCE:
+        for index in order:
+            walled = fit_rim(pixels, walls[index], light)
+            if walled.converged:
+                break
+        return walled
+    plain = fit_rim(pixels, bare, light)
+    settled = plain.shapes[0]
+    wall = replace(settled, wall_ratio=walls[order[0]].wall_ratio)
+    if rim_cost(sparse, settled, light) - rim_cost(sparse, wall, light) < _HINT:
+        return plain
+    walled = fit_rim(pixels, wall, light)
+    return walled if walled.bic < plain.bic - _EVIDENCE else plain
+
+
+def _refusal(task: _Task, fit: RimFit, shape: RimShape) -> Rejection | None:
+    moved_px = float(np.linalg.norm(shape.centre - task.centre)) / task.patch.unit_px
     if not fit.converged:
         return Rejection("fit of the rim did not settle")
     if abs(fit.contrast_grey) < _MIN_CONTRAST_GREY:
         return Rejection("too little contrast at the rim")
-    if moved_px > _MAX_MOVE_PX or abs(shape.radius / found.nominal - 1.0) > _RADIUS_TOLERANCE:
+    if moved_px > _MAX_MOVE_PX or abs(shape.radius / task.nominal - 1.0) > _RADIUS_TOLERANCE:
         return Rejection("fitted rim does not have the nominal size and place")
     return None
 
 
-def _px_by_plane(found: _Found, shape: RimShape) -> Array:
-    """Derivative of the raw pixel by the plane's coordinates at the centre, shape (2, 2)."""
-    step = 0.5 * found.patch.unit_px
-    probe = shape.centre + step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-    sides = plane_to_px(found.sight.camera, found.patch, probe)
-    return np.column_stack([sides[0] - sides[1], sides[2] - sides[3]]) / (2.0 * step)
-
-
-def _rim(found: _Found, fit: RimFit, shape: RimShape, covariance: Array) -> Rim:
-    camera, patch = found.sight.camera, found.patch
-    jacobian = _px_by_plane(found, shape)
+def _rim(task: _Task, fit: RimFit, shape: RimShape, covariance: Array) -> Rim:
+    jacobian = task.patch.px_by_point(shape.centre)
     angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
     circle = shape.centre + shape.radius * np.column_stack([np.cos(angles), np.sin(angles)])
     wall = shape.wall_ratio
     return Rim(
-        point_px=plane_to_px(camera, patch, shape.centre[None])[0],
+        point_px=task.patch.to_px(shape.centre[None])[0],
         covariance_px2=jacobian @ covariance @ jacobian.T + np.eye(2) * _FLOOR_PX**2,
-        ellipse=ellipse_from_points(plane_to_px(camera, patch, circle)),
-        size_ratio=shape.radius / found.nominal,
+        ellipse=ellipse_from_points(task.patch.to_px(circle)),
+        size_ratio=shape.radius / task.nominal,
         residual_grey=fit.residual_grey,
         blur_px=shape.blur_px,
-        wall_depth_m=None if wall is None else wall * found.sight.distance_m,
+        wall_depth_m=None if wall is None else wall * task.sight.distance_m,
     )

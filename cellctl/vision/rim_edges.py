@@ -6,18 +6,24 @@ rim is a circle. Gives the start of the fine fit, and the evidence that there is
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import PlanePatch, distort
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.plane_patch import PlanePatch
 
-_AZIMUTHS = 96
+_AZIMUTHS = 64
 _STEP_PX = 0.5
-_TRIALS = 160
+_TRIALS = 70
+_FEWEST = 10
+_REFINEMENTS = 4
 _TOLERANCE_PX = 0.8
 _WEAKEST = 0.2
 """Edges below this share of the typical strength do not count."""
+
+_ANGLES = np.arange(_AZIMUTHS) * (2.0 * np.pi / _AZIMUTHS)
+_DIRECTIONS = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +35,6 @@ class EdgeCircle:
     radius: float
     support: float
     """Share of the azimuths with an edge point within the tolerance."""
-    residual_px: float
-    """Robust standard deviation of the supporting points from the circle."""
     points_px: Array
     """Supporting edge points in the raw image, shape (n, 2)."""
 
@@ -38,14 +42,12 @@ class EdgeCircle:
 @dataclass(frozen=True, slots=True)
 class _Edges:
     points: Array
-    strength: Array
     azimuth: Array
 
 
 def edge_circle(
-    smoothed: Array,
+    image: Image,
     patch: PlanePatch,
-    camera: CameraModel,
     centre: Array,
     radius: float,
     *,
@@ -55,46 +57,26 @@ def edge_circle(
 ) -> EdgeCircle | None:
     """Find the rim near a start that may be off by ``reach_px``; None without a clear circle.
 
-    ``smoothed`` is the patch's grey values after a light blur. ``radius`` is the expected one;
-    circles that differ from it by more than ``radius_tolerance`` (a ratio) are not considered.
+    ``centre`` and ``radius`` in plane units; circles that differ from the radius by more than
+    ``radius_tolerance`` (a ratio) are not considered. The patch must lie inside the image.
     """
-    px = patch.unit_px
-    reach = reach_px * px + radius_tolerance * radius
-    edges = _radial_edges(smoothed, patch, camera, centre, radius, reach, px, bright=bright)
-    if len(edges.points) < 12:
+    reach = reach_px * patch.unit_px + radius_tolerance * radius
+    edges = _radial_edges(image, patch, centre, radius, reach, sign=-1.0 if bright else 1.0)
+    if len(edges.points) < _FEWEST:
         return None
-    start = _consensus(edges, radius, radius_tolerance, px)
-    if start is None:
-        return None
-    return _refined(edges, start, patch, camera, px)
-
-
-def plane_to_px(camera: CameraModel, patch: PlanePatch, points: Array) -> Array:
-    """Raw pixels, shape (n, 2), of points of the patch's plane, shape (n, 2)."""
-    rays = patch.normal + points @ patch.basis
-    return distort(camera, rays[:, :2] / rays[:, 2:])
+    start = _consensus(edges, radius, radius_tolerance, patch.unit_px)
+    return None if start is None else _refined(edges, start, patch)
 
 
 def _radial_edges(
-    smoothed: Array,
-    patch: PlanePatch,
-    camera: CameraModel,
-    centre: Array,
-    radius: float,
-    reach: float,
-    px: float,
-    *,
-    bright: bool,
+    image: Image, patch: PlanePatch, centre: Array, radius: float, reach: float, *, sign: float
 ) -> _Edges:
-    angles = np.arange(_AZIMUTHS) * (2.0 * np.pi / _AZIMUTHS)
-    directions = np.column_stack([np.cos(angles), np.sin(angles)])
-    step = _STEP_PX * px
-    first = max(radius - reach, 2.0 * px)
-    radii = np.arange(first, radius + reach + step, step)
-    grid = centre + directions[:, None, :] * radii[None, :, None]
-    pixels = plane_to_px(camera, patch, grid.reshape(-1, 2)) - patch.origin_px
-    profile = _bilinear(smoothed, pixels).reshape(_AZIMUTHS, len(radii))
-    slope = np.gradient(profile, axis=1) * (-1.0 if bright else 1.0)
+    """Peaks of the slope along rays from the centre, to a fraction of a step."""
+    step = _STEP_PX * patch.unit_px
+    radii = np.arange(max(radius - reach, 2.0 * step), radius + reach + step, step)
+    grid = centre + _DIRECTIONS[:, None, :] * radii[None, :, None]
+    profile = _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
+    slope = sign * np.gradient(profile, axis=1)
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
     typical = float(np.median(slope.max(axis=1)))
     peak = (middle >= before) & (middle > after) & (middle > max(_WEAKEST * typical, 0.4))
@@ -102,7 +84,16 @@ def _radial_edges(
     value, low, high = (part[which, index] for part in (middle, before, after))
     shift = 0.5 * (low - high) / np.minimum(low - 2.0 * value + high, -1e-9)
     distance = radii[index + 1] + np.clip(shift, -0.5, 0.5) * step
-    return _Edges(centre + directions[which] * distance[:, None], value, which)
+    return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which)
+
+
+def _sample(image: Image, pixels: Array) -> Array:
+    """Lightly blurred grey values at raw pixels, bilinear."""
+    x0, y0 = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 3, 0)
+    x1, y1 = np.ceil(pixels.max(axis=0)).astype(int) + 4
+    cut = image[y0:y1, x0:x1].astype(np.float32)
+    smooth = np.asarray(cv2.GaussianBlur(cut, (0, 0), 1.0), dtype=float)
+    return _bilinear(smooth, pixels - (x0, y0))
 
 
 def _bilinear(image: Array, pixels: Array) -> Array:
@@ -127,8 +118,10 @@ def _consensus(
     centres, radii = centres[plausible], radii[plausible]
     if len(radii) == 0:
         return None
-    offsets = np.linalg.norm(edges.points[None] - centres[:, None], axis=2) - radii[:, None]
-    closeness = np.maximum(1.0 - (offsets / (_TOLERANCE_PX * px)) ** 2, 0.0)
+    dx = edges.points[:, 0] - centres[:, :1]
+    dy = edges.points[:, 1] - centres[:, 1:]
+    offsets = (np.sqrt(dx * dx + dy * dy) - radii[:, None]) / (_TOLERANCE_PX * px)
+    closeness = np.maximum(1.0 - offsets * offsets, 0.0)
     best = int(np.argmax(closeness.sum(axis=1)))
     return centres[best], float(radii[best])
 
@@ -147,26 +140,26 @@ def _circles(triples: Array) -> tuple[Array, Array]:
     return a + offset, np.linalg.norm(offset, axis=1)
 
 
-def _refined(
-    edges: _Edges, start: tuple[Array, float], patch: PlanePatch, camera: CameraModel, px: float
-) -> EdgeCircle | None:
+def _refined(edges: _Edges, start: tuple[Array, float], patch: PlanePatch) -> EdgeCircle | None:
     """Iteratively re-weighted geometric circle fit."""
     centre, radius = start
+    px = patch.unit_px
     tolerance = 1.5 * _TOLERANCE_PX * px
-    for _ in range(8):
-        offset = edges.points - centre
+    near = np.linalg.norm(edges.points - centre, axis=1) - radius
+    points = edges.points[np.abs(near) < 2.0 * tolerance]
+    for _ in range(_REFINEMENTS):
+        offset = points - centre
         length = np.linalg.norm(offset, axis=1)
         residual = length - radius
         weight = np.maximum(1.0 - (residual / tolerance) ** 2, 0.0) ** 2
-        if np.count_nonzero(weight) < 8:
+        if np.count_nonzero(weight) < _FEWEST:
             return None
         design = np.column_stack([offset / length[:, None], np.ones(len(length))])
         weighted = design * weight[:, None]
         step = np.linalg.solve(weighted.T @ design, weighted.T @ residual)
-        centre, radius = centre + step[:2], radius + step[2]
+        centre, radius = centre + step[:2], radius + float(step[2])
         spread = 1.4826 * float(np.median(np.abs(residual[weight > 0])))
         tolerance = min(tolerance, max(4.0 * spread, 0.25 * px))
-    near = np.abs(np.linalg.norm(edges.points - centre, axis=1) - radius) < _TOLERANCE_PX * px
-    points_px = plane_to_px(camera, patch, edges.points[near])
-    support = len(np.unique(edges.azimuth[near])) / _AZIMUTHS
-    return EdgeCircle(centre, float(radius), support, spread / px, points_px)
+    close = np.abs(np.linalg.norm(edges.points - centre, axis=1) - radius) < _TOLERANCE_PX * px
+    support = len(np.unique(edges.azimuth[close])) / _AZIMUTHS
+    return EdgeCircle(centre, radius, support, patch.to_px(edges.points[close]))

@@ -87,7 +87,10 @@ def fit_rim_pair(
 def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
     size = len(shape.vector)
     view = RimView(pixels, shape, np.eye(size))
-    return Problem((view,), light, shape.vector, np.full(size, np.inf))
+    sigma = np.full(size, np.inf)
+    if shape.wall_ratio is not None:
+        sigma[4] = shape.wall_ratio  # Where the lower edge is out of sight, nothing else holds it.
+    return Problem((view,), light, shape.vector, sigma)
 
 
 def _bic(solution: Solution) -> float:

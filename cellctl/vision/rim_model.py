@@ -31,6 +31,15 @@ class RimPixels:
     unit_px: float
     """Plane units in a pixel."""
 
+    def every(self, nth: int) -> "RimPixels":
+        """One in ``nth`` of the pixels, for a first look."""
+        return RimPixels(
+            np.ascontiguousarray(self.points[:, ::nth]),
+            np.ascontiguousarray(self.jacobian[:, :, ::nth]),
+            self.grey[::nth],
+            self.unit_px,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class RimShape:
@@ -111,11 +120,6 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
         )
         found.append(_blurred(inner, np.where(seen, by_low, by_rim), shape.blur_px, bend_px))
     return found
-
-
-def rim_distance_px(pixels: RimPixels, centre: Array, radius: float) -> Array:
-    """Signed distance of pixels from a circle of the plane, positive outside."""
-    return _circle(pixels, centre, radius).distance_px
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:

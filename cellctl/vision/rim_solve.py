@@ -5,7 +5,7 @@ Gauss-Newton steps. Priors on shape and light are part of the cost.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,10 +14,13 @@ from cellctl.vision.rim_light import Light, Surface, surfaces
 from cellctl.vision.rim_model import Border, RimPixels, RimShape, borders
 from cellctl.vision.rim_noise import weights_of
 
-_MAX_ITERATIONS = 25
-_CONVERGED_PX = 1.5e-3
-_REFRESH_PX = 0.05
-_MAX_REFRESHES = 6
+_MAX_ROUNDS, _MAX_STEPS = 12, 8
+_CONVERGED_PX = 8e-4
+_SETTLED_PX = 0.01
+_LOWER_EDGE = 0.03
+"""How much of a movement of the lower edge reaches the rim, at most."""
+_WEIGHING_ROUNDS = 2
+_EXTRAPOLATE_PX = 0.01
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
 _BLUR_LIMITS_PX = (0.35, 4.0)
@@ -108,25 +111,57 @@ class Solution:
 
 
 def minimise(problem: Problem, start: Array) -> tuple[Solution, bool]:
-    """The best solution, and whether it settled."""
+    """The best solution, and whether it settled.
+
+    The terms of the light depend weakly on the shape. They are held fixed for a few steps and then
+    brought up to date; the series of these rounds converges linearly and is extrapolated. The
+    weights of the pixels are final after the first rounds.
+    """
     best = first(problem, start)
-    damping, refreshes, since_px = 1e-6, 1, 0.0
-    for _ in range(_MAX_ITERATIONS):
+    before: Array | None = None
+    change_px = np.inf
+    for number in range(_MAX_ROUNDS):
+        anchor = best.vector
+        best = _settle(problem, best)
+        change = best.vector - anchor
+        change_px = _step_px(problem, change)
+        weighing = number < _WEIGHING_ROUNDS
+        if change_px < _CONVERGED_PX and not weighing:
+            return best, True
+        if before is not None and change_px < _EXTRAPOLATE_PX:
+            best = replace(best, vector=best.vector + change * _gain(problem, before, change))
+        before = None if weighing else change
+        best = (
+            refreshed(problem, best)
+            if weighing
+            else _solve(problem, best.vector, _parts(problem, best.vector), best.weights)
+        )
+    return best, change_px < 5.0 * _CONVERGED_PX
+
+
+def _settle(problem: Problem, best: Solution) -> Solution:
+    """Damped Gauss-Newton steps with the terms of the light held fixed."""
+    damping = 1e-6
+    for _ in range(_MAX_STEPS):
         trial = _solve(problem, _moved(problem, best, damping), best.parts, best.weights)
         if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
             continue
-        step_px = _step_px(problem, trial.vector - best.vector)
-        best, damping, since_px = trial, damping * 0.2, since_px + step_px
-        if step_px > _REFRESH_PX:
-            continue
-        if since_px < _CONVERGED_PX:
-            return best, True
-        if refreshes < _MAX_REFRESHES:
-            best, refreshes, since_px = refreshed(problem, best), refreshes + 1, 0.0
-        elif step_px < _CONVERGED_PX:
-            return best, True
-    return best, False
+        change = trial.vector - best.vector
+        step_px = _step_px(problem, change)
+        best, damping = trial, damping * 0.2
+        if max(step_px, _LOWER_EDGE * _lower_edge_px(problem, change)) < _SETTLED_PX:
+            break
+    return best
+
+
+def _gain(problem: Problem, before: Array, change: Array) -> float:
+    """Sum of the rest of a geometric series from its last two terms."""
+    views = problem.views
+    last = np.concatenate([(view.selection @ change)[:3] / view.pixels.unit_px for view in views])
+    first = np.concatenate([(view.selection @ before)[:3] / view.pixels.unit_px for view in views])
+    ratio = float(np.clip(last @ first / max(float(first @ first), 1e-12), 0.0, 0.8))
+    return ratio / (1.0 - ratio)
 
 
 def first(problem: Problem, vector: Array) -> Solution:
@@ -266,3 +301,14 @@ def _step_px(problem: Problem, step: Array) -> float:
         float(np.abs((view.selection @ step)[:3]).max()) / view.pixels.unit_px
         for view in problem.views
     )
+
+
+def _lower_edge_px(problem: Problem, step: Array) -> float:
+    """Movement of the lower edge of a wall against the rim."""
+    moved = 0.0
+    for view in problem.views:
+        if view.model.wall_ratio is not None:
+            change = abs(float((view.selection @ step)[4]))
+            foot_px = float(np.linalg.norm(view.pixels.points[:, 0])) / view.pixels.unit_px
+            moved = max(moved, change * foot_px)
+    return moved
