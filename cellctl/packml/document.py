@@ -17,13 +17,13 @@ Generated from `cellctl/packml/tables.py`; do not edit.
 The unit follows ISA-TR88.00.02 (PackML), 2022 edition, with its default masks. The tables in that
 file are the whole machine: `transitions` is built from them, and nothing else changes the state.
 
-- Entering an acting state or Execute starts its coroutine; leaving cancels it. The next state begins
-  when the cancelled coroutine has cleaned up; only Aborting acts at once and waits afterwards.
+- Entering an acting state or Execute starts its coroutine; leaving cancels it. The next state
+  begins when the cancelled coroutine has cleaned up; only Aborting acts at once and waits later.
 - Hold and Suspend in Execute are noted and obeyed at the next safe point of the step. Execute is
   then parked, not cancelled: after Unhold it goes on and is told that it was held.
 - A numbered fault leads by its reaction to Holding, Stopping or Aborting; where the present state
-  does not allow that, to the next stronger one. Any other exception aborts. Faults latch; the command
-  that leaves Held, Stopped or Aborted (Unhold, Reset, Clear) releases them.
+  does not allow that, to the next stronger one. Any other exception aborts. Faults latch; the
+  command that leaves Held, Stopped or Aborted (Unhold, Reset, Clear) releases them.
 - A command is judged when it arrives and again when its turn comes.
 - After a start of the daemon the unit is Stopped or Aborted, whatever it was before.
 """
@@ -69,8 +69,8 @@ def _commands() -> str:
                 lines.append(f"| {_name(command)} | {int(command)} | {names} | {_name(target)} |")
     lines += ["", "## State complete", "", "| state | number | leads to |", "|---|---|---|"]
     for state in STATES:
-        target = _name(WHEN_DONE[state]) if state in WHEN_DONE else "waits for a command"
-        lines.append(f"| {_name(state)} | {int(state)} | {target} |")
+        end = _name(WHEN_DONE[state]) if state in WHEN_DONE else "waits for a command"
+        lines.append(f"| {_name(state)} | {int(state)} | {end} |")
     return "\n".join(lines) + "\n"
 
 

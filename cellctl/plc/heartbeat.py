@@ -3,6 +3,10 @@
 import asyncio
 from collections.abc import Callable
 
+_LATE_S = 0.1
+_GRACE_S = 0.25
+"""A loop that was itself held up gives beats that wait in the socket this long to be read."""
+
 
 class HeartbeatWatch:
     """Missing until the first change, alive while it changes, lost after ``timeout_s`` without."""
@@ -33,7 +37,7 @@ class HeartbeatWatch:
         if self._timer is not None:
             self._timer.cancel()
         self._lost = False
-        self._timer = asyncio.get_running_loop().call_later(self._timeout_s, self._expired)
+        self._arm(self._timeout_s)
         return back
 
     def stop(self) -> None:
@@ -42,7 +46,14 @@ class HeartbeatWatch:
             self._timer.cancel()
             self._timer = None
 
-    def _expired(self) -> None:
+    def _arm(self, delay_s: float) -> None:
+        loop = asyncio.get_running_loop()
+        self._timer = loop.call_later(delay_s, self._expired, loop.time() + delay_s)
+
+    def _expired(self, due_s: float) -> None:
+        if asyncio.get_running_loop().time() - due_s > _LATE_S:
+            self._arm(_GRACE_S)
+            return
         self._timer = None
         self._lost = True
         self._on_lost()
