@@ -7,6 +7,7 @@ from importlib.metadata import version
 from cellctl import log
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError
+from cellctl.errors.line import LineTaskDied
 from cellctl.packml.reject import RejectCode
 from cellctl.plc.commands import CommandLatch, LineCommand
 from cellctl.plc.heartbeat import HeartbeatWatch
@@ -106,9 +107,14 @@ class PlcPort:
         return ended
 
     async def failed(self) -> None:
-        """Wait for the death of the command task and raise what killed it."""
-        if self._worker is not None:
-            await asyncio.shield(self._worker)
+        """Wait for the death of the command task; raises ``LineTaskDied``. Returns after ``stop``."""
+        worker = self._worker
+        if worker is None:
+            return
+        await asyncio.wait({worker})
+        error = None if worker.cancelled() else worker.exception()
+        if error is not None:
+            raise LineTaskDied(f"{type(error).__name__}: {error}") from error
 
     def _committed(self) -> None:
         command = self._latch.commit(self._registers.holding)

@@ -7,6 +7,7 @@ import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
 from cellctl.config.cell import Plc
+from cellctl.errors.line import LineTaskDied
 from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
 from cellctl.plc import CellStatus, LineCommand, LineCoupling, PlcPort, Result
@@ -175,7 +176,7 @@ async def test_the_cell_does_not_beat_once_commands_are_no_longer_taken(line: Li
     line.answer = answer
     port, client = await line.open()
     await line.command(client, 1, Command.RESET)
-    with pytest.raises(RuntimeError, match="defect"):
+    with pytest.raises(LineTaskDied, match="defect"):
         async with asyncio.timeout(2):
             await port.failed()
     before = (await inputs(client))[HEARTBEAT]
