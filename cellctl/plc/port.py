@@ -107,7 +107,7 @@ class PlcPort:
         return ended
 
     async def failed(self) -> None:
-        """Wait for the death of the command task; raises ``LineTaskDied``. Returns after ``stop``."""
+        """Wait for the end of the command task; raises ``LineTaskDied`` unless it was stopped."""
         worker = self._worker
         if worker is None:
             return
