@@ -3,6 +3,7 @@
 import numpy as np
 
 from cellctl.calibration.deck_flange import deck_on_flange
+from cellctl.cell.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.steps.plausible import require_near
@@ -15,6 +16,7 @@ async def measure_deck(run: AssemblyRun) -> None:
     await run.cell.main.move_joint(
         np.radians(main.deck_measure_joints_deg), speed_ratio=main.speed_percent / 100
     )
+    await settle(run.cell.guard)
     nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
     predicted = run.base_T_c1.inv() * run.cell.main.state().base_T_flange * nominal
     measurement = await run.measure(run.deck_features, predicted)

@@ -11,6 +11,7 @@ from cellctl.cell.devices import Cell
 from cellctl.cell.job import SafePoint
 from cellctl.cell.measuring import PartMeasurement, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
+from cellctl.cell.settling import settle
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose
@@ -77,13 +78,14 @@ class AssemblyRun:
         )
 
     async def move_flange(self, base_T_flange: RigidTransform) -> None:
-        """Straight move of the main robot at the speed of the cell file."""
+        """Straight move of the main robot at the speed of the cell file, until the deck is still."""
         main = self.cell.config.robots.main
         await self.cell.main.move_linear(
             base_T_flange,
             speed_m_s=main.linear_speed_mm_s * MM,
             acceleration_m_s2=main.linear_acceleration_mm_s2 * MM,
         )
+        await settle(self.cell.guard)
 
 
 StepFunction = Callable[[AssemblyRun], Awaitable[None]]

@@ -1,0 +1,44 @@
+"""Wait until what hangs on the main robot has stopped swinging; the force sensor feels it."""
+
+import asyncio
+
+import numpy as np
+
+from cellctl.clock import now_s
+from cellctl.errors.force import NotSettled
+from cellctl.geometry.pose import Array
+from cellctl.guard.client import GuardClient
+
+WINDOW_S = 0.4
+"""Several periods of the swing of a heavy payload."""
+BLOCK = 10
+"""Samples averaged to one, against noise."""
+STILL = np.array([1.2, 1.2, 1.2, 0.4, 0.4, 0.4])
+"""Scatter of the blocks (N, N·m) that counts as still: a few µm of the deck."""
+TIMEOUT_S = 8.0
+POLL_S = 0.05
+
+
+async def settle(guard: GuardClient) -> None:
+    """Return once the raw wrench is steady; raises ``NotSettled`` after a time-out."""
+    begin_s = now_s()
+    scatter = np.full(6, np.inf)
+    while now_s() - begin_s < TIMEOUT_S:
+        await asyncio.sleep(POLL_S)
+        since_s = now_s() - WINDOW_S
+        if since_s < begin_s:
+            continue
+        scatter = block_scatter(guard.samples(since_s).raw)
+        if (scatter < STILL).all():
+            return
+    shown = ", ".join(f"{value:.2f}" for value in scatter)
+    raise NotSettled(f"readings still scatter by ({shown}) N, N·m after {TIMEOUT_S:g} s")
+
+
+def block_scatter(raw: Array) -> Array:
+    """Standard deviation of block means, shape (6,), of raw wrenches, shape (n, 6)."""
+    blocks = len(raw) // BLOCK
+    if blocks < 2:
+        return np.full(6, np.inf)
+    means = raw[: blocks * BLOCK].reshape(blocks, BLOCK, 6).mean(axis=1)
+    return np.asarray(means.std(axis=0))
