@@ -41,7 +41,8 @@ class SampleSource(Protocol):
 async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcome:
     """Tilt around the mating orientation, high above the frame, and identify.
 
-    The home pose must hold the deck in the mating orientation. Raises ``NotSettled``,
+    The home pose must hold the deck in the mating orientation. The arm tilts about its flange, so
+    its main axes hardly move and stay off their limits. Raises ``NotSettled``,
     ``SensorSilent``, ``PosesDegenerate`` and what the robot raises.
     """
     cell = context.cell
@@ -50,10 +51,9 @@ async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcom
         np.radians(main.home_joints_deg), speed_ratio=main.speed_percent / 100
     )
     flange_T_sensor = pose_from_xyzabc(main.flange_T_sensor)
-    deck = pose_from_xyzabc(cell.config.recipes[0].flange_T_deck)
     poses = plan_identification(
         cell.main.state().base_T_flange,
-        pivot_in_flange_m=deck.translation,
+        pivot_in_flange_m=np.zeros(3),
         half_angle_rad=float(np.radians(settings.payload_cone_deg)),
         fit_poses=max(settings.payload_poses - HOLD_OUT_POSES - 1, 6),
         hold_out_poses=HOLD_OUT_POSES,
