@@ -7,20 +7,20 @@ import cv2
 import numpy as np
 
 from cellctl.calibration.board import BoardView, CalibrationBoard, Charuco, Corners
+from cellctl.calibration.board_search import find_chessboard, name_chessboard
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
-_SEARCH_PX = (1000, 500)
-"""Longer side of the reduced images in which a chessboard is searched."""
-_MAX_CORNERS = 16
 _WINDOW_OF_SQUARE = 0.12
 _MIN_WINDOW_PX, _MAX_WINDOW_PX = 5, 15
 """Half window of the corner refinement: long enough for many edge pixels, short enough to keep off
 the next corner and lens distortion. Measured on 140 px squares: 0.024 px with 5, 0.012 with 15."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
 _MIN_CHARUCO = 12
+_SUSPICIOUS = (1, 4)
+"""After so many pairs without the board, when they are the majority, see whether it is another."""
 _BLACK_LEVEL = 16
 _FULL_LEVEL = 254
 _FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2
@@ -57,12 +57,14 @@ def detect_views(pairs: Sequence[ImagePair], board: CalibrationBoard) -> Detecte
     views, missing = [], []
     for pair in pairs:
         view = detect_view(pair, board)
-        if view is None:
-            missing.append(pair.name)
-        else:
+        if view is not None:
             views.append(view)
+            continue
+        missing.append(pair.name)
+        if len(missing) in _SUSPICIOUS and len(views) < len(missing):
+            _check_board(pair, board)
     if not views:
-        _raise_not_found(pairs[0], board)
+        raise BoardNotFound(f"no pair shows the {board}")
     return DetectedViews(tuple(views), tuple(missing), image_size)
 
 
@@ -83,53 +85,11 @@ def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
     """Corners of the board in one image, or None."""
     if board.charuco is not None:
         return _detect_charuco(image, board, board.charuco)
-    found = _search(image, (board.columns, board.rows))
+    found = find_chessboard(image, board)
     if found is None:
         return None
-    found = _right_handed(found, board)
     rough = Corners(np.arange(len(found)), found)
-    pixels = _refine(image, found, _square_px(rough, board))
-    if not _first_cell_is_dark(image, pixels, board) and not board.symmetric:
-        pixels = pixels[::-1]
-    return Corners(np.arange(len(pixels)), np.ascontiguousarray(pixels))
-
-
-def _search(image: Image, size: tuple[int, int]) -> Array | None:
-    """Corners to a pixel or so, in any of the orders that fit the size.
-
-    The quadrangle search is quick and needs no wide white margin; the sector search sees more
-    under strong tilt or blur, and needs its exhaustive mode where the surroundings are dark.
-    """
-    for longest_px in _SEARCH_PX:
-        small = _reduced(image, longest_px)
-        flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
-        is_found, corners = cv2.findChessboardCorners(
-            small, size, flags=flags | cv2.CALIB_CB_FAST_CHECK
-        )
-        if not is_found:
-            flags = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_NORMALIZE_IMAGE
-            is_found, corners = cv2.findChessboardCornersSB(small, size, flags=flags)
-        if is_found:
-            ratio = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
-            return np.asarray((corners.reshape(-1, 2) + 0.5) * ratio - 0.5, dtype=float)
-    return None
-
-
-def _reduced(image: Image, longest_px: int) -> Image:
-    scale = max(image.shape) / longest_px
-    if scale <= 1:
-        return image
-    shape = (round(image.shape[1] / scale), round(image.shape[0] / scale))
-    return np.asarray(cv2.resize(image, shape, interpolation=cv2.INTER_AREA), dtype=np.uint8)
-
-
-def _right_handed(pixels: Array, board: CalibrationBoard) -> Array:
-    """Mirror the rows if need be, so that rows and columns turn like x and y of the image."""
-    grid = pixels.reshape(board.rows, board.columns, 2)
-    along_row, along_column = grid[-1, -1] - grid[-1, 0], grid[-1, 0] - grid[0, 0]
-    area = along_row[0] * along_column[1] - along_row[1] * along_column[0]
-    ordered = grid if area > 0 else grid[:, ::-1]
-    return np.ascontiguousarray(ordered.reshape(-1, 2))
+    return Corners(rough.ids, _refine(image, found, _square_px(rough, board)))
 
 
 def _refine(image: Image, pixels: Array, square_px: float) -> Array:
@@ -148,18 +108,6 @@ def _square_px(corners: Corners, board: CalibrationBoard) -> float:
     grid = place.reshape(board.rows, board.columns, 2)
     sides = [np.linalg.norm(np.diff(grid, axis=axis), axis=2) for axis in (0, 1)]
     return float(min(np.nanmedian(side) for side in sides))
-
-
-def _first_cell_is_dark(image: Image, pixels: Array, board: CalibrationBoard) -> bool:
-    """Whether the square between the first four corners is darker than its neighbours."""
-    grid = pixels.reshape(board.rows, board.columns, 2)
-    middles = (grid[:-1, :-1] + grid[1:, 1:] + grid[:-1, 1:] + grid[1:, :-1]) / 4
-    columns, rows = np.rint(middles).astype(int).transpose(2, 0, 1)
-    values = image[
-        np.clip(rows, 0, image.shape[0] - 1), np.clip(columns, 0, image.shape[1] - 1)
-    ].astype(float)
-    parity = np.add.outer(np.arange(values.shape[0]), np.arange(values.shape[1])) % 2
-    return bool(values[parity == 0].mean() < values[parity == 1].mean())
 
 
 def _detect_charuco(image: Image, board: CalibrationBoard, charuco: Charuco) -> Corners | None:
@@ -197,21 +145,13 @@ def _check_exposure(name: str, image: Image, *, board_found: bool) -> None:
         raise ImageSaturated(f"{name}: {full:.0%} of the pixels are at full scale")
 
 
-def _raise_not_found(pair: ImagePair, board: CalibrationBoard) -> None:
-    """Say what is there instead of the board, if that can be told."""
-    seen = _other_board(pair.left, board)
-    if seen is not None:
-        raise WrongBoard(f"{pair.name} shows {seen}, not the {board}")
-    raise BoardNotFound(f"no pair shows the {board}; first pair: {pair.name}")
-
-
-def _other_board(image: Image, board: CalibrationBoard) -> str | None:
-    """Another chessboard in the image, by trying sizes; slow, but only for the message."""
-    sizes = [(c, r) for c in range(3, _MAX_CORNERS) for r in range(3, c + 1)]
-    small = _reduced(image, _SEARCH_PX[-1])
-    flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
-    for size in sorted(sizes, key=lambda size: -size[0] * size[1]):
-        if cv2.findChessboardCorners(small, size, flags=flags)[0]:
-            without = " without markers" if board.charuco is not None else ""
-            return f"a chessboard with {size[0]} x {size[1]} inner corners{without}"
-    return None
+def _check_board(pair: ImagePair, board: CalibrationBoard) -> None:
+    """Raise ``WrongBoard`` if there is another chessboard in a pair without the board."""
+    seen = name_chessboard(pair.left)
+    if seen is None:
+        return
+    columns, rows = seen
+    if board.charuco is not None:
+        raise WrongBoard(f"{pair.name} shows a chessboard without markers, not the {board}")
+    if {columns, rows} != {board.columns, board.rows}:
+        raise WrongBoard(f"{pair.name} shows {columns} x {rows} inner corners, not the {board}")

@@ -121,7 +121,7 @@ def test_mixed_sizes() -> None:
 
 
 def test_wrong_board_says_what_is_there() -> None:
-    with pytest.raises(WrongBoard, match=r"p0 shows a chessboard with 9 x 6"):
+    with pytest.raises(WrongBoard, match=r"p0 shows 9 x 6 inner corners, not the 8 x 6"):
         detect_views(pairs(1), CalibrationBoard(8, 6, 0.025))
 
 
@@ -138,7 +138,7 @@ def test_unknown_dictionary() -> None:
 
 def test_no_board_at_all() -> None:
     noise = np.random.default_rng(0).integers(80, 120, (400, 500)).astype(np.uint8)
-    with pytest.raises(BoardNotFound, match="p0"):
+    with pytest.raises(BoardNotFound, match="no pair shows the 9 x 6 chessboard"):
         detect_views([ImagePair("p0", noise, noise)], BOARD)
     with pytest.raises(TooFewViews):
         detect_views([], BOARD)

@@ -29,7 +29,7 @@ from tests.unit.calibration.synthetic import (
     volume_points,
 )
 
-SEEDS = range(6)
+SEEDS = range(4)
 TRUTH = table_1_head()
 
 
