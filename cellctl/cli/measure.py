@@ -29,7 +29,7 @@ EXIT_REFUSED = 1
 EXIT_NOT_FOUND = 3
 
 
-def measure(
+def measure(  # noqa: PLR0917 - the options of the command
     calibration: Annotated[Path, typer.Option(help="Stereo calibration (JSON).")],
     features: Annotated[Path, typer.Option(help="Feature file (TOML).")],
     left: Annotated[Path, typer.Option(help="Left image file, 8 bit.")],

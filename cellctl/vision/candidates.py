@@ -8,9 +8,12 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
+
+Image32 = NDArray[np.float32]
 
 _MAX_EDGES = 12000
 _SUPPORT = 0.42
@@ -59,12 +62,12 @@ def _shrink(smallest_radius_px: float) -> int:
     return 1
 
 
-def _reduced(image: Image, shrink: int) -> Array:
+def _reduced(image: Image, shrink: int) -> Image32:
     height, width = image.shape
     size = (width // shrink, height // shrink)
     cropped = image[: size[1] * shrink, : size[0] * shrink]
     small = cv2.resize(cropped, size, interpolation=cv2.INTER_AREA) if shrink > 1 else cropped
-    return np.asarray(cv2.GaussianBlur(small.astype(np.float32), (0, 0), 0.8))
+    return np.asarray(cv2.GaussianBlur(small.astype(np.float32), (0, 0), 0.8), dtype=np.float32)
 
 
 def _radii(smallest: float, largest: float) -> Array:
@@ -72,8 +75,8 @@ def _radii(smallest: float, largest: float) -> Array:
     return np.linspace(smallest, largest, count)
 
 
-def _edges(small: Array, *, bright: bool) -> tuple[Array, Array, Array] | None:
-    """Positions, unit vectors towards the inside of a feature, and thinned by strength."""
+def _edges(small: Image32, *, bright: bool) -> tuple[Image32, Image32] | None:
+    """Positions and unit vectors towards the inside of a feature, the strongest only."""
     gx = cv2.Sobel(small, cv2.CV_32F, 1, 0, scale=0.125)
     gy = cv2.Sobel(small, cv2.CV_32F, 0, 1, scale=0.125)
     strength = cv2.magnitude(gx, gy)
@@ -87,12 +90,13 @@ def _edges(small: Array, *, bright: bool) -> tuple[Array, Array, Array] | None:
         rows, columns, value = rows[keep], columns[keep], value[keep]
     sign = 1.0 if bright else -1.0
     inward = np.column_stack([gx[rows, columns], gy[rows, columns]]) * (sign / value)[:, None]
-    return np.column_stack([columns, rows]).astype(np.float32), inward, value
+    positions = np.column_stack([columns, rows]).astype(np.float32)
+    return positions, inward.astype(np.float32)
 
 
-def _vote(shape: tuple[int, ...], edges: tuple[Array, Array, Array], radii: Array) -> Array:
+def _vote(shape: tuple[int, ...], edges: tuple[Image32, Image32], radii: Array) -> Image32:
     """Support in [0, ~1] for a centre at each pixel and radius, shape (len(radii), h, w)."""
-    positions, inward, _ = edges
+    positions, inward = edges
     height, width = shape
     votes = np.zeros((len(radii), height, width), dtype=np.float32)
     for index, radius in enumerate(radii):
@@ -106,7 +110,7 @@ def _vote(shape: tuple[int, ...], edges: tuple[Array, Array, Array], radii: Arra
     return votes
 
 
-def _peaks(votes: Array, radii: Array, limit: int) -> list[tuple[Array, float, float]]:
+def _peaks(votes: Image32, radii: Array, limit: int) -> list[tuple[Array, float, float]]:
     best = votes.max(axis=0)
     size = 2 * max(1, int(radii[0] * 0.5)) + 1
     highest = cv2.dilate(best, np.ones((size, size), np.uint8))

@@ -204,7 +204,8 @@ def _size(judgement: Judgement, thresholds: Thresholds) -> float:
 
 def _history_text(history: Sequence[Judgement]) -> str:
     errors = (
-        f"{np.linalg.norm(item.error[:3]) / MM:.3f} mm {np.degrees(np.linalg.norm(item.error[3:])):.4f}°"
+        f"{np.linalg.norm(item.error[:3]) / MM:.3f} mm "
+        f"{np.degrees(np.linalg.norm(item.error[3:])):.4f}°"
         for item in history
     )
     return "error by measurement: " + ", ".join(errors)

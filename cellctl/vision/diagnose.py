@@ -1,40 +1,40 @@
 """Why no arrangement of features fits: holes missing, images exchanged, or a camera turned."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown, HoleMissing, VisionError
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features import Hole
-from cellctl.vision.layout import Spot, assignments, holes_without_spot
-from cellctl.vision.search import NEAR, spots_anywhere
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.layout import Expectation, Spot, assignments, holes_without_spot
+from cellctl.vision.search import NEAR, ImagePair, spots_anywhere
 
 _TOLERANCE_M = 1.5e-3
 
 
 def fault_without_layout(
-    head: StereoHead,
-    left: Image,
-    right: Image,
+    pair: ImagePair,
     holes: Sequence[Hole],
     spots: Sequence[Spot],
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    expectation: Expectation | None,
 ) -> VisionError:
     """The fault to raise when no assignment of ``spots`` fits the drawing."""
     if len(holes) >= 3:
-        if _fits(head, right, left, holes):
+        if _fits(replace(pair, left=pair.right, right=pair.left), holes):
             return CamerasSwapped("the holes are found with the images exchanged")
-        for side, pair in (("left", (_turned(left), right)), ("right", (left, _turned(right)))):
-            if _fits(head, *pair, holes):
+        turned = {
+            "left": replace(pair, left=_turned(pair.left)),
+            "right": replace(pair, right=_turned(pair.right)),
+        }
+        for side, other in turned.items():
+            if _fits(other, holes):
                 return CameraUpsideDown(f"the holes are found with the {side} image turned by 180°")
-    missing = holes_without_spot(holes, spots, camera_T_part, search_radius_m)
+    missing = holes_without_spot(holes, spots, expectation)
     if missing:
         return HoleMissing(f"nothing like {', '.join(missing)} was seen by both cameras")
-    partial = _largest_part(holes, spots, camera_T_part, search_radius_m)
+    partial = _largest_part(holes, spots, expectation)
     absent = [hole.name for hole in holes if hole.name not in partial]
     if len(partial) >= 3:
         return HoleMissing(f"{', '.join(absent)} not where the other holes say")
@@ -42,12 +42,9 @@ def fault_without_layout(
     return HoleMissing(f"no arrangement of the features seen fits the drawing of {names}")
 
 
-def _fits(head: StereoHead, left: Image, right: Image, holes: Sequence[Hole]) -> bool:
-    spots = spots_anywhere(head, left, right, holes, NEAR)
-    found = assignments(
-        holes, spots, tolerance_m=_TOLERANCE_M, camera_T_part=None, search_radius_m=0.0
-    )
-    return bool(found)
+def _fits(pair: ImagePair, holes: Sequence[Hole]) -> bool:
+    spots = spots_anywhere(pair, holes, NEAR)
+    return bool(assignments(holes, spots, tolerance_m=_TOLERANCE_M, expectation=None))
 
 
 def _turned(image: Image) -> Image:
@@ -55,20 +52,11 @@ def _turned(image: Image) -> Image:
 
 
 def _largest_part(
-    holes: Sequence[Hole],
-    spots: Sequence[Spot],
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    holes: Sequence[Hole], spots: Sequence[Spot], expectation: Expectation | None
 ) -> set[str]:
     """Names of the holes that fit when one hole is left out."""
     for left_out in holes if len(holes) > 3 else ():
         rest = [hole for hole in holes if hole is not left_out]
-        if assignments(
-            rest,
-            spots,
-            tolerance_m=_TOLERANCE_M,
-            camera_T_part=camera_T_part,
-            search_radius_m=search_radius_m,
-        ):
+        if assignments(rest, spots, tolerance_m=_TOLERANCE_M, expectation=expectation):
             return {hole.name for hole in rest}
     return set()

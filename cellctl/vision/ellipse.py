@@ -37,7 +37,7 @@ class Ellipse:
         local = np.column_stack(
             [self.semi_axes_px[0] * np.cos(t), self.semi_axes_px[1] * np.sin(t)]
         )
-        return self.centre_px + local @ np.array([[c, s], [-s, c]])
+        return np.asarray(self.centre_px + local @ np.array([[c, s], [-s, c]]))
 
 
 def ellipse_from_points(points_px: Array) -> Ellipse:
@@ -54,8 +54,8 @@ def ellipse_from_points(points_px: Array) -> Ellipse:
 def conic_of_circle(centre: Array, normal: Array, radius: float) -> Array:
     """Image of a circle as a conic on normalised rays, shape (3, 3).
 
-    ``centre`` and unit ``normal`` in the camera's frame. With A = (n·C) I - C nᵀ a ray x lies on the
-    cone of the circle when |A x|² = R² (n·x)², hence Q = AᵀA - R² n nᵀ.
+    ``centre`` and unit ``normal`` in the camera's frame. With A = (n·C) I - C nᵀ a ray x lies on
+    the cone of the circle when |A x|² = R² (n·x)², hence Q = AᵀA - R² n nᵀ.
     """
     a = float(normal @ centre) * np.eye(3) - np.outer(centre, normal)
     return np.asarray(a.T @ a - radius**2 * np.outer(normal, normal))

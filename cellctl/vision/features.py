@@ -85,7 +85,7 @@ def _head(data: Mapping[str, Any], key: str, names: list[str]) -> tuple[str, ...
 def _hole(table: Mapping[str, Any], index: int) -> Hole:
     where = f"hole {index}"
     if not isinstance(table, dict):
-        raise ValueError(f"{where} is not a table")
+        raise ValueError(f"{where} is not a table")  # noqa: TRY004
     if unknown := set(table) - _HOLE_KEYS:
         raise ValueError(f"{where}: unknown key {sorted(unknown)[0]}")
     name = table.get("name")

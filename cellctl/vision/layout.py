@@ -1,4 +1,4 @@
-"""Which round feature is which hole: sizes, mutual distances and, if known, where to expect them."""
+"""Which round feature is which hole: size, mutual distances and, if known, where to expect it."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,6 +15,16 @@ from cellctl.vision.stereo_head import StereoHead
 
 _MAX_ASSIGNMENTS = 64
 _SIZE_TOLERANCE = 0.3
+
+
+@dataclass(frozen=True, slots=True)
+class Expectation:
+    """Where a part should be."""
+
+    camera_T_part: RigidTransform
+    """In the left camera."""
+    radius_m: float
+    """How far a hole may be from where this pose puts it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +76,8 @@ def pair_spots(
     in_right = points @ head.rotation.T + head.translation_m
     left_m = 2.0 * points[:, 2] / head.left.camera_matrix[0, 0]
     right_m = 2.0 * in_right[:, 2] / head.right.camera_matrix[0, 0]
-    left_m = left_m * np.array([left[row].radius_px for row in rows])
-    right_m = right_m * np.array([right[column].radius_px for column in columns])
+    left_m = left_m * np.array([item.radius_px for item in left])[rows]
+    right_m = right_m * np.array([item.radius_px for item in right])[columns]
     good = (points[:, 2] > depth_m[0]) & (points[:, 2] < depth_m[1]) & (in_right[:, 2] > 0)
     good &= np.abs(left_m - right_m) < _SIZE_TOLERANCE * np.maximum(left_m, right_m)
     return [
@@ -87,12 +97,11 @@ def assignments(
     spots: Sequence[Spot],
     *,
     tolerance_m: float,
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    expectation: Expectation | None,
 ) -> list[Assignment]:
     """Every assignment of distinct spots to all holes that fits the drawing, best first."""
     nominal = np.array([hole.position_m for hole in holes])
-    choices = [_choices(hole, spots, camera_T_part, search_radius_m) for hole in holes]
+    choices = [_choices(hole, spots, expectation) for hole in holes]
     order = sorted(range(len(holes)), key=lambda index: len(choices[index]))
     wanted = np.linalg.norm(nominal[:, None] - nominal[None], axis=2)
     found = []
@@ -106,36 +115,26 @@ def assignments(
 
 
 def holes_without_spot(
-    holes: Sequence[Hole],
-    spots: Sequence[Spot],
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    holes: Sequence[Hole], spots: Sequence[Spot], expectation: Expectation | None
 ) -> list[str]:
     """Names of holes for which nothing of the right kind and size was seen at all."""
-    return [
-        hole.name for hole in holes if not _choices(hole, spots, camera_T_part, search_radius_m)
-    ]
+    return [hole.name for hole in holes if not _choices(hole, spots, expectation)]
 
 
-def _choices(
-    hole: Hole,
-    spots: Sequence[Spot],
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
-) -> list[int]:
+def _choices(hole: Hole, spots: Sequence[Spot], expectation: Expectation | None) -> list[int]:
     indices = [
         index
         for index, spot in enumerate(spots)
         if spot.bright == (hole.kind == "disc")
         and abs(spot.diameter_m / hole.diameter_m - 1.0) < _SIZE_TOLERANCE
     ]
-    if camera_T_part is None:
+    if expectation is None:
         return indices
-    expected = camera_T_part.apply(hole.position_m)
+    expected = expectation.camera_T_part.apply(hole.position_m)
     return [
         index
         for index in indices
-        if np.linalg.norm(spots[index].position_m - expected) < search_radius_m
+        if np.linalg.norm(spots[index].position_m - expected) < expectation.radius_m
     ]
 
 

@@ -17,7 +17,7 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.diagnose import fault_without_layout
 from cellctl.vision.features import Hole
 from cellctl.vision.image_checks import check_pair
-from cellctl.vision.layout import Assignment, Spot, assignments
+from cellctl.vision.layout import Assignment, Expectation, Spot, assignments
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement, away_normal
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.plane_patch import X_AXIS
@@ -31,7 +31,7 @@ from cellctl.vision.rim import (
     measure_rim,
     measure_thread,
 )
-from cellctl.vision.search import NEAR, WIDE, spots_anywhere, spots_near
+from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
 from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, midpoints, triangulate
 from cellctl.vision.stereo_head import StereoHead
 
@@ -68,19 +68,17 @@ def measure_pair(
     that could be either of two features, is a fault.
     """
     check_pair(left, right, head)
+    pair = ImagePair(head, left, right)
+    expectation = None
+    if camera_T_part is not None:
+        expectation = Expectation(camera_T_part, search_radius_m)
     if method == "paper":
-        return measure_pair_by_paper(
-            left, right, head, holes, camera_T_part=camera_T_part, search_radius_m=search_radius_m
-        )
-    found = _find(left, right, head, holes, camera_T_part, search_radius_m)
-    images = (left, right)
+        return measure_pair_by_paper(pair, holes, expectation)
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
-    for assignment in found[:_MAX_TRIED]:
+    for assignment in _find(pair, holes, expectation)[:_MAX_TRIED]:
         try:
-            good.append(
-                _measure(images, head, holes, assignment, camera_T_part, layout_tolerance_m)
-            )
+            good.append(_measure(pair, holes, assignment, expectation, layout_tolerance_m))
         except VisionError as fault:
             faults.append(fault)
     if not good:
@@ -91,32 +89,21 @@ def measure_pair(
 
 
 def _find(
-    left: Image,
-    right: Image,
-    head: StereoHead,
-    holes: Sequence[Hole],
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
 ) -> list[Assignment]:
     """Distinct assignments of features to holes, best first; a fault when there is none."""
     spots: list[Spot] = []
     for reach in (NEAR, WIDE):
-        if camera_T_part is None:
-            spots = spots_anywhere(head, left, right, holes, reach)
+        if expectation is None:
+            spots = spots_anywhere(pair, holes, reach)
         else:
-            spots = spots_near(head, left, right, holes, camera_T_part, search_radius_m)
-        found = assignments(
-            holes,
-            spots,
-            tolerance_m=_COARSE_TOLERANCE_M,
-            camera_T_part=camera_T_part,
-            search_radius_m=search_radius_m,
-        )
+            spots = spots_near(pair, holes, expectation)
+        found = assignments(holes, spots, tolerance_m=_COARSE_TOLERANCE_M, expectation=expectation)
         if found:
             return _distinct(found)
-        if camera_T_part is not None:
+        if expectation is not None:
             break
-    raise fault_without_layout(head, left, right, holes, spots, camera_T_part, search_radius_m)
+    raise fault_without_layout(pair, holes, spots, expectation)
 
 
 def _distinct(found: Sequence[Assignment]) -> list[Assignment]:
@@ -130,24 +117,23 @@ def _distinct(found: Sequence[Assignment]) -> list[Assignment]:
 
 
 def _measure(
-    images: tuple[Image, Image],
-    head: StereoHead,
+    pair: ImagePair,
     holes: Sequence[Hole],
     assignment: Assignment,
-    camera_T_part: RigidTransform | None,
+    expectation: Expectation | None,
     tolerance_m: float,
 ) -> PairMeasurement:
     positions_m = assignment.positions_m
-    normal = _plane_normal(holes, positions_m, camera_T_part)
-    located = _locate(images, head, holes, positions_m, normal)
-    positions_m = _positions(head, holes, located)
+    normal = _plane_normal(holes, positions_m, expectation)
+    located = _locate(pair, holes, positions_m, normal)
+    positions_m = _positions(pair.head, holes, located)
     _check_layout(holes, positions_m, tolerance_m + 0.5e-3)
-    normal = _plane_normal(holes, positions_m, camera_T_part)
+    normal = _plane_normal(holes, positions_m, expectation)
     measured: dict[str, HoleMeasurement] = {}
     blurs: list[tuple[float, float]] = []
     for index in sorted(range(len(holes)), key=lambda index: holes[index].kind == "thread"):
         hole, places = holes[index], located[index]
-        sights = _sights(images, head, positions_m[index], normal)
+        sights = _sights(pair, positions_m[index], normal)
         if hole.kind == "thread":
             known = np.median(blurs, axis=0) if blurs else None
             blur_px = None if known is None else (float(known[0]), float(known[1]))
@@ -159,38 +145,34 @@ def _measure(
             )
             blurs.append((left.blur_px, right.blur_px))
             rims = left, right, joint_covariance(left.covariance_px2, right.covariance_px2)
-        measured[hole.name] = _stereo(head, hole, *rims)
+        measured[hole.name] = _stereo(pair.head, hole, *rims)
     result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     _check_layout(holes, result.positions_m, tolerance_m)
     return result
 
 
 def _plane_normal(
-    holes: Sequence[Hole], positions_m: Array, camera_T_part: RigidTransform | None
+    holes: Sequence[Hole], positions_m: Array, expectation: Expectation | None
 ) -> Array:
     """Normal of the holes' plane away from the head, from the best source there is."""
     nominal = np.array([hole.position_m for hole in holes])
     if not on_a_line(nominal):
         return away_normal(kabsch(nominal, positions_m))
-    if camera_T_part is not None:
-        return away_normal(camera_T_part)
+    if expectation is not None:
+        return away_normal(expectation.camera_T_part)
     middle = positions_m.mean(axis=0)
     return np.asarray(middle / np.linalg.norm(middle))
 
 
 def _locate(
-    images: tuple[Image, Image],
-    head: StereoHead,
-    holes: Sequence[Hole],
-    positions_m: Array,
-    normal: Array,
+    pair: ImagePair, holes: Sequence[Hole], positions_m: Array, normal: Array
 ) -> list[tuple[Located, Located]]:
     """Both images of every rim, located by their edges."""
     found = []
     for hole, position_m in zip(holes, positions_m, strict=True):
         left, right = (
             _or_missing(hole, locate_rim(sight, hole, _COARSE_REACH_PX), side)
-            for side, sight in zip(_SIDES, _sights(images, head, position_m, normal), strict=True)
+            for side, sight in zip(_SIDES, _sights(pair, position_m, normal), strict=True)
         )
         found.append((left, right))
     return found
@@ -237,15 +219,13 @@ def _stereo(
     )
 
 
-def _sights(
-    images: tuple[Image, Image], head: StereoHead, position_m: Array, normal: Array
-) -> tuple[Sight, Sight]:
+def _sights(pair: ImagePair, position_m: Array, normal: Array) -> tuple[Sight, Sight]:
     """Where both cameras see a hole."""
-    turn = head.rotation
+    head, turn = pair.head, pair.head.rotation
     in_right = turn @ position_m + head.translation_m
     return (
-        Sight(images[0], head.left, position_m, normal, X_AXIS),
-        Sight(images[1], head.right, in_right, turn @ normal, turn @ X_AXIS),
+        Sight(pair.left, head.left, position_m, normal, X_AXIS),
+        Sight(pair.right, head.right, in_right, turn @ normal, turn @ X_AXIS),
     )
 
 

@@ -18,9 +18,9 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.candidates import Candidate
 from cellctl.vision.ellipse import Ellipse
 from cellctl.vision.features import Hole
-from cellctl.vision.layout import Spot, assignments, pair_spots
+from cellctl.vision.layout import Expectation, Spot, assignments, pair_spots
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
-from cellctl.vision.search import WIDE, working_distance_m
+from cellctl.vision.search import WIDE, ImagePair, working_distance_m
 from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, triangulate
 from cellctl.vision.stereo_head import CameraModel, StereoHead
 
@@ -57,21 +57,18 @@ def fitted_ellipses(image: Image) -> list[Ellipse]:
 
 
 def measure_pair_by_paper(
-    left: Image,
-    right: Image,
-    head: StereoHead,
-    holes: Sequence[Hole],
-    *,
-    camera_T_part: RigidTransform | None,
-    search_radius_m: float,
+    pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
 ) -> PairMeasurement:
     """Measure a pair by the paper's steps; raises ``HoleMissing`` when no layout fits."""
+    head = pair.head
     distance_m = working_distance_m(head)
     depth_m = (WIDE[0] * distance_m, WIDE[1] * distance_m)
-    if camera_T_part is not None:
-        expected = camera_T_part.apply(np.array([hole.position_m for hole in holes]))[:, 2]
-        depth_m = (float(expected.min()) - search_radius_m, float(expected.max()) + search_radius_m)
-    ellipses = [fitted_ellipses(image) for image in (left, right)]
+    if expectation is not None:
+        nominal = np.array([hole.position_m for hole in holes])
+        depths = expectation.camera_T_part.apply(nominal)[:, 2]
+        reach_m = expectation.radius_m
+        depth_m = (float(depths.min()) - reach_m, float(depths.max()) + reach_m)
+    ellipses = [fitted_ellipses(image) for image in (pair.left, pair.right)]
     spots: list[Spot] = []
     for bright in (False, True):
         group = [hole for hole in holes if (hole.kind == "disc") == bright]
@@ -92,8 +89,7 @@ def measure_pair_by_paper(
         holes,
         spots,
         tolerance_m=_LAYOUT_TOLERANCE_M,
-        camera_T_part=camera_T_part,
-        search_radius_m=search_radius_m,
+        expectation=expectation,
     )
     if not found:
         raise HoleMissing("no arrangement of the ellipses that pass the screening fits the drawing")

@@ -26,7 +26,7 @@ class PartPose:
     """A registered part."""
 
     pose: UncertainPose
-    """``c1_T_part`` with everything that is known to be uncertain, the heads' transform included."""
+    """``c1_T_part`` with everything that is known to be uncertain, the heads' transform too."""
     own_covariance: Array
     """Shape (6, 6): from the hole measurements alone. The error of ``c1_T_c2`` is common to all
     parts that the same heads measure in the same place and cancels between them."""
@@ -84,8 +84,7 @@ def part_pose(
         return _by_paper(points, transfer_covariance)
     kept, outliers = _without_outliers(points, transfer_covariance, residual_limit_m)
     fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
-    residuals_m = points.measured_m - fit.pose.apply(points.nominal_m)
-    return _result(points, kept, outliers, transfer_covariance, fit.pose, fit.gain, residuals_m)
+    return _result(points, kept, transfer_covariance, fit.gain, pose=fit.pose, outliers=outliers)
 
 
 def _points_in_c1(
@@ -123,7 +122,8 @@ def _without_outliers(
     points: _Points, transfer_covariance: Array, limit_m: float
 ) -> tuple[_Points, tuple[str, ...]]:
     """Leave out holes, one by one, that contradict all others; refuse what does not fit then."""
-    kept, outliers = points, []
+    kept = points
+    outliers: list[str] = []
     while True:
         fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
         distances = np.linalg.norm(fit.residuals_m, axis=1)
@@ -179,12 +179,13 @@ def _own_covariance(gain: Array, points: _Points) -> Array:
 def _result(
     points: _Points,
     kept: _Points,
-    outliers: tuple[str, ...],
     transfer_covariance: Array,
-    pose: RigidTransform,
     gain: Array,
-    residuals_m: Array,
+    *,
+    pose: RigidTransform,
+    outliers: tuple[str, ...],
 ) -> PartPose:
+    residuals_m = points.measured_m - pose.apply(points.nominal_m)
     used = np.array([name not in outliers for name in points.names])
     misfit = residuals_m[used]
     chi2 = float(np.einsum("ni,nij,nj->", misfit, np.linalg.inv(kept.covariances_m2), misfit))
@@ -205,8 +206,7 @@ def _by_paper(points: _Points, transfer_covariance: Array) -> PartPose:
         raise TooFewHoles(f"the paper's frame needs six holes, got {len(points.names)}")
     pose = _paper_pose(points.nominal_m, points.measured_m)
     gain = _numeric_gain(points.nominal_m, points.measured_m, pose)
-    residuals_m = points.measured_m - pose.apply(points.nominal_m)
-    return _result(points, points, (), transfer_covariance, pose, gain, residuals_m)
+    return _result(points, points, transfer_covariance, gain, pose=pose, outliers=())
 
 
 def _paper_pose(nominal_m: Array, measured_m: Array) -> RigidTransform:

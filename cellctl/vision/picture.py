@@ -29,7 +29,7 @@ def annotate(
 
     ``residuals_px``, shape (2,) per hole, are drawn as arrows, magnified; see ``residual_arrows``.
     """
-    picture = cv2.cvtColor(image, cv2.COLOR_GRAY2BGR)
+    picture = _coloured(image)
     for index, hole in enumerate(measurement.holes):
         ellipse, centre = _of(hole, side)
         _draw_ellipse(picture, ellipse, 1.0, np.zeros(2), 2)
@@ -39,12 +39,16 @@ def annotate(
         if residuals_px is not None:
             _arrow(picture, centre, residuals_px[index])
     _insets(picture, image, measurement, side)
-    return np.asarray(picture, dtype=np.uint8)
+    return picture
 
 
 def residual_arrows(residuals_m: Array) -> list[Array]:
     """Arrows in px for residuals in the camera's axes, shape (n, 3): 1 µm becomes 2 px."""
     return [residual[:2] / MM * _RESIDUAL_SCALE_PX_PER_MM for residual in residuals_m]
+
+
+def _coloured(image: cv2.typing.MatLike) -> Picture:
+    return np.asarray(cv2.cvtColor(image, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
 
 
 def _of(hole: HoleMeasurement, side: Side) -> tuple[Ellipse, Array]:
@@ -67,10 +71,7 @@ def _insets(picture: Picture, image: Image, measurement: PairMeasurement, side: 
             continue
         cut = image[y0 : y0 + 2 * half + 1, x0 : x0 + 2 * half + 1]
         zoom = _INSET_PX / cut.shape[0]
-        inset = cv2.cvtColor(
-            cv2.resize(cut, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_NEAREST),
-            cv2.COLOR_GRAY2BGR,
-        )
+        inset = _coloured(cv2.resize(cut, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_NEAREST))
         # Nearest-neighbour zoom puts the middle of pixel (0, 0) at (zoom - 1) / 2.
         offset = np.array([x0, y0]) - (zoom - 1.0) / (2.0 * zoom)
         _draw_ellipse(inset, ellipse, zoom, offset, 1)

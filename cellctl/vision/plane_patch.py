@@ -94,7 +94,7 @@ def plane_patch(
     powers_u, powers_v = _powers(u), _powers(v)
     terms = np.stack([powers_u[i] * powers_v[j] for i, j in _POWERS])
     seen = to_plane(camera, np.column_stack([u, v]) * half_px + middle_px, normal, basis)
-    coefficients = np.linalg.lstsq(terms.T, seen, rcond=None)[0]
+    coefficients = np.asarray(np.linalg.lstsq(terms.T, seen, rcond=None)[0], dtype=float)
     return PlanePatch(camera, normal, basis, middle_px, half_px, coefficients)
 
 

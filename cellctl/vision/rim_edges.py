@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
@@ -22,8 +23,8 @@ _TOLERANCE_PX = 0.8
 _WEAKEST = 0.2
 """Edges below this share of the typical strength do not count."""
 
-_ANGLES = np.arange(_AZIMUTHS) * (2.0 * np.pi / _AZIMUTHS)
-_DIRECTIONS = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
+_ANGLES: Array = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
+_DIRECTIONS: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +43,7 @@ class EdgeCircle:
 @dataclass(frozen=True, slots=True)
 class _Edges:
     points: Array
-    azimuth: Array
+    azimuth: NDArray[np.intp]
 
 
 def edge_circle(
@@ -72,8 +73,9 @@ def _radial_edges(
     image: Image, patch: PlanePatch, centre: Array, radius: float, reach: float, *, sign: float
 ) -> _Edges:
     """Peaks of the slope along rays from the centre, to a fraction of a step."""
-    step = _STEP_PX * patch.unit_px
-    radii = np.arange(max(radius - reach, 2.0 * step), radius + reach + step, step)
+    step = float(_STEP_PX * patch.unit_px)
+    first = max(radius - reach, 2.0 * step)
+    radii = first + step * np.arange(int((radius + reach - first) / step) + 2)
     grid = centre + _DIRECTIONS[:, None, :] * radii[None, :, None]
     profile = _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
     slope = sign * np.gradient(profile, axis=1)

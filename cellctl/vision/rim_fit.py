@@ -8,7 +8,8 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape
 from cellctl.vision.rim_noise import scatter_factor
-from cellctl.vision.rim_solve import Problem, RimView, Solution, minimise, unrefined
+from cellctl.vision.rim_problem import Problem, RimView, Solution, unrefined
+from cellctl.vision.rim_solve import minimise
 
 
 @dataclass(frozen=True, slots=True)

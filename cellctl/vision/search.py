@@ -1,16 +1,16 @@
 """Find the holes of a part in a stereo pair: in the whole image, or near a predicted pose."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera import project
 from cellctl.vision.candidates import Candidate, find_candidates
 from cellctl.vision.features import Hole
-from cellctl.vision.layout import Spot, pair_spots
+from cellctl.vision.layout import Expectation, Spot, pair_spots
 from cellctl.vision.stereo_head import CameraModel, StereoHead
 
 NEAR, WIDE = (0.8, 1.3), (0.45, 2.2)
@@ -18,6 +18,15 @@ NEAR, WIDE = (0.8, 1.3), (0.45, 2.2)
 
 _EPIPOLAR_PX = 7.0
 _RADIUS_MARGIN = 0.12
+
+
+@dataclass(frozen=True, slots=True)
+class ImagePair:
+    """Two images of one exposure and the head that took them."""
+
+    head: StereoHead
+    left: Image
+    right: Image
 
 
 def working_distance_m(head: StereoHead) -> float:
@@ -31,13 +40,10 @@ def working_distance_m(head: StereoHead) -> float:
 
 
 def spots_anywhere(
-    head: StereoHead,
-    left: Image,
-    right: Image,
-    holes: Sequence[Hole],
-    reach: tuple[float, float],
+    pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]
 ) -> list[Spot]:
     """Round features in the whole images at plausible distances."""
+    head = pair.head
     distance_m = working_distance_m(head)
     depth_m = (reach[0] * distance_m, reach[1] * distance_m)
     spots: list[Spot] = []
@@ -47,7 +53,7 @@ def spots_anywhere(
             continue
         found = [
             find_candidates(image, _radii(camera, group, depth_m), bright=bright)
-            for image, camera in ((left, head.left), (right, head.right))
+            for image, camera in ((pair.left, head.left), (pair.right, head.right))
         ]
         spots += pair_spots(
             head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
@@ -55,15 +61,9 @@ def spots_anywhere(
     return spots
 
 
-def spots_near(
-    head: StereoHead,
-    left: Image,
-    right: Image,
-    holes: Sequence[Hole],
-    camera_T_part: RigidTransform,
-    search_radius_m: float,
-) -> list[Spot]:
+def spots_near(pair: ImagePair, holes: Sequence[Hole], expectation: Expectation) -> list[Spot]:
     """Round features within a window round each hole's predicted place."""
+    head, camera_T_part, radius_m = pair.head, expectation.camera_T_part, expectation.radius_m
     right_T_part = head.right_T_left * camera_T_part
     spots: list[Spot] = []
     for bright in (False, True):
@@ -71,14 +71,14 @@ def spots_near(
         if not group:
             continue
         found = [
-            _in_windows(image, camera, group, pose, search_radius_m)
+            _in_windows(image, camera, group, Expectation(pose, radius_m))
             for image, camera, pose in (
-                (left, head.left, camera_T_part),
-                (right, head.right, right_T_part),
+                (pair.left, head.left, camera_T_part),
+                (pair.right, head.right, right_T_part),
             )
         ]
         depths = camera_T_part.apply(np.array([hole.position_m for hole in group]))[:, 2]
-        depth_m = (float(depths.min()) - search_radius_m, float(depths.max()) + search_radius_m)
+        depth_m = (float(depths.min()) - radius_m, float(depths.max()) + radius_m)
         spots += pair_spots(
             head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
         )
@@ -95,20 +95,16 @@ def _radii(
 
 
 def _in_windows(
-    image: Image,
-    camera: CameraModel,
-    holes: Sequence[Hole],
-    camera_T_part: RigidTransform,
-    search_radius_m: float,
+    image: Image, camera: CameraModel, holes: Sequence[Hole], expectation: Expectation
 ) -> list[Candidate]:
     found: list[Candidate] = []
-    points = camera_T_part.apply(np.array([hole.position_m for hole in holes]))
+    points = expectation.camera_T_part.apply(np.array([hole.position_m for hole in holes]))
     for hole, point in zip(holes, points, strict=True):
         if point[2] <= 0:
             continue
         radius_px = float(camera.camera_matrix[0, 0]) * hole.diameter_m / 2.0 / point[2]
         middle = project(camera, point[None])[0]
-        reach_px = float(camera.camera_matrix[0, 0]) * search_radius_m / point[2]
+        reach_px = float(camera.camera_matrix[0, 0]) * expectation.radius_m / point[2]
         window, origin = _window(image, middle, reach_px + 1.3 * radius_px)
         if window is None:
             continue

@@ -22,7 +22,7 @@ PARAMETER_ORDER = (
     *("rotation.x", "rotation.y", "rotation.z"),
     *("translation.x", "translation.y", "translation.z"),
 )
-"""Order of ``StereoHead.covariance``: pixels, plain numbers, rad (R = Exp(dr) R0), m (mm in the file)."""
+"""Order of ``StereoHead.covariance``: px, plain numbers, rad (R = Exp(dr) R0), m (file: mm)."""
 
 _FILE_UNITS = np.array([1.0] * 21 + [MM] * 3)
 _ROTATION_TOLERANCE = 1e-6

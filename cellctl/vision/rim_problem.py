@@ -1,0 +1,220 @@
+"""A rim in one or more images as a least-squares problem, and the best light for a given shape.
+
+Light enters linearly and is eliminated for each trial shape. Priors on shape and light are part of
+the cost.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.rim_light import Light, Surface, surfaces
+from cellctl.vision.rim_model import Border, RimPixels, RimShape, borders
+from cellctl.vision.rim_noise import weights_of
+
+_BLUR_LIMITS_PX = (0.35, 4.0)
+_MAX_WALL_RATIO = 0.2
+_RING_LIMITS = (1.02, 1.4)
+_FLAT_WEIGHT = 0.04
+"""Of every pixel before its noise is known, 1/grey²."""
+
+
+@dataclass(frozen=True, slots=True)
+class RimView:
+    """One image of the rim."""
+
+    pixels: RimPixels
+    model: RimShape
+    """Which parts are modelled; its numbers do not matter."""
+    selection: Array
+    """Shape (len(model.vector), m): the view's shape from the m joint parameters."""
+    gain: float = 1.0
+    """Brightness of this image relative to the others."""
+
+    def shape(self, vector: Array) -> RimShape:
+        """The shape of the rim in this image, inside what is physically possible."""
+        values = self.selection @ vector
+        values[3] = np.clip(values[3], *_BLUR_LIMITS_PX)
+        if self.model.wall_ratio is not None:
+            values[4] = np.clip(values[4], 0.0, _MAX_WALL_RATIO)
+        if self.model.ring_ratio is not None:
+            values[-1] = np.clip(values[-1], *_RING_LIMITS)
+        return self.model.with_vector(values)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """All images of one rim, and what is known beforehand."""
+
+    views: tuple[RimView, ...]
+    light: Light
+    mean: Array
+    """Prior of the joint parameters, shape (m,)."""
+    sigma: Array
+    """Infinite where nothing is known."""
+    ring_difference_grey: float = 1.5
+    """How much the ring's grey may differ between cameras, standard deviation of each term."""
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """Best light for one vector of joint parameters, and what the next step needs."""
+
+    vector: Array
+    parts: tuple[Sequence[Surface], ...]
+    """Surfaces of each view."""
+    weights: Array
+    """One over the variance of each pixel, less for outliers."""
+    residuals: Array
+    design: Array
+    """Rows: light, then joint parameters, shape (lights + m, n)."""
+    precision: Array
+    """Of the priors, shape (lights + m,)."""
+    pull: Array
+    """Prior mean minus present value, shape (lights + m,)."""
+    outside: Array
+    """Share of each pixel outside the rim."""
+
+    @property
+    def lights(self) -> int:
+        """Number of light terms."""
+        return len(self.design) - len(self.vector)
+
+    @property
+    def cost(self) -> float:
+        """Weighted squares of residuals and priors."""
+        return float(self.weights @ self.residuals**2 + self.precision @ self.pull**2)
+
+    def normal(self) -> Array:
+        """Normal matrix over light and joint parameters."""
+        return np.asarray((self.design * self.weights) @ self.design.T + np.diag(self.precision))
+
+    def covariance(self) -> Array:
+        """Covariance of light and joint parameters for independent pixels."""
+        normal = self.normal()
+        size = np.sqrt(np.diag(normal)) + 1e-12
+        scaled = normal / np.outer(size, size)
+        return np.asarray(
+            np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(size, size)
+        )
+
+
+def first(problem: Problem, vector: Array) -> Solution:
+    """Solution at the start: equal weights, then weights from its own residuals."""
+    weights = np.full(sum(len(view.pixels.grey) for view in problem.views), _FLAT_WEIGHT)
+    return refreshed(problem, solved(problem, vector, lights_of(problem, vector), weights))
+
+
+def unrefined(problem: Problem, vector: Array) -> Solution:
+    """Best light with equal weights: a cheap look at how well a shape can fit."""
+    weights = np.full(sum(len(view.pixels.grey) for view in problem.views), _FLAT_WEIGHT)
+    return solved(problem, vector, lights_of(problem, vector), weights)
+
+
+def refreshed(problem: Problem, solution: Solution) -> Solution:
+    """The same shape with weights and light terms brought up to date."""
+    parts = lights_of(problem, solution.vector)
+    weights = weights_of(solution.residuals, solution.outside)
+    return solved(problem, solution.vector, parts, weights)
+
+
+def lights_of(problem: Problem, vector: Array) -> tuple[Sequence[Surface], ...]:
+    """Terms of the light in every view, for the shape as it stands."""
+    found = []
+    for view in problem.views:
+        shape = view.shape(vector)
+        found.append(surfaces(view.pixels, shape, borders(view.pixels, shape), problem.light))
+    return tuple(found)
+
+
+def solved(
+    problem: Problem, vector: Array, parts: tuple[Sequence[Surface], ...], weights: Array
+) -> Solution:
+    """Best light by linear least squares, and the derivatives of all pixels.
+
+    A pixel is the sum of its surfaces' greys times the shares that they cover.
+    """
+    edges = [borders(view.pixels, view.shape(vector)) for view in problem.views]
+    layout = _Layout.of(problem, parts)
+    terms = np.zeros((layout.lights, len(weights)))
+    for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
+        terms[rows, columns] = part.terms * (gain * part.share(edge))
+    grey = np.concatenate([view.pixels.grey for view in problem.views])
+    weighted = terms * weights
+    gram = weighted @ terms.T
+    gram[np.diag_indices_from(gram)] += layout.precision + 1e-9 * np.diag(gram).max()
+    levels = np.linalg.solve(gram, weighted @ grey)
+    by_vector = np.zeros((len(vector), len(weights)))
+    for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
+        view = problem.views[layout.view_of(columns)]
+        by_vector[:, columns] += view.selection.T @ part.by_shape(edge, gain * levels[rows])
+    rims = [0 if view.model.ring_ratio is None else 1 for view in problem.views]
+    return Solution(
+        vector,
+        parts,
+        weights,
+        grey - levels @ terms,
+        np.concatenate([terms, by_vector]),
+        np.concatenate([layout.precision, problem.sigma**-2.0]),
+        np.concatenate([-levels, problem.mean - vector]),
+        np.concatenate([edge[rim].outside for edge, rim in zip(edges, rims, strict=True)]),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """Where each surface's terms lie in the design: rings share their rows between views."""
+
+    lights: int
+    precision: Array
+    rows: tuple[tuple[tuple[int, int, slice], ...], ...]
+    """For each view: (part index, which copy, rows)."""
+    columns: tuple[slice, ...]
+
+    @classmethod
+    def of(cls, problem: Problem, parts: tuple[Sequence[Surface], ...]) -> "_Layout":
+        used, precision, ring = 0, [], None
+        rows, columns, pixel = [], [], 0
+        for view, surfaces_of_view in zip(problem.views, parts, strict=True):
+            mine = []
+            for index, part in enumerate(surfaces_of_view):
+                count = len(part.terms)
+                sigma = part.sigma_grey
+                if part.ring and ring is not None:
+                    mine.append((index, 0, ring))
+                    sigma = np.full(count, problem.ring_difference_grey)
+                block = slice(used, used + count)
+                if part.ring and ring is None:
+                    ring = block
+                mine.append((index, 1, block))
+                used += count
+                precision.append(sigma**-2.0)
+            rows.append(tuple(mine))
+            columns.append(slice(pixel, pixel + len(view.pixels.grey)))
+            pixel += len(view.pixels.grey)
+        return cls(used, np.concatenate(precision), tuple(rows), tuple(columns))
+
+    def blocks(
+        self,
+        problem: Problem,
+        parts: tuple[Sequence[Surface], ...],
+        edges: Sequence[Sequence[Border]],
+    ) -> list[tuple[slice, slice, float, Surface, Sequence[Border]]]:
+        """Rows, columns, gain, surface and borders of every block of the design."""
+        return [
+            (
+                rows,
+                self.columns[which],
+                problem.views[which].gain,
+                parts[which][index],
+                edges[which],
+            )
+            for which, mine in enumerate(self.rows)
+            for index, _, rows in mine
+        ]
+
+    def view_of(self, columns: slice) -> int:
+        """Index of the view whose pixels these are."""
+        return self.columns.index(columns)
