@@ -68,6 +68,7 @@ def _settings(run: AssemblyRun) -> MatingSettings:
         target_force_n=mating.target_force_n,
         limit_force_n=mating.limit_force_n,
         stale_s=run.cell.config.force.stale_ms / 1e3,
+        flange_age_s=run.cell.config.force.flange_age_ms / 1e3,
         fast_speed_m_s=mating.fast_speed_mm_s * MM,
         acceleration_m_s2=mating.acceleration_mm_s2 * MM,
         greatest_past_m=mating.max_past_contact_mm * MM,

@@ -38,7 +38,7 @@ def demo(  # noqa: PLR0917  # options of the command line
     ] = None,
 ) -> None:
     """Assemble one deck on the fake cell; exit code 0 only for a good part."""
-    console = Console(highlight=False, quiet=quiet)
+    console = Console(highlight=False, quiet=quiet, soft_wrap=True)
     folder = out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}"
     folder.mkdir(parents=True, exist_ok=True)
     signal.signal(signal.SIGTERM, _as_interrupt)
