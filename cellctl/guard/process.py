@@ -22,8 +22,11 @@ from cellctl.interfaces.ft_sensor import FtSensor
 from cellctl.interfaces.stop_channel import StopChannel
 
 
-def main() -> int:
-    """Run the guard; the exit code is 0 for an end that was asked for."""
+def main(loop_type: type[GuardLoop] = GuardLoop) -> int:
+    """Run the guard; the exit code is 0 for an end that was asked for.
+
+    A benchmark may bring a loop that goes on after each trip.
+    """
     realtime.die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     link = socket.socket(fileno=int(sys.argv[1]))
@@ -31,7 +34,7 @@ def main() -> int:
     if set_up is None:
         return 1
     try:
-        run(link, int(sys.argv[2]), set_up)
+        run(link, int(sys.argv[2]), set_up, loop_type)
     except CellError as fault:
         _report(link, fault)
         return 1
@@ -41,19 +44,20 @@ def main() -> int:
     return 0
 
 
-def run(link: socket.socket, memory: int, set_up: Message, monitor: Monitor | None = None) -> None:
-    """Open the sensor, begin to open the stop channel, and guard. ``monitor`` is for benchmarks."""
+def run(
+    link: socket.socket, memory: int, set_up: Message, loop_type: type[GuardLoop] = GuardLoop
+) -> None:
+    """Open the sensor, begin to open the stop channel, and guard."""
     sensor: FtSensor = _load(plugins.FT_SENSOR, set_up["sensor"])
     channel: StopChannel | None = None
     if set_up["stop_channel"] is not None:
         channel = _load(plugins.STOP_CHANNEL, set_up["stop_channel"])
     line = StopLine(channel, set_up["stop_confirm_s"])
-    if monitor is None:
-        monitor = Monitor(tuple(set_up["flange_R_sensor"]), has_channel=channel is not None)
+    monitor = Monitor(tuple(set_up["flange_R_sensor"]), has_channel=channel is not None)
     ring = RingWriter(memory)
     link.settimeout(0.0)
     with sensor:
-        loop = GuardLoop(sensor, line, monitor, ring=ring, link=link, beat_s=set_up["beat_s"])
+        loop = loop_type(sensor, line, monitor, ring=ring, link=link, beat_s=set_up["beat_s"])
         signal.signal(signal.SIGTERM, lambda *_: setattr(loop, "ended", True))
         line.open()
         degraded = realtime.settle(

@@ -1,0 +1,20 @@
+"""The guard process of the benchmark: the real one, except that it goes on after each trip."""
+
+import os
+
+from cellctl.guard.loop import GuardLoop
+from cellctl.guard.process import main
+
+
+class RestlessLoop(GuardLoop):
+    """Stops as the real loop does, then releases the latch at once: one stop for each sample."""
+
+    def _stop(self) -> None:
+        super()._stop()
+        self._told_trip = False
+        self._monitor.trip = None
+        self._line.release()
+
+
+if __name__ == "__main__":
+    os._exit(main(RestlessLoop))

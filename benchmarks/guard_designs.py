@@ -1,0 +1,192 @@
+"""The two designs: the guard process, and the plain one with everything in a single process."""
+
+import asyncio
+import multiprocessing
+import threading
+from multiprocessing.connection import Connection
+from typing import Any
+
+from benchmarks import guard_loads
+from cellctl.clock import now_s
+from cellctl.guard.child import GuardChild
+from cellctl.guard.limits import CountTouch, GuardLimits, GuardSettings
+from cellctl.guard.messages import limits_to_json
+from cellctl.guard.monitor import Monitor
+from cellctl.interfaces.ft_sensor import FtHealth
+from drivers.ftsensor.sri.config import SriConfig
+from drivers.ftsensor.sri.protocol import Frame, StreamDecoder, command
+from drivers.ftsensor.sri.sampler import Sampler
+from drivers.robot.siasun import protocol as sjl
+from drivers.robot.siasun.stop_channel import _flange_state
+
+RATE_HZ = 1000
+SESSION = 1
+HOUSEKEEPING_S = 0.01
+SETTLE_S = 1.5
+LIMITS = GuardLimits(
+    raw=(1e3,) * 6,
+    filtered=(1e3,) * 6,
+    touch=CountTouch(limit_n=15.0, k=1, n=1),
+    stale_s=30.0,
+    flange_age_s=30.0,
+    bad_frames=1000,
+)
+"""Every detector runs; each sample with the force on is a touch of its own."""
+
+
+def loads_of(kind: str) -> tuple[int, list[Any]]:
+    """Vision workers that run flat out, and what the daemon's own process does."""
+    own = [guard_loads.events] if kind != "idle" else []
+    if kind == "gil":
+        own.append(guard_loads.bomb)
+    return (0 if kind == "idle" else 2), own
+
+
+def guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
+    """The daemon of the real design: its guard is a child, its vision workers are processes."""
+    asyncio.run(_guard_process(pipe, sensor_port, guard_port, load))
+
+
+def plain(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
+    """asyncio for the devices and threads for the work, in one process."""
+    asyncio.run(_plain(pipe, sensor_port, guard_port, load))
+
+
+class Daemon:
+    """The part of the daemon that holds a guard: starts it, asks it, reads its messages."""
+
+    def __init__(self) -> None:
+        settings = GuardSettings()
+        self._messages: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self.child = GuardChild(
+            settings.ring_slots, self._take, lambda _: None, module="benchmarks.guard_child"
+        )
+        self._constants = {
+            "flange_R_sensor": [1, 0, 0, 0, 1, 0, 0, 0, 1],
+            "beat_s": settings.beat_s,
+            "stop_confirm_s": settings.stop_confirm_s,
+            "fifo_priority": settings.fifo_priority,
+            "cpu": settings.cpu,
+            "lock_memory": settings.lock_memory,
+        }
+
+    async def start(self, sensor_port: int, guard_port: int) -> str:
+        """Until sensor, channel and flange pose are there; what the PC did not permit."""
+        tcp = {"transport": "tcp", "host": "127.0.0.1", "port": sensor_port, "rate_hz": RATE_HZ}
+        sjl_grd = {"robot_name": "SR500A", "guard_port": guard_port}
+        sensor = {"name": "sri", "config": tcp}
+        channel = {"name": "siasun-sjl", "config": sjl_grd}
+        self.child.send({"sensor": sensor, "stop_channel": channel, **self._constants})
+        ready = await self._event("ready")
+        while not (await self._event("channel"))["up"]:
+            pass
+        async with asyncio.timeout(20):
+            while self.child.reader.status().flange_time_s < 0.0:  # noqa: ASYNC110
+                await asyncio.sleep(HOUSEKEEPING_S)
+        return ", ".join(ready["degraded"])
+
+    async def arm(self) -> None:
+        """A load of nothing, and limits that make every sample under force a touch."""
+        zero = {"load": [[0.0] * 3] * 6, "offset": [0.0] * 6, "base_down": [0.0, 0.0, -1.0]}
+        self.child.send({"id": 1, "do": "compensation", **zero})
+        self.child.send({"id": 2, "do": "arm", "limits": limits_to_json(LIMITS)})
+        for _ in range(2):
+            answer = await asyncio.wait_for(self._messages.get(), 5)
+            if "refused" in answer:
+                raise RuntimeError(answer["refused"])
+
+    def _take(self, message: dict[str, Any]) -> None:
+        if message.get("event") != "trip":
+            self._messages.put_nowait(message)
+
+    async def _event(self, kind: str) -> dict[str, Any]:
+        async with asyncio.timeout(20):
+            while (message := await self._messages.get()).get("event") != kind:
+                if message.get("event") == "failed":
+                    raise RuntimeError(str(message))
+        return message
+
+
+async def _guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
+    daemon = Daemon()
+    degraded = await daemon.start(sensor_port, guard_port)
+    workers, own = loads_of(load)
+    stop = threading.Event()
+    threads = guard_loads.threads(own, stop)
+    context = multiprocessing.get_context("spawn")
+    ends = context.Event()
+    pool = [context.Process(target=guard_loads.vision, args=(ends.is_set,)) for _ in range(workers)]
+    for worker in pool:
+        worker.start()
+    await asyncio.sleep(SETTLE_S)
+    await daemon.arm()
+    pipe.send(degraded)
+    while not pipe.poll():
+        await asyncio.sleep(HOUSEKEEPING_S)
+        daemon.child.reader.latest()
+    ends.set()
+    stop.set()
+    for worker in (*threads, *pool):
+        worker.join(10)
+    await daemon.child.quit()
+
+
+async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
+    robot: asyncio.Future[tuple[asyncio.StreamReader, asyncio.StreamWriter]]
+    robot = asyncio.get_running_loop().create_future()
+    server = await asyncio.start_server(
+        lambda reader, writer: robot.set_result((reader, writer)), "127.0.0.1", guard_port
+    )
+    reader, writer = await asyncio.wait_for(robot, 20)
+    await reader.readline()
+    writer.write(sjl.accept_hello(SESSION))
+    monitor = Monitor((1, 0, 0, 0, 1, 0, 0, 0, 1), has_channel=True)
+    monitor.channel_up = True
+    monitor.compensator.set_load([(0.0,) * 3] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))
+    reporting = asyncio.create_task(_reports(reader, monitor))
+    sensing = asyncio.create_task(_sense(sensor_port, monitor, writer))
+    async with asyncio.timeout(20):
+        while min(monitor.sample_time_s, monitor.flange_time_s) < 0.0:  # noqa: ASYNC110
+            await asyncio.sleep(HOUSEKEEPING_S)
+    workers, own = loads_of(load)
+    stop = threading.Event()
+    threads = guard_loads.threads([guard_loads.vision] * workers + own, stop)
+    await asyncio.sleep(SETTLE_S)
+    monitor.arm(LIMITS, FtHealth(), now_s())
+    pipe.send("")
+    beats = 0
+    while not pipe.poll():
+        await asyncio.sleep(HOUSEKEEPING_S)
+        beats += 1
+        writer.write(sjl.beat(SESSION, beats))
+    stop.set()
+    for thread in threads:
+        thread.join(10)
+    for task in (reporting, sensing):
+        task.cancel()
+    await asyncio.gather(reporting, sensing, return_exceptions=True)
+    writer.close()
+    server.close()
+
+
+async def _reports(reader: asyncio.StreamReader, monitor: Monitor) -> None:
+    while line := await reader.readline():
+        monitor.flange(_flange_state(sjl.decode(line.rstrip(b"\n")), now_s()))  # type: ignore[arg-type]
+
+
+async def _sense(port: int, monitor: Monitor, robot: asyncio.StreamWriter) -> None:
+    """The same codec, sampler and monitor as in the guard, on asyncio's streams."""
+    config = SriConfig(transport="tcp", rate_hz=RATE_HZ)
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    for words in (("GSD", "STOP"), ("SMPF", str(RATE_HZ)), ("GSD", None)):
+        writer.write(command(*words))
+    decoder, sampler = StreamDecoder(config.layout), Sampler(config)
+    stops = 0
+    while data := await reader.read(65_536):
+        frames = [item for item in decoder.feed(data) if isinstance(item, Frame)]
+        for sample in sampler.take(frames, now_s()):
+            monitor.sample(sample)
+            if monitor.trip is not None:
+                stops += 1
+                robot.write(sjl.abort(SESSION, stops))
+                monitor.trip = None
