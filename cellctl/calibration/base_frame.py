@@ -18,7 +18,7 @@ from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
-    checks_to_record,
+    evidence_to_record,
 )
 from cellctl.calibration.record import pose_from_record, pose_to_record
 from cellctl.geometry.pose import MM, Array
@@ -80,10 +80,7 @@ class BaseFrameResult:
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""
         return {
-            "method": self.method,
-            "verdict": "pass" if self.passed else "fail",
-            "checks": checks_to_record(self.checks),
-            "warnings": list(self.warnings),
+            **evidence_to_record(self.method, self.checks, self.warnings),
             "c_T_base": pose_to_record(self.c_T_base),
             "a1_mm": self.a1_m / MM,
             "squareness_deg": float(np.degrees(self.squareness_rad)),

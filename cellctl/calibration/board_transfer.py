@@ -16,7 +16,7 @@ from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
-    checks_to_record,
+    evidence_to_record,
 )
 from cellctl.calibration.pose_average import average
 from cellctl.calibration.record import pose_from_record, pose_to_record
@@ -66,10 +66,7 @@ class TransferResult:
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""
         return {
-            "method": self.method,
-            "verdict": "pass" if self.passed else "fail",
-            "checks": checks_to_record(self.checks),
-            "warnings": list(self.warnings),
+            **evidence_to_record(self.method, self.checks, self.warnings),
             "base_T_c1": pose_to_record(self.base_T_c1),
             "base_T_c2": pose_to_record(self.base_T_c2),
             "c1_T_c2": pose_to_record(self.c1_T_c2),

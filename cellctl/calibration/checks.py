@@ -64,11 +64,16 @@ def require_passed(checks: Sequence[Check]) -> None:
         raise ResultOutOfLimits("; ".join(failed))
 
 
-def checks_to_record(checks: Checks) -> list[dict[str, Any]]:
-    """Plain data for the store."""
-    return [check.to_record() for check in checks]
+def evidence_to_record(method: str, checks: Checks, warnings: Sequence[str] = ()) -> dict[str, Any]:
+    """What the records of all calibrations begin with."""
+    return {
+        "method": method,
+        "verdict": "pass" if all_passed(checks) else "fail",
+        "checks": [check.to_record() for check in checks],
+        "warnings": list(warnings),
+    }
 
 
 def checks_from_record(records: Sequence[Mapping[str, Any]]) -> Checks:
-    """The inverse of ``checks_to_record``."""
+    """The checks of a record."""
     return tuple(Check.from_record(record) for record in records)

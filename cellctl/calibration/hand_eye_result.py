@@ -12,7 +12,7 @@ from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
-    checks_to_record,
+    evidence_to_record,
 )
 from cellctl.calibration.record import pose_from_record, pose_to_record
 from cellctl.geometry.pose import MM, Array
@@ -83,10 +83,7 @@ class HandEyeResult:
         """Plain data for the store."""
         camera, board = _NAMES[self.setup]
         return {
-            "method": self.method,
-            "verdict": "pass" if self.passed else "fail",
-            "checks": checks_to_record(self.checks),
-            "warnings": list(self.warnings),
+            **evidence_to_record(self.method, self.checks, self.warnings),
             "setup": self.setup.value,
             camera: pose_to_record(self.camera),
             board: pose_to_record(self.board),

@@ -11,7 +11,7 @@ from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
-    checks_to_record,
+    evidence_to_record,
 )
 from cellctl.calibration.stereo_coverage import Coverage
 from cellctl.calibration.stereo_validation import CrossValidation
@@ -71,10 +71,7 @@ class StereoResult:
         """Plain data: the head's file with the evidence added."""
         return {
             **stereo_head_to_json(self.head),
-            "method": self.method,
-            "verdict": "pass" if self.passed else "fail",
-            "checks": checks_to_record(self.checks),
-            "warnings": list(self.warnings),
+            **evidence_to_record(self.method, self.checks, self.warnings),
             "sigma_px": self.sigma_px,
             "board": _board_to_record(self.board),
             "board_flatness_mm": self.flatness_m / MM,

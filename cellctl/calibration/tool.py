@@ -17,7 +17,7 @@ from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
-    checks_to_record,
+    evidence_to_record,
 )
 from cellctl.calibration.record import pose_from_record, pose_to_record
 from cellctl.errors.calibration import IllConditioned, PosesNotDiverse
@@ -60,9 +60,7 @@ class ToolResult:
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""
         return {
-            "method": self.method,
-            "verdict": "pass" if self.passed else "fail",
-            "checks": checks_to_record(self.checks),
+            **evidence_to_record(self.method, self.checks),
             "flange_T_tool": pose_to_record(self.flange_T_tool),
             "residuals_mm": [value / MM for value in self.residuals_m],
             "conditioning": self.conditioning,
