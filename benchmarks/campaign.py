@@ -52,7 +52,9 @@ def _run(seed: int, out: Path, console: Console) -> dict[str, Any]:
     folder = out / f"seed-{seed}"
     command = ["-m", "fakes", "demo", "--seed", str(seed), "--out", str(folder), "--quiet"]
     begun = time.monotonic()
-    process = subprocess.run([sys.executable, *command], check=False, capture_output=True, text=True)
+    process = subprocess.run(
+        [sys.executable, *command], check=False, capture_output=True, text=True
+    )
     wall_s = time.monotonic() - begun
     path = folder / "result.json"
     if path.exists():

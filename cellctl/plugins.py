@@ -26,4 +26,5 @@ def load(group: str, name: str) -> type:
         if not isinstance(loaded, type):
             raise UnknownDriver(f"{group} '{name}' is not a class")
         return loaded
-    raise UnknownDriver(f"no {group} named '{name}'; installed: {', '.join(names(group)) or 'none'}")
+    installed = ", ".join(names(group)) or "none"
+    raise UnknownDriver(f"no {group} named '{name}'; installed: {installed}")

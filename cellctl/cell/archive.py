@@ -24,9 +24,7 @@ class Archive:
     ) -> R:
         """Call a method of the store: ``await archive.do(RunStore.add_alarm, …)``."""
         loop = asyncio.get_running_loop()
-        return await loop.run_in_executor(
-            self._thread, lambda: call(self._store, *args, **kwargs)
-        )
+        return await loop.run_in_executor(self._thread, lambda: call(self._store, *args, **kwargs))
 
     def close(self) -> None:
         """Finish pending writes and close the store."""

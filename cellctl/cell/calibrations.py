@@ -23,8 +23,8 @@ from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationExpired, CalibrationRecordInvalid
 from cellctl.force.compensation import Compensation
-from cellctl.geometry.uncertain import UncertainPose
 from cellctl.force.payload_result import compensation_from_document
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.stereo_head import StereoHead
 
 PAYLOAD = "payload"
@@ -71,7 +71,9 @@ class CalibrationFolder:
 
     def c_T_base(self) -> UncertainPose:
         """The base frame, likewise."""
-        return BaseFrameResult.from_record(read_calibration(self.path, "base_frame").record).c_T_base
+        return BaseFrameResult.from_record(
+            read_calibration(self.path, "base_frame").record
+        ).c_T_base
 
     def store(
         self, kind: str, record: Mapping[str, Any], serial_number: str, valid_for: timedelta
@@ -125,4 +127,3 @@ class CalibrationFolder:
         except CellError:
             return 0.0  # not valid is what the line is told; production raises the fault itself
         return stored.valid_until.timestamp() if stored.passed or kind == PAYLOAD else 0.0
-

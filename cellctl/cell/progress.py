@@ -1,4 +1,4 @@
-"""What the cell is doing now, for the PLC, the log and the record. Written by steps, read by the daemon."""
+"""What the cell is doing now: written by steps, read by the daemon for the line and the log."""
 
 import math
 from collections.abc import Callable
@@ -39,4 +39,3 @@ class ProgressBoard:
         self.current = Progress()
         for observer in self.observers:
             observer(self.current)
-

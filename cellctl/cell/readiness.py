@@ -8,9 +8,7 @@ from cellctl.interfaces import Robot, RobotState
 
 def require_ready(robots: Iterable[Robot]) -> None:
     """Raise ``RobotNotReady`` with the reasons of every robot that would refuse a motion."""
-    reasons = [
-        f"{robot.name}: {why}" for robot in robots for why in _reasons(robot.state())
-    ]
+    reasons = [f"{robot.name}: {why}" for robot in robots for why in _reasons(robot.state())]
     if reasons:
         raise RobotNotReady("; ".join(reasons))
 

@@ -28,7 +28,7 @@ app.add_typer(runs.app, name="runs")
 
 @app.callback()
 def _root(
-    debug: Annotated[bool, typer.Option(help="Show the traceback of a fault.")] = False,
+    *, debug: Annotated[bool, typer.Option(help="Show the traceback of a fault.")] = False
 ) -> None:
     """Numbered faults end with exit code 1 and one clear line; `--debug` shows where."""
     _settings["debug"] = debug

@@ -15,7 +15,7 @@ def fault_catalogue() -> str:
     lines = [
         "# Fault catalogue",
         "",
-        "Made by `cellctl faults`; do not edit. The number goes to the PLC, the text to the operator.",
+        "Made by `cellctl faults`. The number goes to the PLC, the text to the operator.",
         "",
         "| number | what happened | likely cause | what to do | reaction |",
         "|---|---|---|---|---|",

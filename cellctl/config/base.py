@@ -15,4 +15,3 @@ class Section(BaseModel):
     """A section: immutable, and an unknown key is an error."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
-

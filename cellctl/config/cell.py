@@ -31,7 +31,7 @@ class Procedures(Section):
     base_frame_joints_deg: JointsDeg
     """Main robot, middle of both arcs: station empty, targets seen by the large-field head."""
     flange_T_target_board: WrittenPose
-    """Where the target board lies under a measuring head, roughly: it looks the same upside down."""
+    """Where the target board lies under a head, roughly: it looks the same upside down."""
     circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
     circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0
     tracker_frames: Annotated[int, Field(ge=1, le=200)] = 20

@@ -12,7 +12,7 @@ class Device(Section):
 
     driver: str
     simulated: bool = False
-    settings: dict[str, Any] = {}
+    settings: dict[str, Any] = Field(default_factory=dict)
     """Checked by the driver's own ``Config``."""
 
 

@@ -46,7 +46,14 @@ class OrderDesk:
             recipe = self._cell.config.recipe(command.recipe_id)
             if recipe is None:
                 raise Unexpected(f"recipe {command.recipe_id} vanished")
-            return Assembly(self._cell, self._archive, self._board, self.calibrations, recipe, command)
+            return Assembly(
+                self._cell,
+                self._archive,
+                self._board,
+                self.calibrations,
+                recipe=recipe,
+                command=command,
+            )
         return Maintenance(self._cell, self._archive, self._board, self.calibrations, command)
 
     def _judge_production(self, command: LineCommand) -> RejectCode:

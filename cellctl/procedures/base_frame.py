@@ -41,9 +41,7 @@ def _angles(start_rad: Array, axis: int, arc_deg: float, stops: int) -> list[Arr
     return targets
 
 
-async def _turn(
-    context: ProcedureContext, axis: int, targets: list[Array]
-) -> list[AxisStop]:
+async def _turn(context: ProcedureContext, axis: int, targets: list[Array]) -> list[AxisStop]:
     frames = context.cell.config.procedures.tracker_frames
     stops = []
     for number, joints_rad in enumerate(targets, start=1):

@@ -57,7 +57,7 @@ def _flange_poses(station: HeadStation, count: int) -> list[RigidTransform]:
     base_T_flange = station.robot.state().base_T_flange
     flange_T_head = pose_from_xyzabc(station.config.flange_T_head)
     toe_in_rad = flange_T_head.rotation.magnitude()
-    # The head is mounted turned by half its toe-in, so that the bisector of its axes is the flange's.
+    # The head is mounted turned by half its toe-in: the bisector of its axes is the flange's.
     pivot_m = WORKING_DISTANCE_M / np.cos(toe_in_rad) * np.array([0.0, 0.0, 1.0])
     head_T_flange = flange_T_head.inv()
     return [

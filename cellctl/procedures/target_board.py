@@ -1,4 +1,4 @@
-"""Procedures 104 and 105: the target board before head I, then head II (paper fig. 3, eq. 1 to 3)."""
+"""Procedures 104, 105: the target board before head I, then II (paper fig. 3, eq. 1 to 3)."""
 
 import asyncio
 
@@ -31,9 +31,7 @@ SEARCH_RADIUS_M = 35 * MM
 """Less than half the pitch of the discs."""
 
 
-async def measure_board(
-    context: ProcedureContext, station: HeadStation
-) -> ProcedureOutcome | None:
+async def measure_board(context: ProcedureContext, station: HeadStation) -> ProcedureOutcome | None:
     """Measure the board with head and large-field head; solve once both heads have seen it.
 
     Returns None while the other head's turn is still to come.
@@ -68,9 +66,7 @@ def _solve(context: ProcedureContext) -> TransferResult:
     return calibrate_board_transfer(calibrations.c_T_base(), [one], [two])
 
 
-async def _in_head(
-    context: ProcedureContext, station: HeadStation, model: StereoHead
-) -> BoardPose:
+async def _in_head(context: ProcedureContext, station: HeadStation, model: StereoHead) -> BoardPose:
     drawing = target_board_discs()
     discs = [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
     nominal = pose_from_xyzabc(context.cell.config.procedures.flange_T_target_board)
@@ -90,8 +86,7 @@ async def _in_head(
             )
         )
     points = [
-        BoardPoint(hole.name, hole.position_m, hole.covariance_m2)
-        for hole in average(found).holes
+        BoardPoint(hole.name, hole.position_m, hole.covariance_m2) for hole in average(found).holes
     ]
     return fit_board(drawing, points)
 

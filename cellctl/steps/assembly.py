@@ -54,6 +54,7 @@ class Assembly(Job):
         archive: Archive,
         board: ProgressBoard,
         calibrations: CalibrationFolder,
+        *,
         recipe: Recipe,
         command: LineCommand,
     ) -> None:

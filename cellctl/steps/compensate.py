@@ -54,9 +54,7 @@ async def _measure(run: AssemblyRun, iteration: int) -> tuple[Judgement, PartMea
     measurement = await run.measure(run.deck_features, predicted)
     run.M_T_D = uncertain_deck_in_frame(run.c1_T_M, measurement.own)
     judgement = judge(run.target_M_T_D, run.M_T_D, run.thresholds)
-    run.board.update(
-        iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist())
-    )
+    run.board.update(iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()))
     return judgement, measurement
 
 
@@ -68,7 +66,5 @@ async def _correct(run: AssemblyRun) -> None:
     rule: CorrectionMethod = "default" if run.recipe.compensation.rule == "compose" else "paper"
     commanded = next_target(run.commanded[-1], run.target_M_T_D, run.M_T_D.pose, rule)
     run.commanded.append(commanded)
-    run.base_T_flange = flange_target(
-        run.base_T_c1, run.c1_T_M.pose, commanded, run.flange_T_deck
-    )
+    run.base_T_flange = flange_target(run.base_T_c1, run.c1_T_M.pose, commanded, run.flange_T_deck)
     await run.move_flange(run.base_T_flange)

@@ -11,7 +11,7 @@ from cellctl.geometry.pose import MM
 def require_near(
     what: str, recipe: Recipe, nominal: RigidTransform, measured: RigidTransform
 ) -> None:
-    """Raise ``PartMisplaced`` when a measured pose is farther from nominal than the recipe allows."""
+    """Raise ``PartMisplaced`` when a pose is farther from nominal than the recipe allows."""
     delta = nominal.inv() * measured
     distance_mm = float(np.linalg.norm(delta.translation)) / MM
     angle_deg = float(np.degrees(delta.rotation.magnitude()))

@@ -43,7 +43,7 @@ async def main_to_home(cell: Cell) -> None:
 
 
 async def lift_off(cell: Cell) -> None:
-    """Raise the deck straight off the station, slowly at first; nothing when it is not low there."""
+    """Raise the deck straight off the station, slowly at first; nothing when it is not low."""
     flange = cell.main.state().base_T_flange
     if not _low_in_station(cell, flange):
         return

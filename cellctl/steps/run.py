@@ -50,9 +50,7 @@ class AssemblyRun:
     @property
     def target_M_T_D(self) -> RigidTransform:
         """Equation 5."""
-        return target_M_T_D(
-            self.recipe.deck_thickness_mm * MM, self.recipe.stand_off_mm * MM
-        )
+        return target_M_T_D(self.recipe.deck_thickness_mm * MM, self.recipe.stand_off_mm * MM)
 
     @property
     def thresholds(self) -> Thresholds:
@@ -89,4 +87,3 @@ class AssemblyRun:
 
 
 StepFunction = Callable[[AssemblyRun], Awaitable[None]]
-

@@ -1,4 +1,4 @@
-"""Step 60: measure the seated deck against the frame (mission A5: below 0.2 mm at the pin holes)."""
+"""Step 60: measure the seated deck against the frame (below 0.2 mm at the pin holes)."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform

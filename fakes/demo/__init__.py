@@ -1,1 +1,1 @@
-"""The demonstration: fake cell, daemon and line PLC as separate processes, watched in a terminal."""
+"""The demonstration: fake cell, daemon and line PLC as processes, watched in a terminal."""

@@ -21,7 +21,8 @@ app = typer.Typer(add_completion=False)
 
 
 @app.command()
-def demo(  # noqa: PLR0917  # options of the command line
+def demo(
+    *,
     seed: Annotated[int, typer.Option(help="Another seed is another cell.")] = 1,
     scenario: Annotated[Path, typer.Option(help="Scenario of the fake cell.")] = Path(
         "config/fake-cell.toml"
@@ -50,7 +51,9 @@ def demo(  # noqa: PLR0917  # options of the command line
                 session.inject(item)
             code = session.run(calibrate=calibrate, stay=stay)
     except ChildFailed as error:
-        Console(stderr=True, highlight=False, soft_wrap=True).print(str(error), style="bold red", markup=False)
+        Console(stderr=True, highlight=False, soft_wrap=True).print(
+            str(error), style="bold red", markup=False
+        )
         code = 1
     except KeyboardInterrupt:
         console.print("\nstopped: motion ended, run closed as aborted, no process left")
