@@ -78,7 +78,7 @@ def _radial_edges(
     radii = first + step * np.arange(int((radius + reach - first) / step) + 2)
     grid = centre + _DIRECTIONS[:, None, :] * radii[None, :, None]
     profile = _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
-    slope = sign * np.gradient(profile, axis=1)
+    slope = sign * np.asarray(np.gradient(profile, axis=1))
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
     typical = float(np.median(slope.max(axis=1)))
     peak = (middle >= before) & (middle > after) & (middle > max(_WEAKEST * typical, 0.4))

@@ -125,7 +125,7 @@ def _draw(
     distance_m = camera_T_part.apply(hole.position_m)[2]
     reach = camera.camera_matrix[0, 0] * (hole.countersink_m or hole.diameter_m) / 2 / distance_m
     half = int(reach + 8 + 4 * light.blur_px)
-    x0, y0 = (int(round(value)) - half for value in middle)
+    x0, y0 = (int(value) - half for value in np.rint(middle))
     x1, y1 = x0 + 2 * half + 1, y0 + 2 * half + 1
     if x0 < 0 or y0 < 0 or x1 > image.shape[1] or y1 > image.shape[0]:
         return
@@ -133,7 +133,9 @@ def _draw(
     u, v = np.meshgrid(steps + x0, steps + y0)
     patch = image[y0:y1, x0:x1]
     plate = cv2.resize(patch, None, fx=SUB, fy=SUB, interpolation=cv2.INTER_LINEAR)
-    rays = np.column_stack([undistort(camera, np.column_stack([u.ravel(), v.ravel()])), np.ones(u.size)])
+    rays = np.column_stack(
+        [undistort(camera, np.column_stack([u.ravel(), v.ravel()])), np.ones(u.size)]
+    )
     grey = _shade(rays, camera_T_part, hole, light, plate.ravel()).reshape(u.shape)
     grey = cv2.GaussianBlur(grey, (0, 0), light.blur_px * SUB, borderType=cv2.BORDER_REPLICATE)
     boxes = grey.reshape(patch.shape[0], SUB, patch.shape[1], SUB).mean(axis=(1, 3))

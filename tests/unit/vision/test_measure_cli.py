@@ -1,0 +1,78 @@
+import json
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from cellctl.cli.measure import measure
+from cellctl.vision.stereo_head import write_stereo_head
+from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
+
+HEAD, POSE = table_1_head(), plate_facing(3.0, -2.0, 2.0)
+HOLES = holes_triangle(("pin", "pin", "countersink"))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("measure")
+    write_stereo_head(path / "head.json", HEAD)
+    for name, image in zip(("left", "right"), render_pair(HEAD, POSE, HOLES, Light()), strict=True):
+        cv2.imwrite(str(path / f"{name}.png"), image)
+    text = ""
+    for hole in HOLES:
+        place = (hole.position_m * 1e3).tolist()
+        text += f'[[hole]]\nname = "{hole.name}"\nkind = "{hole.kind}"\n'
+        text += f"diameter_mm = {hole.diameter_m * 1e3}\nposition_mm = {place}\n"
+        text += "countersink_mm = 10.0\n" if hole.countersink_m else ""
+    (path / "plate.toml").write_text(text)
+    return path
+
+
+def run(folder: Path, *more: str, features: str = "plate.toml", right: str = "right.png"):
+    app = typer.Typer()
+    app.command()(measure)
+    arguments = ["--calibration", str(folder / "head.json"), "--features", str(folder / features)]
+    arguments += ["--left", str(folder / "left.png"), "--right", str(folder / right), *more]
+    return CliRunner().invoke(app, arguments)
+
+
+def test_the_result_is_json_in_mm(folder: Path) -> None:
+    picture = folder / "picture.png"
+    result = run(folder, "--out", str(folder / "out.json"), "--picture", str(picture))
+    assert result.exit_code == 0, result.output
+    data = json.loads((folder / "out.json").read_text())
+    truth = POSE.apply(np.array([hole.position_m for hole in HOLES])) * 1e3
+    measured = np.array([data["holes"][hole.name]["position_mm"] for hole in HOLES])
+    assert np.abs(measured - truth).max() < 0.015
+    pose = np.array(data["camera_T_part"])
+    assert np.abs(pose[:3, 3] - POSE.translation * 1e3).max() < 0.02
+    assert np.array(data["covariance"]).shape == (6, 6)
+    assert np.array(data["holes"]["P1"]["left_covariance_px2"]).shape == (2, 2)
+    assert cv2.imread(str(picture)).shape == (2048, 4896, 3)
+
+
+def test_the_paper_by_name_on_stdout(folder: Path) -> None:
+    result = run(folder, "--method", "paper")
+    assert result.exit_code == 0, result.output
+    assert json.loads(result.stdout)["method"] == "paper"
+
+
+def test_missing_holes_exit_with_3_and_say_which(folder: Path) -> None:
+    text = (folder / "plate.toml").read_text()
+    text += '[[hole]]\nname = "P7"\nkind = "pin"\ndiameter_mm = 6.0\nposition_mm = [30, 30, 0]\n'
+    (folder / "more.toml").write_text(text)
+    result = run(folder, features="more.toml")
+    assert result.exit_code == 3
+    assert "F421" in result.stderr
+    assert "P7" in result.stderr
+    assert result.stdout == ""
+
+
+def test_files_that_are_not_images_exit_with_1(folder: Path) -> None:
+    for right in ("plate.toml", "none.png"):
+        result = run(folder, right=right)
+        assert result.exit_code == 1
+        assert "F403" in result.stderr
