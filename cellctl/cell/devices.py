@@ -24,7 +24,7 @@ LINK_AGE_S = 1.0
 
 
 class Cell:
-    """All devices. Built without I/O; ``connect`` reports every device that fails, not the first."""
+    """All devices. Built without I/O; ``connect`` names every device that fails, not the first."""
 
     def __init__(self, config: CellConfig, folder: Path) -> None:
         self.config = config

@@ -76,7 +76,7 @@ class AssemblyRun:
         )
 
     async def move_flange(self, base_T_flange: RigidTransform) -> None:
-        """Straight move of the main robot at the speed of the cell file, until the deck is still."""
+        """Straight move of the main robot, until the deck is still."""
         main = self.cell.config.robots.main
         await self.cell.main.move_linear(
             base_T_flange,
