@@ -100,9 +100,9 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
 def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float) -> CreepState:
     """State after a step was driven and the force read again at standstill.
 
-    The stiffness is corrected as soon as the steps since the last correction add up to a way that
-    is long against the arm's own error: downwards with the noise of force and length counted as
-    stiffness, and by at most half.
+    The stiffness is corrected as soon as the steps add up to a way that is long against the arm's
+    own error: downwards with the noise of force and length counted as stiffness, and by at most
+    half. After a longer way it is measured anew, because contact stiffens.
     """
     after = replace(state, force_n=force_n, travel_m=travel_m, steps=state.steps + 1)
     moved_m = abs(travel_m - state.anchor_travel_m)
@@ -113,9 +113,7 @@ def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float
     rose_n = abs(force_n - state.anchor_force_n)
     shown = law.stiffness_margin_ratio * (rose_n + noise_n) / (moved_m - unsure_m)
     stiffness = min(max(shown, 0.5 * state.stiffness_n_m), law.stiffness_n_m)
-    return replace(
-        after,
-        stiffness_n_m=float(stiffness),
-        anchor_force_n=force_n,
-        anchor_travel_m=travel_m,
-    )
+    after = replace(after, stiffness_n_m=float(stiffness))
+    if moved_m <= 6.0 * unsure_m:
+        return after
+    return replace(after, anchor_force_n=force_n, anchor_travel_m=travel_m)

@@ -20,8 +20,10 @@ from cellctl.force.creep import CreepLaw
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.steps.mating.settings import MatingSettings
 
-READING_BAND_N = 2.0
-"""The creep ends this far inside the window of the final force: tare and noise must not decide."""
+READING_BAND_N = 1.2
+"""The creep ends so far above F_t: tare and noise of a reading must not decide."""
+NOISE_BAND_N = 2.0
+"""So much the filtered force swings about its mean: creep keeps that far from the abort limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,8 +129,8 @@ def _window(
 
 def _creep(settings: MatingSettings) -> CreepLaw:
     low = settings.target_force_n + READING_BAND_N
-    high = settings.abort_force_n - 2.0 * READING_BAND_N
-    if high - low < READING_BAND_N:
+    high = settings.abort_force_n - 2.0 * NOISE_BAND_N
+    if high - low < NOISE_BAND_N:
         raise MatingPlanInvalid(
             f"target {settings.target_force_n:.0f} N and abort {settings.abort_force_n:.0f} N "
             "leave no window for the final force"
@@ -137,7 +139,7 @@ def _creep(settings: MatingSettings) -> CreepLaw:
 
 
 def _release(settings: MatingSettings) -> CreepLaw:
-    band = min(READING_BAND_N, (settings.release_high_n - settings.release_low_n) / 4.0)
+    band = min(NOISE_BAND_N, (settings.release_high_n - settings.release_low_n) / 4.0)
     return _law(settings, settings.release_low_n + band, settings.release_high_n - band)
 
 
@@ -153,6 +155,6 @@ def _law(settings: MatingSettings, low_n: float, high_n: float) -> CreepLaw:
         greatest_step_m=settings.greatest_step_m,
         smallest_step_m=settings.smallest_step_m,
         force_sigma_n=settings.force_sigma_n,
-        abort_n=settings.abort_force_n,
+        abort_n=settings.abort_force_n - NOISE_BAND_N,
         step_sigma_m=settings.step_sigma_m,
     )

@@ -7,8 +7,8 @@ import pytest
 from cellctl.force.creep import CreepLaw, after_step, begin, done, next_step
 
 LAW = CreepLaw(
-    reference_n=39.0,
-    done_low_n=37.0,
+    reference_n=38.6,
+    done_low_n=36.2,
     done_high_n=41.0,
     damping_n_s_m=5e4,
     mass_kg=20.0,
@@ -17,7 +17,7 @@ LAW = CreepLaw(
     greatest_step_m=1e-4,
     smallest_step_m=1e-6,
     force_sigma_n=0.3,
-    abort_n=45.0,
+    abort_n=43.0,
     step_sigma_m=3e-6,
 )
 ARM_SIGMA_M = 2e-6
@@ -80,7 +80,7 @@ def test_without_noise_it_never_overshoots(stiffness: float) -> None:
 
 def test_the_gain_of_a_step_is_the_implicit_one() -> None:
     law = replace(LAW, abort_n=1e6, greatest_step_m=1.0)
-    state = begin(law, 9.0, 0.0)
+    state = begin(law, 8.6, 0.0)
     expected = 0.6 * 30.0 / (5e4 + 20.0 / 0.6 + 0.6 * 9.09e5)
     assert next_step(law, state) == pytest.approx(expected)
 
@@ -94,9 +94,9 @@ def test_explicit_euler_would_oscillate_where_this_does_not() -> None:
 
 
 def test_no_step_can_pass_the_abort_force_at_the_upper_bound() -> None:
-    for force_n in np.linspace(0.0, 35.8, 30):
+    for force_n in np.linspace(0.0, 33.8, 30):
         step_m = next_step(LAW, begin(LAW, float(force_n), 0.0))
-        assert force_n + LAW.stiffness_n_m * (step_m + 3.0 * LAW.step_sigma_m) <= 45.0 + 1e-9
+        assert force_n + LAW.stiffness_n_m * (step_m + 3.0 * LAW.step_sigma_m) <= 43.0 + 1e-9
 
 
 def test_contact_that_stiffens_stays_below_the_limit() -> None:

@@ -68,7 +68,7 @@ def test_targets_may_not_reach_the_hard_end() -> None:
 
 def test_a_force_window_without_room_is_refused() -> None:
     with pytest.raises(MatingPlanInvalid, match="no window"):
-        plan(replace(SETTINGS, abort_force_n=41.0))
+        plan(replace(SETTINGS, abort_force_n=42.0))
 
 
 def test_the_touch_is_watched_in_the_slow_travel_only() -> None:
