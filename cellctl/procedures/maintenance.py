@@ -18,6 +18,7 @@ from cellctl.procedures.base_frame import calibrate_base
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
+from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
 from cellctl.procedures.target_board import measure_board
 from cellctl.records.store import RunStore
 
@@ -32,6 +33,7 @@ PROCEDURES: dict[int, Procedure] = {
     Step.CALIBRATE_BOARD_1: lambda context: measure_board(context, context.cell.head_1),
     Step.CALIBRATE_BOARD_2: lambda context: measure_board(context, context.cell.head_2),
     Step.IDENTIFY_PAYLOAD: identify_payload_on_cell,
+    Step.MEASURE_STOP_LATENCY: measure_stop_latency_on_cell,
 }
 
 

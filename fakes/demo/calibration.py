@@ -50,4 +50,5 @@ PROCEDURES = (
     Procedure(104, "target board before head I", _target_board("head_1")),
     Procedure(105, "target board before head II", _target_board("head_2")),
     Procedure(106, "payload", _deck_only),
+    Procedure(107, "stop latency", _deck_only),
 )

@@ -1,0 +1,91 @@
+"""The calibration that ships with the fake cell is what its procedures make, and it is true.
+
+`make demo-calibration` writes these files. They belong to the devices of the scenario's
+hardware seed, so every result can be held against the devices as they really are.
+"""
+
+from datetime import timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.calibrations import CalibrationFolder, Calibrations
+from cellctl.geometry.pose import MM, pose_error
+from cellctl.geometry.uncertain import UncertainPose
+from fakes import scenario as scenarios
+from fakes.world.frames import from_written
+from fakes.world.world import World
+from tests.unit.fakes.world.driving import to_taught
+
+CONFIG = Path(__file__).parents[2] / "config"
+SIGMAS = 5.0
+
+
+@pytest.fixture(scope="module")
+def calibrations() -> Calibrations:
+    return CalibrationFolder(CONFIG / "demo-calibration").read(timedelta(0))
+
+
+@pytest.fixture(scope="module")
+def world() -> World:
+    world = World(scenarios.load(CONFIG / "fake-cell.toml"), 1)
+    for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
+        to_taught(world, robot, pose)
+    return world
+
+
+@pytest.mark.parametrize("index", [0, 1])
+def test_heads_see_points_where_they_are(calibrations: Calibrations, world: World, index: int):
+    """What counts is a distance measured in the working volume, not single parameters."""
+    head = calibrations.geometry.heads[index]
+    truth = world.truth.heads[("head_1", "head_2")[index]].stereo
+    baseline_m = np.linalg.norm(head.translation_m)
+    true_baseline_m = np.linalg.norm(truth.right_T_left.translation)
+    assert baseline_m == pytest.approx(true_baseline_m, abs=0.05 * MM)
+    for camera, lens in ((head.left, truth.left), (head.right, truth.right)):
+        assert camera.camera_matrix[0, 0] == pytest.approx(lens.focal_px[0], rel=5e-4)
+    turn = np.linalg.norm(
+        (truth.right_T_left.inv() * head.right_T_left).rotation.as_rotvec(degrees=True)
+    )
+    assert turn < 0.02
+
+
+def test_base_frame_is_where_it_says_within_its_uncertainty(
+    calibrations: Calibrations, world: World
+):
+    """What the data sheet says of d1 and of A1 is only as true as the arm was built."""
+    truth = world.truth.large_field.cell_T_head.inv()
+    arm = world.scenario.robots["main"]
+    built_m = arm.link_sigma_mm * MM
+    built_rad = np.radians(np.hypot(arm.link_sigma_deg, arm.joint_sigma_deg))
+    built = np.diag(np.repeat([built_m**2, built_rad**2], 3))
+    measured = calibrations.geometry.c_T_base
+    assert_within(UncertainPose(measured.pose, measured.covariance + built), truth)
+
+
+def test_heads_are_where_they_say(calibrations: Calibrations, world: World):
+    report = world.report()
+    geometry = calibrations.geometry
+    for pose, key, allowed_mm, allowed_deg in (
+        (geometry.base_T_c1, "base_T_c1_mm_deg", 0.3, 0.03),
+        (geometry.base_T_c2, "base_T_c2_mm_deg", 0.3, 0.03),
+        (geometry.c1_T_c2, "c1_T_c2_mm_deg", 0.3, 0.03),
+    ):
+        shift_m, turn_rad = pose_error(from_written(report[key]), pose.pose)
+        assert np.linalg.norm(shift_m) < allowed_mm * MM, key
+        assert np.degrees(np.linalg.norm(turn_rad)) < allowed_deg, key
+
+
+def test_the_payload_weighs_what_it_weighs(calibrations: Calibrations):
+    scenario = scenarios.load(CONFIG / "fake-cell.toml")
+    weight_n = 9.80665 * (scenario.payload.gripper_kg + scenario.payload.deck_kg)
+    down = calibrations.compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
+    assert np.linalg.norm(down) == pytest.approx(weight_n, rel=0.02)
+
+
+def assert_within(measured: UncertainPose, truth: RigidTransform) -> None:
+    delta = np.concatenate(pose_error(truth, measured.pose))
+    distance = float(np.sqrt(delta @ np.linalg.solve(measured.covariance, delta)))
+    assert distance < SIGMAS, f"{distance:.1f} standard deviations from the truth"
