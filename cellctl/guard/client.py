@@ -10,6 +10,7 @@ from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.force import GuardDied, SensorSilent
+from cellctl.errors.link import LinkLost
 from cellctl.force.compensation import Compensation
 from cellctl.guard.child import GuardChild
 from cellctl.guard.limits import GuardLimits, GuardSettings
@@ -21,6 +22,8 @@ _log = log.get(__name__)
 
 _HUNG_S = 1.0
 """A guard whose status is older hangs; the robot's dead man has long acted by then."""
+_SILENT_S = 1.0
+"""Silence that is a fault even while nothing is armed."""
 
 
 class GuardClient:
@@ -139,10 +142,11 @@ class GuardClient:
         await self._request("disarm")
 
     async def acknowledge(self) -> None:
-        """Release the latch; disarms. Starts a new guard when the old one has died."""
-        if self.running:
+        """Release the latch; disarms. Starts a new guard when the old one has died or hangs."""
+        if self.running and self.health().alive:
             await self._request("acknowledge")
         else:
+            await self.stop()
             await self.start()
             if self._load is not None:
                 await self._request("compensation", **self._load)
@@ -205,11 +209,16 @@ class GuardClient:
         )
 
     def check(self) -> None:
-        """Raise ``GuardDied`` when the guard is dead or hangs."""
+        """Raise the fault of a guard that is dead or hangs, or has lost sensor or robot."""
         if not self.running:
             raise GuardDied("no guard process")
-        if not self.health().alive:
+        health = self.health()
+        if not health.alive:
             raise GuardDied(f"its status is more than {_HUNG_S:g} s old")
+        if not health.stop_channel_up:
+            raise LinkLost("the guard's stop channel to the robot is down")
+        if health.sample_age_s > _SILENT_S:
+            raise SensorSilent(f"no sample for {health.sample_age_s:.1f} s")
 
     # --- inside
 

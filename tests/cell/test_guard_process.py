@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.force import GuardDied, GuardRefused, SensorSetupWrong
-from cellctl.errors.link import ConnectTimeout
+from cellctl.errors.force import GuardDied, GuardRefused, SensorSetupWrong, SensorSilent
+from cellctl.errors.link import ConnectTimeout, LinkLost
 from cellctl.force.compensation import Compensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
@@ -127,6 +127,8 @@ async def test_a_lost_stop_channel_trips_and_arming_is_refused() -> None:
         await cell.client.acknowledge()
         with pytest.raises(GuardRefused, match="stop channel"):
             await cell.client.arm(PATIENT)
+        with pytest.raises(LinkLost, match="stop channel"):
+            cell.client.check()
 
 
 async def test_an_ignored_stop_is_repeated_and_then_the_beats_end() -> None:
@@ -180,7 +182,6 @@ async def test_a_hung_guard_is_noticed() -> None:
         assert len(cell.robot.beats_s) <= beats + 2
         with pytest.raises(GuardDied, match="old"):
             cell.client.check()
-        os.kill(cell.client.pid, signal.SIGCONT)
 
 
 async def test_ctrl_c_is_not_for_the_guard_but_sigterm_is() -> None:
@@ -221,24 +222,30 @@ async def test_tare_and_deck_frame() -> None:
         cell.box.faults.inject("silent")
         with pytest.raises(GuardRefused, match="no samples"):
             await cell.client.tare(0.05)
-        await until(lambda: cell.client.health().sample_age_s > 0.3)
+        await until(lambda: cell.client.health().sample_age_s > 1.0)
+        with pytest.raises(SensorSilent):
+            cell.client.check()
         with pytest.raises(GuardRefused, match="old"):
             await cell.client.arm(replace(PATIENT, stale_s=0.05))
 
 
-async def test_a_new_guard_after_the_death_knows_load_and_frame_but_is_not_armed() -> None:
+async def test_a_new_guard_after_death_or_hang_knows_load_and_frame_but_is_not_armed() -> None:
     box = SriBox(lambda time_s: [5.0] * 6)
     sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
     client = GuardClient("sri", sensor, None, None, SETTINGS)
     await client.start()
     offset = Compensation(np.zeros((6, 3)), np.full(6, 2.0), "affine24")
     await client.set_compensation(offset)
-    first = client.pid
-    os.kill(first, signal.SIGKILL)
-    assert await client.wait_trip(2.0) is not None
-    await client.acknowledge()
-    assert client.pid not in (0, first)
-    assert client.trip is None
+    for end, noticed in (
+        (signal.SIGKILL, lambda: client.trip is not None),
+        (signal.SIGSTOP, lambda: not client.health().alive),
+    ):
+        first = client.pid
+        os.kill(first, end)
+        await until(noticed, 3.0)
+        await client.acknowledge()
+        assert client.pid not in (0, first)
+        assert client.trip is None
     begin_s = time.monotonic()
     await until(lambda: (s := client.newest()) is not None and s.time_s > begin_s)
     assert client.latest().wrench == pytest.approx([3.0] * 6, rel=1e-3)
