@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from cellctl.errors.base import CellError
 from cellctl.errors.force import SensorFrozen, SensorSilent
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.geometry.pose import Array
@@ -57,7 +58,7 @@ class Attempt:
         try:
             await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
             if watching.done():
-                await self.robot.stop()
+                await self._second_stop()
             return await self._outcome(moving)
         finally:
             watching.cancel()
@@ -71,9 +72,17 @@ class Attempt:
             trip = await self._late_trip()
             if trip is None:
                 raise
-            await self.robot.stop()
+            await self._second_stop()
             return trip
         return self.guard.trip
+
+    async def _second_stop(self) -> None:
+        """The daemon's own stop; a robot that does not confirm it must not hide the trip."""
+        try:
+            await self.robot.stop()
+        except CellError as fault:
+            fault.add_note(f"the guard had stopped the robot: {self.guard.trip}")
+            raise
 
     async def _late_trip(self) -> GuardTrip | None:
         try:
