@@ -108,7 +108,7 @@ FAILURES: tuple[Failure, ...] = (
         "contact 3 mm early, fast travel at 0.08 mm/s",
         ("F522",),
         prepare=_world_fault("foreign_body", x_mm=0.0, y_mm=0.0, height_mm=3.0),
-        settings={"fast_speed_m_s": 8e-5, "fast_limit_n": 15.0, "travel_timeout_s": 300.0},
+        settings={"fast_speed_m_s": 8e-5, "fast_limit_n": 15.0},
         note="the same with no fast travel at all: what 50 N would cost in time",
     ),
     Failure("contact late: no frame", ("F523",), prepare=_world_fault("no_frame")),

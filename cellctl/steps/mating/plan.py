@@ -74,6 +74,11 @@ def plan_mating(
     Raises ``MatingPlanInvalid``.
     """
     window = _window(M_T_D, deck_thickness_m, settings)
+    if settings.abort_force_n >= settings.limit_force_n:
+        raise MatingPlanInvalid(
+            f"the guard would stop at {settings.abort_force_n:.0f} N, at or above the limit of "
+            f"{settings.limit_force_n:.0f} N"
+        )
     if settings.greatest_past_m > over_travel_m:
         raise MatingPlanInvalid("targets may not lie further past contact than D3")
     figures = ApproachFigures(

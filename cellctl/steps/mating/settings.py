@@ -94,4 +94,3 @@ class MatingSettings:
     back_off_speed_m_s: float = 1e-3
     stand_off_tolerance: tuple[float, float] = (2e-4, float(np.deg2rad(0.02)))
     """Distance (m) and angle (rad) the robot may be away from the planned stand-off."""
-    travel_timeout_s: float = 60.0

@@ -66,6 +66,11 @@ def test_targets_may_not_reach_the_hard_end() -> None:
         plan(replace(SETTINGS, greatest_past_m=0.02))
 
 
+def test_the_guard_must_stop_below_the_limit() -> None:
+    with pytest.raises(MatingPlanInvalid, match="at or above the limit"):
+        plan(replace(SETTINGS, limit_force_n=45.0))
+
+
 def test_a_force_window_without_room_is_refused() -> None:
     with pytest.raises(MatingPlanInvalid, match="no window"):
         plan(replace(SETTINGS, abort_force_n=42.0))
