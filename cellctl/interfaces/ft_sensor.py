@@ -4,10 +4,11 @@ This interface blocks by design (docs/decisions/0003): its only caller is the gu
 its own without an event loop, because nothing else may delay a stop.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
-from types import TracebackType
-from typing import NamedTuple, Self
+from typing import NamedTuple
+
+from cellctl.interfaces.device import BlockingDevice
 
 
 class WrenchSample(NamedTuple):
@@ -48,7 +49,7 @@ class FtHealth:
     """Measured over the last second or so."""
 
 
-class FtSensor(ABC):
+class FtSensor(BlockingDevice):
     """Called by the guard process only; every method blocks no longer than it says.
 
     Methods may raise ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``.
@@ -63,10 +64,6 @@ class FtSensor(ABC):
         """Stop the stream and drop the link. Idempotent, in any state."""
 
     @abstractmethod
-    def fileno(self) -> int:
-        """Descriptor that becomes readable when samples wait; -1 while closed."""
-
-    @abstractmethod
     def read(self, timeout_s: float) -> tuple[WrenchSample, ...]:
         """Samples that arrived since the last call, oldest first; empty after ``timeout_s``."""
 
@@ -77,15 +74,3 @@ class FtSensor(ABC):
     @abstractmethod
     def serial_number(self) -> str:
         """Identity of sensor and box, for the record and the calibration gate."""
-
-    def __enter__(self) -> Self:
-        self.open()
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()

@@ -1,15 +1,14 @@
 """A robot controller that moves its flange on command and says where it is."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from enum import Enum
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
+from cellctl.interfaces.device import Device
 
 
 class RobotMode(Enum):
@@ -50,7 +49,7 @@ class RobotState:
         return float(np.linalg.norm(delta.translation)), float(delta.rotation.magnitude())
 
 
-class Robot(ABC):
+class Robot(Device):
     """Called by the steps of the state machine, from the daemon's event loop only.
 
     Connecting never moves the arm. A move returns after standstill at its target; leaving it
@@ -60,13 +59,6 @@ class Robot(ABC):
     Every method may raise ``LinkLost``, ``ReplyTimeout`` or ``ProtocolViolation``; moves also
     ``MotionRejected``, ``MotionAborted``, ``RobotNotReady``, ``NotRearmed``, ``TargetOutOfBounds``.
     """
-
-    name: str
-    """The name in the cell file."""
-
-    @abstractmethod
-    async def connect(self) -> None:
-        """Establish the link; ``ConnectTimeout``, ``VersionMismatch`` or ``PortInUse`` if not."""
 
     @abstractmethod
     async def disconnect(self) -> None:
@@ -97,15 +89,3 @@ class Robot(ABC):
     @abstractmethod
     async def rearm(self) -> None:
         """Release the latch of a stop. Never moves."""
-
-    async def __aenter__(self) -> Self:
-        await self.connect()
-        return self
-
-    async def __aexit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        await self.disconnect()

@@ -1,12 +1,12 @@
 """A stereo head: two cameras that expose together."""
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
-from types import TracebackType
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
+
+from cellctl.interfaces.device import Device
 
 Image = NDArray[np.uint8]
 
@@ -24,21 +24,11 @@ class StereoPair:
     """Counts up by one a pair; a repeated number is a repeated image."""
 
 
-class StereoCamera(ABC):
+class StereoCamera(Device):
     """Called by steps and calibration procedures while the head stands still.
 
     Methods may raise ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``.
     """
-
-    name: str
-
-    @abstractmethod
-    async def connect(self) -> None:
-        """Establish the link. Idempotent."""
-
-    @abstractmethod
-    async def disconnect(self) -> None:
-        """Drop the link. Idempotent, in any state."""
 
     @abstractmethod
     async def serial_number(self) -> str:
@@ -47,15 +37,3 @@ class StereoCamera(ABC):
     @abstractmethod
     async def grab(self) -> StereoPair:
         """Expose now and return a pair that was exposed after this call."""
-
-    async def __aenter__(self) -> Self:
-        await self.connect()
-        return self
-
-    async def __aexit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        await self.disconnect()

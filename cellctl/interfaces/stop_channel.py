@@ -3,9 +3,10 @@
 Blocking by design, like ``FtSensor``: the guard is the only caller (docs/decisions/0003).
 """
 
-from abc import ABC, abstractmethod
-from types import TracebackType
-from typing import NamedTuple, Self
+from abc import abstractmethod
+from typing import NamedTuple
+
+from cellctl.interfaces.device import BlockingDevice
 
 
 class FlangeState(NamedTuple):
@@ -22,25 +23,13 @@ class FlangeState(NamedTuple):
     stop_latched: bool
 
 
-class StopChannel(ABC):
+class StopChannel(BlockingDevice):
     """Called by the guard process only.
 
     The controller stops by itself when heartbeats on this channel stay away (dead man), so the
     death of the guard stops the robot. Methods may raise ``ConnectTimeout``, ``LinkLost``,
     ``ProtocolViolation``.
     """
-
-    @abstractmethod
-    def open(self) -> None:
-        """Establish the link."""
-
-    @abstractmethod
-    def close(self) -> None:
-        """Drop the link. Idempotent."""
-
-    @abstractmethod
-    def fileno(self) -> int:
-        """Descriptor that becomes readable when a report waits; -1 while closed."""
 
     @abstractmethod
     def request_stop(self) -> None:
@@ -53,15 +42,3 @@ class StopChannel(ABC):
     @abstractmethod
     def poll(self) -> FlangeState | None:
         """Read what has arrived without blocking; the newest report, or None."""
-
-    def __enter__(self) -> Self:
-        self.open()
-        return self
-
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self.close()
