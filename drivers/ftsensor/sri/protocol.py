@@ -97,6 +97,10 @@ class StreamDecoder:
     def feed(self, data: bytes) -> list[Reply | Frame]:
         """Take bytes, return what became complete, in order."""
         buffer = self._buffer
+        if not buffer and len(data) == self._total and data.startswith(self._prefix):
+            frame = self._frame(data)  # nearly always the case on a stream that is read at once
+            if frame is not None:
+                return [frame]
         buffer += data
         found: list[Reply | Frame] = []
         at, size = 0, len(buffer)
