@@ -105,30 +105,37 @@ class StreamDecoder:
         found: list[Reply | Frame] = []
         at, size = 0, len(buffer)
         while at < size:
-            if buffer.startswith(self._prefix, at):
-                if size - at < self._total:
-                    break
-                frame = self._frame(bytes(buffer[at : at + self._total]))
-                if frame is not None:
-                    found.append(frame)
-                    at += self._total
-                    continue
-                self.checksum_errors += 1
-            elif buffer.startswith(_REPLY_START, at):
-                match = _REPLY.match(buffer, at)
-                if match is not None:
-                    found.append(_reply(match))
-                    at = match.end()
-                    continue
-                if self._may_become_reply(at, size):
-                    break
-            elif self._may_become_start(at, size):
+            item, end = self._item(at, size)
+            if item is not None:
+                found.append(item)
+            elif end == at:
                 break
-            step = self._next_candidate(at + 1) - at
-            self.skipped_bytes += step
-            at += step
+            at = end
         del buffer[:at]
         return found
+
+    def _item(self, at: int, size: int) -> tuple[Reply | Frame | None, int]:
+        """What begins at a position and where it ends; the same position to wait for more."""
+        buffer = self._buffer
+        if buffer.startswith(self._prefix, at):
+            end = at + self._total
+            if end > size:
+                return None, at
+            frame = self._frame(bytes(buffer[at:end]))
+            if frame is not None:
+                return frame, end
+            self.checksum_errors += 1
+        elif buffer.startswith(_REPLY_START, at):
+            match = _REPLY.match(buffer, at)
+            if match is not None:
+                return _reply(match), match.end()
+            if self._may_become_reply(at, size):
+                return None, at
+        elif self._may_become_start(at, size):
+            return None, at
+        end = self._next_candidate(at + 1)
+        self.skipped_bytes += end - at
+        return None, end
 
     def _frame(self, frame: bytes) -> Frame | None:
         data = frame[6 : self._data_end]
