@@ -81,9 +81,13 @@ class Daemon:
         while not (await self._event("channel"))["up"]:
             pass
         async with asyncio.timeout(20):
-            while self.child.reader.status().flange_time_s < 0.0:  # noqa: ASYNC110
+            while not self._has_pose():  # noqa: ASYNC110 - lies in another process
                 await asyncio.sleep(HOUSEKEEPING_S)
         return ", ".join(ready["degraded"])
+
+    def _has_pose(self) -> bool:
+        status = self.child.reader.status()
+        return status is not None and status.flange_time_s > 0.0
 
     async def arm(self) -> None:
         """A load of nothing, and limits that make every sample under force a touch."""
@@ -146,7 +150,7 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
     reporting = asyncio.create_task(_reports(reader, monitor))
     sensing = asyncio.create_task(_sense(sensor_port, monitor, writer))
     async with asyncio.timeout(20):
-        while min(monitor.sample_time_s, monitor.flange_time_s) < 0.0:  # noqa: ASYNC110
+        while min(monitor.sample_time_s, monitor.flange_time_s) < 0.0:  # noqa: ASYNC110 - set by the tasks
             await asyncio.sleep(HOUSEKEEPING_S)
     workers, own = loads_of(load)
     stop = threading.Event()

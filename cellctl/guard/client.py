@@ -188,9 +188,10 @@ class GuardClient:
 
     def health(self) -> GuardHealth:
         """How the guard is doing; never raises."""
-        if self._child is None or not self._child.alive:
+        child = self._child
+        status = child.reader.status() if child is not None and child.alive else None
+        if status is None:
             return GuardHealth(alive=False, degraded=self._degraded)
-        status = self._child.reader.status()
         time_s = now_s()
         return GuardHealth(
             alive=time_s - status.time_s < _HUNG_S,
