@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable
 
 from cellctl.errors import CellError
-from cellctl.plc.result import Result
+from cellctl.records.entries import RunResult
 
 SafePoint = Callable[[], Awaitable[bool]]
 """Obeys a pending Hold; True when the cell was held in between, so that it must measure again."""
@@ -27,5 +27,5 @@ class Job(ABC):
         """Execute: do the work; a fault leaves as an exception."""
 
     @abstractmethod
-    async def close(self, fault: CellError | None, *, stopped: bool) -> Result:
-        """Completing, Stopping or Aborting: close the run record and say how it ended."""
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
+        """Completing, Stopping or Aborting: close the run record."""

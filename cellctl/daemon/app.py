@@ -4,8 +4,10 @@ import asyncio
 import json
 import signal
 import sys
+from collections.abc import Coroutine
 from contextlib import AsyncExitStack
 from pathlib import Path
+from typing import Any
 
 from cellctl import log
 from cellctl.cell.archive import Archive
@@ -14,6 +16,7 @@ from cellctl.config import CellConfig, load_cell
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.unit import Unit
+from cellctl.errors.internal import StateDidNotEnd
 from cellctl.packml.command import Command
 from cellctl.packml.state import State
 from cellctl.plc.port import PlcPort
@@ -21,7 +24,7 @@ from cellctl.plc.port import PlcPort
 _log = log.get(__name__)
 
 ABORT_TIMEOUT_S = 20.0
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
@@ -41,8 +44,8 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         cell = Cell(config, cell_file.parent)
         stack.callback(cell.workers.close)
         unit = Unit(cell, archive)
-        await unit.open()
-        port = PlcPort(config.plc, unit.take, unit.line_lost, previous_seq=None)
+        previous_seq = await unit.open()
+        port = PlcPort(config.plc, unit.take, unit.line_lost, previous_seq=previous_seq)
         unit.attach(port)
         stack.push_async_callback(port.stop)
         await port.start()  # first of all: a second daemon must not take over the robots
@@ -51,14 +54,28 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
             return 0
         stack.push_async_callback(_abort, unit)
         _ready(config, port)
-        async with asyncio.TaskGroup() as tasks:
-            watcher = tasks.create_task(supervise(cell, unit, port))
-            await stop.wait()
-            _log.info("asked to end")
-            notify("STOPPING=1")
-            watcher.cancel()
+        await _until_told(stop, supervise(cell, unit, port))
+        _log.info("asked to end")
+        notify("STOPPING=1")
     _log.info("ended")
     return 0
+
+
+async def _until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
+    """Wait for the signal; raises the fault when a part of the daemon itself dies before."""
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            watcher = tasks.create_task(work)
+            await stop.wait()
+            watcher.cancel()
+    except BaseExceptionGroup as group:
+        raise _first(group) from group
+
+
+def _first(error: BaseException) -> BaseException:
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    return error
 
 
 async def _connect(cell: Cell, stop: asyncio.Event) -> bool:
@@ -80,7 +97,11 @@ async def _abort(unit: Unit) -> None:
     machine = unit.machine
     if machine.state not in (State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED):
         await machine.command(Command.ABORT)
-        await machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+        try:
+            await machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+        except TimeoutError:
+            late = StateDidNotEnd(f"{machine.state.name} lasts more than {ABORT_TIMEOUT_S:g} s")
+            _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
     await machine.close()
 
 

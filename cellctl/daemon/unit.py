@@ -1,6 +1,8 @@
 """The unit: what the cell does in each PackML state."""
 
 import asyncio
+from collections.abc import Coroutine
+from typing import Any
 
 from cellctl import log
 from cellctl.cell.archive import Archive
@@ -12,6 +14,7 @@ from cellctl.daemon.orders import OrderDesk
 from cellctl.daemon.status import StatusView
 from cellctl.errors import CellError
 from cellctl.errors.line import LineLost
+from cellctl.errors.records import RecordsError
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
@@ -21,10 +24,17 @@ from cellctl.plc.commands import LineCommand
 from cellctl.plc.coupling import LineCoupling
 from cellctl.plc.port import PlcPort
 from cellctl.plc.result import Result
+from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.steps.positions import lift_off
 
 _log = log.get(__name__)
+
+_TO_THE_LINE = {
+    RunResult.GOOD: Result.GOOD,
+    RunResult.STOPPED: Result.STOPPED,
+    RunResult.ABORTED: Result.ABORTED,
+}
 
 
 class Unit:
@@ -37,7 +47,7 @@ class Unit:
         self._desk = OrderDesk(cell, archive, self._board)
         self._job: Job | None = None
         self._last_job: Job | None = None
-        self._reports: set[asyncio.Task[None]] = set()
+        self._reports: set[asyncio.Task[object]] = set()
         self._port: PlcPort | None = None
         self._coupling: LineCoupling | None = None
         self._result = Result.NONE
@@ -56,11 +66,15 @@ class Unit:
         self.machine.on_fault.append(self._faulted)
         self._view = StatusView(cell, self.machine, self._board, self._desk)
 
-    async def open(self) -> None:
-        """Close runs that an earlier process left open, as interrupted."""
+    async def open(self) -> int | None:
+        """Close runs that an earlier process left open, as interrupted.
+
+        Returns the number of the last command that it took from the line.
+        """
         interrupted = await self._archive.do(RunStore.mark_interrupted)
         if interrupted:
             _log.warning("an earlier process left runs open", runs=interrupted)
+        return await self._archive.do(RunStore.line_seq)
 
     def attach(self, port: PlcPort) -> None:
         """Give the unit its line; once, before the port starts."""
@@ -68,8 +82,20 @@ class Unit:
         self._coupling = LineCoupling(self.machine, port.finish, lambda: self._result)
 
     async def take(self, command: LineCommand) -> RejectCode:
-        """A command of the line: judge what Start asks for, then obey."""
+        """A command of the line: note its number, judge what Start asks for, then obey.
+
+        Stop and Abort wait for nothing.
+        """
         assert self._coupling is not None
+        note = self._archive.do(RunStore.note_line_seq, command.seq)
+        if command.ends_motion:
+            self._later(note)
+        else:
+            try:
+                await note
+            except RecordsError as error:
+                self._faulted(error)
+                return RejectCode.RECORDS_NOT_READY
         if command.cntrl_cmd == Command.START:
             mode = Mode(command.unit_mode) if command.unit_mode else self.machine.mode
             code = self._desk.judge(command, mode)
@@ -102,27 +128,30 @@ class Unit:
         await self._job.execute(self.machine.safe_point)
 
     async def _completing(self) -> None:
-        await self._close_job(stopped=False)
+        await self._close_job(RunResult.GOOD)
 
     async def _stopping(self) -> None:
-        await self._halt(stopped=True)
+        await self._halt(RunResult.STOPPED)
 
     async def _aborting(self) -> None:
-        await self._halt(stopped=False)
+        await self._halt(RunResult.ABORTED)
 
-    async def _halt(self, *, stopped: bool) -> None:
+    async def _halt(self, outcome: RunResult) -> None:
         """Stop everything that moves, then write down how the run ended, in this order."""
         try:
             await self._cell.stop_motion()
         finally:
-            await self._close_job(stopped=stopped)
+            await self._close_job(outcome)
 
-    async def _close_job(self, *, stopped: bool) -> None:
+    async def _close_job(self, outcome: RunResult) -> None:
+        """Nobody but Completing may call a run good, whether or not there is a fault."""
         job, self._job = self._job, None
         if job is not None:
             self._last_job = job
+            fault = None if outcome is RunResult.GOOD else self.machine.fault
             with log.bound(run=job.run_number):
-                self._result = await job.close(self.machine.fault, stopped=stopped)
+                await job.close(outcome, fault)
+            self._result = _TO_THE_LINE[outcome]
 
     def _changed(self, before: State, after: State) -> None:
         if before is not after:
@@ -135,7 +164,14 @@ class Unit:
         self._later(self._archive.do(RunStore.add_alarm, run_number, error.number, str(error)))
         self.publish()
 
-    def _later(self, work) -> None:  # type: ignore[no-untyped-def]
-        task = asyncio.ensure_future(work)
+    def _later(self, work: Coroutine[Any, Any, object]) -> None:
+        """What nobody waits for; a failure of it is in the log."""
+        task = asyncio.create_task(work)
         self._reports.add(task)
-        task.add_done_callback(self._reports.discard)
+        task.add_done_callback(self._reported)
+
+    def _reported(self, task: asyncio.Task[object]) -> None:
+        self._reports.discard(task)
+        error = None if task.cancelled() else task.exception()
+        if error is not None:
+            _log.error("not recorded", fault=str(error))

@@ -13,13 +13,13 @@ from cellctl.cell.step import Step
 from cellctl.errors import CellError
 from cellctl.errors.calibration import ResultOutOfLimits
 from cellctl.plc.commands import LineCommand
-from cellctl.plc.result import Result
 from cellctl.procedures.base_frame import calibrate_base
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
 from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
 from cellctl.procedures.target_board import measure_board
+from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 
 _log = log.get(__name__)
@@ -74,10 +74,9 @@ class Maintenance(Job):
             return
         await self._keep(outcome)
 
-    async def close(self, fault: CellError | None, *, stopped: bool) -> Result:
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:  # noqa: ARG002
         """Procedures keep no run row: their record is the calibration itself."""
         self._board.update(step=Step.NONE)
-        return Result.GOOD if fault is None and not stopped else Result.BAD
 
     async def _keep(self, outcome: ProcedureOutcome) -> None:
         """Store a result that passed, its picture beside it; a bad one is only logged."""

@@ -16,7 +16,6 @@ from cellctl.config.base import Section
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.plc.commands import LineCommand
-from cellctl.plc.result import Result
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.steps.compensate import compensate
@@ -115,10 +114,9 @@ class Assembly(Job):
                 _log.info("step begins")
                 await function(run)
 
-    async def close(self, fault: CellError | None, *, stopped: bool) -> Result:
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
         """Close the run record; nothing to close when it was never opened."""
         self._board.update(step=Step.NONE)
-        outcome = _outcome(fault, stopped=stopped)
         if self._journal is not None:
             await self._archive.do(
                 RunStore.close_run,
@@ -128,13 +126,6 @@ class Assembly(Job):
                 fault=str(fault) if fault else None,
             )
             _log.info("run closed", result=outcome.value)
-        return Result.GOOD if outcome is RunResult.GOOD else Result.BAD
-
-
-def _outcome(fault: CellError | None, *, stopped: bool) -> RunResult:
-    if stopped:
-        return RunResult.STOPPED
-    return RunResult.GOOD if fault is None else RunResult.ABORTED
 
 
 def content_hash(section: Section) -> str:
