@@ -12,6 +12,7 @@ from typing import Any
 from fakes.control import ControlServer
 from fakes.faults import FaultBoard
 from fakes.operator import Operator
+from fakes.priority import stand_apart
 from fakes.render.look import options_of
 from fakes.render.worker import make_pool
 from fakes.scenario import Head, HeadName, Robot, RobotName, Scenario
@@ -118,7 +119,8 @@ async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> int:
         loop.add_signal_handler(number, cell.stopping.set)
     try:
         listening = await cell.start()
-        _announce({"ready": True, "seed": seed, "ports": listening})
+        apart = stand_apart()  # last: the render workers must not inherit it
+        _announce({"ready": True, "seed": seed, "ports": listening, "real_time": apart})
         await cell.run()
     except OSError as error:
         _announce({"ready": False, "error": str(error)})

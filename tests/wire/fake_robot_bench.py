@@ -7,10 +7,11 @@ from fakes.scenario import Channel, Scenario, load
 from fakes.wire.sjl_controller_logic import Controller, Outbox
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
+from tests.wire.scenarios import as_on_a_real_cell
 
 HOME = "0,-90,90,0,90,90"
 WORK = "0,-52.766,109.14,0,33.626,90"
-SCENARIO = load(Path(__file__).parents[2] / "config" / "fake-cell.toml")
+SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "fake-cell.toml"))
 
 
 class Bench:

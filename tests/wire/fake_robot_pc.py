@@ -12,9 +12,10 @@ from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_records import decode, encode
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
+from tests.wire.scenarios import as_on_a_real_cell
 
 WAIT_S = 5.0
-SCENARIO = load(Path(__file__).parents[2] / "config" / "fake-cell.toml")
+SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "fake-cell.toml"))
 
 
 class Line:

@@ -17,6 +17,7 @@ from fakes.wire.sjl_controller import SjlController
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.wire.proxy import ChaosProxy
+from tests.wire.scenarios import as_on_a_real_cell
 from tests.wire.siasun_peer import free_ports
 
 SCENARIO = Path(__file__).parents[2] / "config" / "fake-cell.toml"
@@ -50,7 +51,7 @@ async def sjl_rig(
     *, channels: tuple[Channel, ...] = ("CMD", "STA"), **changes: object
 ) -> AsyncIterator[Rig]:
     """Wired up but neither end started; both are stopped at the end."""
-    scenario = Scenario.model_validate(tomllib.loads(SCENARIO.read_text()))
+    scenario = as_on_a_real_cell(Scenario.model_validate(tomllib.loads(SCENARIO.read_text())))
     command_port, state_port, guard_port = free_ports(3)
     settings = SiasunConfig.model_validate(
         {
