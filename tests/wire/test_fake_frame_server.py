@@ -368,4 +368,8 @@ async def test_worker_process_renders_the_same_picture() -> None:
         reply = await link.grab()
         link.writer.close()
         await server.stop()
-    assert reply.payload == render_frame(scenes()(), api.RenderOptions()).payload
+    here = render_frame(scenes()(), api.RenderOptions()).payload
+    served, expected = (np.frombuffer(data, np.uint8).astype(int) for data in (reply.payload, here))
+    different = np.abs(served - expected)
+    assert different.max() <= 1, "another number of threads may round a sum the other way"
+    assert (different > 0).mean() < 1e-4
