@@ -1,7 +1,5 @@
 """`python -m fakes demo`: the whole cell as separate processes, and one job for it."""
 
-import json
-import signal
 import sys
 import time
 from datetime import UTC, datetime
@@ -12,18 +10,21 @@ import typer
 from rich.console import Console
 
 from fakes.demo.calibration import PROCEDURES
-from fakes.demo.children import Child, ChildFailed, family
-from fakes.demo.control import Control
+from fakes.demo.children import Child, ChildFailed, Family
+from fakes.demo.control import Control, Refused
 from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
+from fakes.demo.verdict import why_not_good
 
-app = typer.Typer(add_completion=False)
+GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 @app.command()
 def demo(
     *,
-    seed: Annotated[int, typer.Option(help="Another seed is another cell.")] = 1,
+    seed: Annotated[int, typer.Option(help="Another seed is another cell.", min=0)] = 1,
     scenario: Annotated[Path, typer.Option(help="Scenario of the fake cell.")] = Path(
         "config/fake-cell.toml"
     ),
@@ -40,56 +41,60 @@ def demo(
 ) -> None:
     """Assemble one deck on the fake cell; exit code 0 only for a good part."""
     console = Console(highlight=False, quiet=quiet, soft_wrap=True)
+    complaint = Console(stderr=True, highlight=False, soft_wrap=True, style="red")
     folder = out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}"
-    folder.mkdir(parents=True, exist_ok=True)
-    signal.signal(signal.SIGTERM, _as_interrupt)
+    code = INTERRUPTED
     try:
-        with family() as children:
-            session = Session(children, console, folder, seed)
-            session.start(scenario, cell)
-            for item in fault or []:
-                session.inject(item)
-            code = session.run(calibrate=calibrate, stay=stay)
-    except ChildFailed as error:
-        Console(stderr=True, highlight=False, soft_wrap=True).print(
-            str(error), style="bold red", markup=False
-        )
-        code = 1
-    except KeyboardInterrupt:
-        console.print("\nstopped: motion ended, run closed as aborted, no process left")
-        code = 130
+        folder.mkdir(parents=True, exist_ok=True)
+        with Family() as family:
+            session = Session(family, console, complaint, folder=folder, seed=seed)
+            try:
+                session.start(scenario, cell)
+                session.inject(fault or [])
+                code = session.run(calibrate=calibrate, stay=stay)
+            except KeyboardInterrupt:
+                console.print("\nstopping the cell …")
+        if code == INTERRUPTED:
+            console.print(session.how_it_ended())
+    except (ChildFailed, Refused, OSError) as error:
+        complaint.print(str(error), markup=False)
+        code = NOT_STARTED
     raise typer.Exit(code)
 
 
 class Session:
     """Fake cell and daemon, running."""
 
-    def __init__(self, children: list[Child], console: Console, folder: Path, seed: int) -> None:
-        self._children = children
+    def __init__(
+        self, family: Family, console: Console, complaint: Console, *, folder: Path, seed: int
+    ) -> None:
+        self._family = family
         self._console = console
+        self._complaint = complaint
         self._folder = folder
         self._seed = seed
         self._begun_s = time.monotonic()
+        self._daemon: Child | None = None
 
     def start(self, scenario: Path, cell: Path) -> None:
         """Both processes, each until it says that it is ready."""
+        self._console.print(f"starting fake cell (seed {self._seed}) and daemon …")
         arguments = ["-m", "fakes", "run", "--scenario", str(scenario), "--seed", str(self._seed)]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
         self._control = Control(int(ports["control"]))
         store = self._folder / "store"
-        daemon = self._spawn(
+        self._daemon = self._spawn(
             "daemon", ["-m", "cellctl", "run", str(cell), "--data-dir", str(store)]
         )
-        self._modbus_port = int(daemon.wait_ready()["modbus_port"])
-        self._console.print(
-            f"fake cell (seed {self._seed}) and daemon are up; record in {self._folder}/"
-        )
+        self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
+        self._console.print(f"both are up; record and logs in {self._folder}/")
 
-    def inject(self, item: str) -> None:
-        """A fault of the fake cell, given as device:name."""
-        device, _, name = item.partition(":")
-        self._control.request("inject", device=device, name=name)
-        self._console.print(f"injected {item}")
+    def inject(self, items: list[str]) -> None:
+        """Faults of the fake cell, given as device:name."""
+        for item in items:
+            device, _, name = item.partition(":")
+            self._control.request("inject", device=device, name=name)
+            self._console.print(f"injected {item}")
 
     def run(self, *, calibrate: bool, stay: bool) -> int:
         """The job; its exit code."""
@@ -97,12 +102,24 @@ class Session:
             return self._stay()
         return self._calibrate() if calibrate else self._assemble()
 
+    def how_it_ended(self) -> str:
+        """For the user who interrupted: what became of the run, and of the processes."""
+        closed = self._daemon.logged("run closed") if self._daemon is not None else None
+        run = f"run {closed['run']} is closed as {closed['result']}; " if closed else ""
+        return f"stopped: {run}daemon and fake cell have ended"
+
     def _stay(self) -> int:
-        self._console.print(f"Modbus TCP on 127.0.0.1:{self._modbus_port}; Ctrl-C ends both")
-        daemon = self._children[-1]
-        while daemon.next_line(timeout_s=None) is not None:
+        data = f"--data-dir {self._folder / 'store'}"
+        self._console.print(
+            f"Modbus TCP on 127.0.0.1:{self._modbus_port}, map in docs/register-map.md\n"
+            f"  a line PLC to try:  .venv/bin/python -m fakes plc --port {self._modbus_port}\n"
+            f"  its runs:           .venv/bin/cellctl runs list {data}\n"
+            "Ctrl-C ends both"
+        )
+        assert self._daemon is not None
+        while self._daemon.next_line(timeout_s=None) is not None:
             continue
-        raise ChildFailed(f"the daemon ended:\n{daemon.log_tail()}")
+        raise ChildFailed(f"the daemon ended:\n{self._daemon.last_words()}")
 
     def _calibrate(self) -> int:
         for procedure in PROCEDURES:
@@ -110,18 +127,20 @@ class Session:
             self._console.print(f"procedure {procedure.number}: {procedure.title}")
             result = self._line("--mode", "maintenance", "--recipe", str(procedure.number))
             if result.get("result") != "good":
-                return self._failed(result)
-        return 0
+                return self._not_good(result, self._faults())
+        return GOOD
 
     def _assemble(self) -> int:
         result = self._line("--serial", f"SAT-{self._seed:04d}")
+        faults = self._faults()
         truth = self._control.request("truth")["truth"]
         outcome = collect(self._folder, result, truth, time.monotonic() - self._begun_s)
         self._console.print(result_table(outcome))
+        if outcome["report"]:
+            self._console.print(f"report: {outcome['report']}")
         if not outcome["passed"]:
-            return self._failed(result)
-        self._console.print(f"report: {self._folder / 'report' / 'report.html'}")
-        return 0
+            return self._not_good(result, faults)
+        return GOOD
 
     def _line(self, *arguments: str) -> dict[str, Any]:
         """Play the line PLC for one job; its last message."""
@@ -134,24 +153,20 @@ class Session:
                 if message.get("event") in ("result", "error"):
                     result = message
         if not result:
-            raise ChildFailed(f"the line PLC ended without a result:\n{plc.log_tail()}")
+            raise ChildFailed(f"the line PLC ended without a result:\n{plc.last_words()}")
         return result
 
-    def _failed(self, result: dict[str, Any]) -> int:
-        console = Console(stderr=True, highlight=False, soft_wrap=True)
-        console.print(f"not good: {json.dumps(result)}", style="bold red", markup=False)
-        for line in self._children[1].faults():
-            console.print(line, style="red", markup=False)
-        return 2
+    def _faults(self) -> list[str]:
+        return self._daemon.faults() if self._daemon is not None else []
+
+    def _not_good(self, result: dict[str, Any], faults: list[str]) -> int:
+        self._complaint.print(f"not good: {why_not_good(result)}", style="bold", markup=False)
+        for fault in faults:
+            self._complaint.print(fault, markup=False)
+        return NOT_GOOD
 
     def _spawn(self, name: str, command: list[str]) -> Child:
-        child = Child.start(name, command, self._folder / f"{name}.log")
-        self._children.append(child)
-        return child
-
-
-def _as_interrupt(_number: int, _frame: object) -> None:
-    raise KeyboardInterrupt
+        return self._family.spawn(name, command, self._folder / f"{name}.log")
 
 
 if __name__ == "__main__":

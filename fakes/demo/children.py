@@ -11,10 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Empty, Queue
-from typing import Any
+from types import FrameType, TracebackType
+from typing import Any, Self
 
 START_TIMEOUT_S = 60.0
-STOP_TIMEOUT_S = 15.0
+STOP_TIMEOUT_S = 30.0
+"""The daemon stops robots that may be moving, and closes its run."""
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 class ChildFailed(RuntimeError):
@@ -61,55 +64,109 @@ class Child:
         return self.lines.get(timeout=timeout_s)
 
     def wait_ready(self, timeout_s: float = START_TIMEOUT_S) -> dict[str, Any]:
-        """The message with ``ready``; raises ``ChildFailed`` with the end of the log otherwise."""
+        """The message with ``ready``; raises ``ChildFailed`` with the child's own words."""
         while True:
             try:
                 message = self.next_line(timeout_s)
             except Empty:
                 raise ChildFailed(f"{self.name} is not ready after {timeout_s:.0f} s") from None
             if message is None:
-                raise ChildFailed(f"{self.name} ended before it was ready:\n{self.log_tail()}")
+                raise ChildFailed(f"{self.name} did not start:\n{self.last_words()}")
             if message.get("ready"):
                 return message
+            if "error" in message:
+                raise ChildFailed(f"{self.name} did not start: {message['error']}")
 
-    def log_tail(self, lines: int = 12) -> str:
-        """The end of the child's log, for a message to the user."""
-        return "\n".join(self.log.read_text(encoding="utf-8").splitlines()[-lines:])
+    def last_words(self, lines: int = 12) -> str:
+        """The end of the child's log that was meant for people, else of all of it."""
+        log = self.log.read_text(encoding="utf-8").splitlines()
+        words = [line for line in log if not line.startswith("{")]
+        return "\n".join((words or log)[-lines:])
 
     def faults(self) -> list[str]:
         """Every numbered fault in the log, once, with its remedy."""
         found: dict[str, None] = {}
-        for line in self.log.read_text(encoding="utf-8").splitlines():
-            try:
-                entry = json.loads(line)
-            except ValueError:
-                continue
+        for entry in self._entries():
             if "number" in entry and "fault" in entry:
-                found[f"{entry['fault']}\n  remedy: {entry.get('remedy', '')}"] = None
+                remedy = f"\n  remedy: {entry['remedy']}" if entry.get("remedy") else ""
+                found[f"{entry['fault']}{remedy}"] = None
         return list(found)
+
+    def logged(self, event: str) -> dict[str, Any] | None:
+        """The last entry of the log with this event."""
+        return next((e for e in reversed(self._entries()) if e.get("event") == event), None)
+
+    def _entries(self) -> list[dict[str, Any]]:
+        lines = self.log.read_text(encoding="utf-8").splitlines()
+        return [entry for line in lines if (entry := _entry(line)) is not None]
 
     def stop(self) -> None:
         """Ask the child to end; after a time-out kill its whole group."""
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
-            try:
+            with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(STOP_TIMEOUT_S)
-            except subprocess.TimeoutExpired:
-                self._kill_group()
-        self._kill_group()
-
-    def _kill_group(self) -> None:
         with contextlib.suppress(ProcessLookupError):
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait(STOP_TIMEOUT_S)
 
 
-@contextlib.contextmanager
-def family() -> Iterator[list[Child]]:
-    """Children appended to the list end in reverse order, whatever happens."""
-    children: list[Child] = []
+def _entry(line: str) -> dict[str, Any] | None:
+    """A line of a JSON log; None for anything else."""
     try:
-        yield children
-    finally:
-        for child in reversed(children):
+        entry = json.loads(line)
+    except ValueError:
+        return None
+    return entry if isinstance(entry, dict) else None
+
+
+class Family:
+    """Children end in reverse order, whatever happens.
+
+    Inside, the signals that end a program raise ``KeyboardInterrupt``, but not while a child is
+    being started or ended: none is ever forgotten.
+    """
+
+    def __init__(self) -> None:
+        self.children: list[Child] = []
+        self._held = False
+        self._pending = False
+
+    def spawn(self, name: str, command: list[str], log: Path) -> Child:
+        """Start a child."""
+        with self._signals_held():
+            child = Child.start(name, command, log)
+            self.children.append(child)
+        return child
+
+    def __enter__(self) -> Self:
+        self._before = {number: signal.signal(number, self._take) for number in SIGNALS}
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self._held = True
+        for child in reversed(self.children):
             child.stop()
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _take(self, _number: int, _frame: FrameType | None) -> None:
+        if self._held:
+            self._pending = True
+        else:
+            raise KeyboardInterrupt
+
+    @contextlib.contextmanager
+    def _signals_held(self) -> Iterator[None]:
+        self._held = True
+        try:
+            yield
+        finally:
+            self._held = False
+        if self._pending:
+            raise KeyboardInterrupt

@@ -5,6 +5,10 @@ import socket
 from typing import Any
 
 
+class Refused(RuntimeError):
+    """The fake cell does not do what it was asked for, or has gone."""
+
+
 class Control:
     """Blocking request and reply, one JSON line each."""
 
@@ -14,16 +18,16 @@ class Control:
         self._id = 0
 
     def request(self, cmd: str, **arguments: Any) -> dict[str, Any]:
-        """Send a command; raises ``RuntimeError`` with the fake cell's message when it refuses."""
+        """Send a command; raises ``Refused`` with the fake cell's message when it refuses."""
         self._id += 1
         self._file.write(json.dumps({"id": self._id, "cmd": cmd, **arguments}) + "\n")
         self._file.flush()
         line = self._file.readline()
         if not line:
-            raise RuntimeError("the fake cell closed its control port")
+            raise Refused("the fake cell closed its control port")
         reply: dict[str, Any] = json.loads(line)
         if reply.get("status") != "ok":
-            raise RuntimeError(f"fake cell refused {cmd}: {reply.get('message')}")
+            raise Refused(f"fake cell refused {cmd}: {reply.get('message')}")
         return reply
 
     def close(self) -> None:

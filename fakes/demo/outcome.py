@@ -8,8 +8,12 @@ from typing import Any
 
 from rich.table import Table
 
+from fakes.demo.children import ChildFailed
+
 LATERAL_LIMIT_MM = 0.2
 FORCE_LIMIT_N = 50.0
+NEAR_SEAT_MM = 5.0
+"""A deck farther away was never mated: its offset says nothing."""
 
 
 def collect(
@@ -28,6 +32,7 @@ def collect(
         _cellctl(folder, "runs", "export", str(run), "--out", str(folder / "report"))
         record = json.loads((folder / "report" / "run.json").read_text(encoding="utf-8"))
     outcome = _outcome(line, truth, pins, record, wall_s)
+    outcome["report"] = str(folder / "report" / "report.html") if run else ""
     (folder / "result.json").write_text(json.dumps(outcome, indent=2) + "\n", encoding="utf-8")
     return outcome
 
@@ -69,12 +74,15 @@ def _outcome(
 def result_table(outcome: dict[str, Any]) -> Table:
     """For the end of the demonstration."""
     table = Table("figure", "value", "limit", title=f"seed {outcome['seed']}: {outcome['result']}")
-    gauges = ", ".join(f"{name} {value:.2f}" for name, value in outcome["gauge_mm"].items())
+    mated = outcome["seat_gap_mm"] is not None and abs(outcome["seat_gap_mm"]) < NEAR_SEAT_MM
+    truth = outcome if mated else {}
+    gauge_mm: dict[str, float] = truth.get("gauge_mm", {})
+    gauges = ", ".join(f"{name} {value:.2f}" for name, value in gauge_mm.items())
     rows = (
         ("iterations of the loop", outcome["iterations"], "{}", ""),
-        ("true offset at the pin holes, mm", outcome["lateral_mm"], "{:.4f}", "0.2"),
-        ("true rotation, worst axis, deg", outcome["rotation_deg"], "{:.5f}", ""),
-        ("true seat gap, mm", outcome["seat_gap_mm"], "{:.4f}", ""),
+        ("true offset at the pin holes, mm", truth.get("lateral_mm"), "{:.4f}", "0.2"),
+        ("true rotation, worst axis, deg", truth.get("rotation_deg"), "{:.5f}", ""),
+        ("true seat gap, mm", truth.get("seat_gap_mm"), "{:.4f}", ""),
         ("peak contact force, true, N", outcome["peak_true_n"], "{:.1f}", "50"),
         ("peak contact force, sensed, N", outcome["peak_sensed_n"], "{:.1f}", "50"),
         ("force held, sensed, N", outcome["hold_force_n"], "{:.1f}", "35 … 45"),
@@ -89,4 +97,6 @@ def result_table(outcome: dict[str, Any]) -> Table:
 
 def _cellctl(folder: Path, *arguments: str) -> None:
     command = [sys.executable, "-m", "cellctl", *arguments, "--data-dir", str(folder / "store")]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+    done = subprocess.run(command, check=False, capture_output=True, text=True)
+    if done.returncode:
+        raise ChildFailed(f"cellctl {' '.join(arguments)}:\n{done.stderr.strip()}")

@@ -1,0 +1,243 @@
+"""A cell of a test's own: the shipped files with other ports, and the programs a user starts."""
+
+import json
+import os
+import random
+import re
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Self
+from uuid import uuid4
+
+from fakes.demo.control import Control
+
+ROOT = Path(__file__).parents[2]
+_SCENARIO = ROOT / "config" / "fake-cell.toml"
+_CELL = ROOT / "config" / "cell.fake.toml"
+_PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD) = (\d{4})\b")
+_MARK = "CELLCTL_TEST_FAMILY"
+READY_S = 60.0
+END_S = 30.0
+
+
+def free_port() -> int:
+    """Below the range from which the system takes ports for outgoing connections."""
+    while True:
+        port = random.randrange(12_000, 32_000)
+        with socket.socket() as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+        return port
+
+
+@dataclass
+class OwnCell:
+    """Scenario, cell file and run store in a folder; no two of them share a port."""
+
+    folder: Path
+    ports: dict[int, int] = field(default_factory=dict)
+    """Shipped port to own port."""
+
+    @classmethod
+    def make(cls, folder: Path) -> Self:
+        own = cls(folder)
+        text = _CELL.read_text(encoding="utf-8")
+        text = text.replace('"demo-calibration"', f'"{ROOT}/config/demo-calibration"')
+        text = text.replace('"features/', f'"{ROOT}/config/features/')
+        own.cell.write_text(own._renumbered(text), encoding="utf-8")
+        scenario = _SCENARIO.read_text(encoding="utf-8")
+        own.scenario.write_text(own._renumbered(scenario), encoding="utf-8")
+        return own
+
+    def _renumbered(self, text: str) -> str:
+        def own_port(match: re.Match[str]) -> str:
+            port = self.ports.setdefault(int(match[1]), free_port())
+            return match[0].replace(match[1], str(port))
+
+        return _PORTS.sub(own_port, text)
+
+    @property
+    def scenario(self) -> Path:
+        return self.folder / "fake-cell.toml"
+
+    @property
+    def cell(self) -> Path:
+        return self.folder / "cell.toml"
+
+    @property
+    def data(self) -> Path:
+        return self.folder / "store"
+
+    @property
+    def modbus_port(self) -> int:
+        return self.ports[5020]
+
+    def change(self, old: str, new: str) -> None:
+        """Another line in the cell file; fails when the line is not there."""
+        text = self.cell.read_text(encoding="utf-8")
+        assert old in text, f"{old!r} is not in the cell file"
+        self.cell.write_text(text.replace(old, new), encoding="utf-8")
+
+    def fake(self, seed: int = 1) -> "Program":
+        options = ["--scenario", str(self.scenario), "--seed", str(seed)]
+        return Program.start(self.folder / "fake-cell", "fakes", "run", *options)
+
+    def daemon(self, *options: str) -> "Program":
+        arguments = ["run", str(self.cell), "--data-dir", str(self.data), *options]
+        return Program.start(self.folder / "daemon", "cellctl", *arguments)
+
+    def demo(self, out: Path, *options: str) -> "Program":
+        files = ["--scenario", str(self.scenario), "--cell", str(self.cell), "--out", str(out)]
+        return Program.start(self.folder / "demo", "fakes", "demo", *files, *options)
+
+    def plc(self, *options: str) -> "Program":
+        arguments = ["plc", "--port", str(self.modbus_port), *options]
+        return Program.start(self.folder / "plc", "fakes", *arguments)
+
+    def cellctl(
+        self, *arguments: str, data: Path | None = None
+    ) -> subprocess.CompletedProcess[str]:
+        where = [] if data is None else ["--data-dir", str(data)]
+        return cellctl(*arguments, *where)
+
+    @contextmanager
+    def control(self) -> Iterator[Control]:
+        """The operator's hands at the fake cell."""
+        control = Control(self.ports[7900])
+        try:
+            yield control
+        finally:
+            control.close()
+
+
+def cellctl(*arguments: str) -> subprocess.CompletedProcess[str]:
+    """One command of the user to its end."""
+    command = [sys.executable, "-m", "cellctl", *arguments]
+    return subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False
+    )
+
+
+@dataclass
+class Program:
+    """A process in a group of its own, its output in files; all its descendants carry a mark."""
+
+    process: subprocess.Popen[bytes]
+    out: Path
+    err: Path
+    mark: str
+
+    @classmethod
+    def start(cls, files: Path, module: str, *arguments: str) -> Self:
+        mark = uuid4().hex
+        out, err = files.with_suffix(f".{mark[:6]}.out"), files.with_suffix(f".{mark[:6]}.err")
+        with out.open("wb") as stdout, err.open("wb") as stderr:
+            process = subprocess.Popen(
+                [sys.executable, "-m", module, *arguments],
+                cwd=ROOT,
+                stdout=stdout,
+                stderr=stderr,
+                start_new_session=True,
+                env=os.environ | {_MARK: mark, "OPENBLAS_NUM_THREADS": "1"},
+            )
+        return cls(process, out, err, mark)
+
+    @property
+    def stdout(self) -> str:
+        return self.out.read_text(encoding="utf-8")
+
+    @property
+    def stderr(self) -> str:
+        return self.err.read_text(encoding="utf-8")
+
+    @property
+    def messages(self) -> list[dict[str, Any]]:
+        """Whole lines of JSON on standard output so far."""
+        lines = self.stdout.split("\n")[:-1]
+        return [json.loads(line) for line in lines if line.startswith("{")]
+
+    @property
+    def log(self) -> list[dict[str, Any]]:
+        """Whole lines of the JSON log so far."""
+        lines = self.stderr.split("\n")[:-1]
+        return [json.loads(line) for line in lines if line.startswith("{")]
+
+    def until(self, what: str, seen: Callable[[], Any], timeout_s: float = READY_S) -> Any:
+        """The first true value of ``seen``; fails when the program ends before, or in time."""
+        deadline = time.monotonic() + timeout_s
+        while time.monotonic() < deadline:
+            ended = self.process.poll() is not None
+            if value := seen():
+                return value
+            assert not ended, f"ended before {what}:\n{self.stdout}\n{self.stderr}"
+            time.sleep(0.02)
+        raise AssertionError(f"no {what} in {timeout_s} s:\n{self.stdout}\n{self.stderr}")
+
+    def ready(self) -> dict[str, Any]:
+        ready: dict[str, Any] = self.until(
+            "ready", lambda: next((m for m in self.messages if m.get("ready")), None)
+        )
+        return ready
+
+    def logged(self, event: str, timeout_s: float = READY_S, **fields: Any) -> dict[str, Any]:
+        """The first line of the log with this event and these fields."""
+
+        def find() -> dict[str, Any] | None:
+            wanted = {"event": event, **fields}
+            return next((entry for entry in self.log if wanted.items() <= entry.items()), None)
+
+        entry: dict[str, Any] = self.until(f"log line {event!r} {fields}", find, timeout_s)
+        return entry
+
+    def interrupt(self, number: signal.Signals, timeout_s: float = END_S) -> int:
+        """Send the signal to this process alone and wait for its end."""
+        self.process.send_signal(number)
+        return self.end(timeout_s)
+
+    def end(self, timeout_s: float = END_S) -> int:
+        """The exit code."""
+        try:
+            return self.process.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still there:\n{self.stdout}\n{self.stderr}") from None
+
+    def descendants(self) -> dict[int, str]:
+        """Living processes with the mark, by number: also those that left group and parent."""
+        found = {}
+        for folder in Path("/proc").iterdir():
+            if not folder.name.isdigit():
+                continue
+            try:
+                if f"{_MARK}={self.mark}".encode() in (folder / "environ").read_bytes().split(
+                    b"\0"
+                ):
+                    found[int(folder.name)] = (folder / "cmdline").read_text().replace("\0", " ")
+            except OSError:
+                continue  # ended meanwhile, or another user's
+        return found
+
+    def nobody_left(self, timeout_s: float = 5.0) -> None:
+        """Fails when a process of the family outlives it."""
+        deadline = time.monotonic() + timeout_s
+        while left := self.descendants():
+            assert time.monotonic() < deadline, f"left behind: {left}"
+            time.sleep(0.05)
+
+    def kill(self) -> None:
+        """For the end of a test, whatever its outcome."""
+        for number in self.descendants():
+            try:
+                os.kill(number, signal.SIGKILL)
+            except ProcessLookupError:
+                continue
+        self.process.wait(END_S)
