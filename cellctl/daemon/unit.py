@@ -19,6 +19,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
+from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.state import State
 from cellctl.plc.commands import LineCommand
 from cellctl.plc.coupling import LineCoupling
@@ -96,12 +97,25 @@ class Unit:
             except RecordsError as error:
                 self._faulted(error)
                 return RejectCode.RECORDS_NOT_READY
-        if command.cntrl_cmd == Command.START:
-            mode = Mode(command.unit_mode) if command.unit_mode else self.machine.mode
-            code = self._desk.judge(command, mode)
+        code = self._judge(command)
+        return code or await self._coupling.obey(command)
+
+    def _judge(self, command: LineCommand) -> RejectCode:
+        """What speaks against a command before anything of it is obeyed."""
+        if command.ends_motion:
+            return RejectCode.NONE
+        active = {fault.number for fault in self.machine.faults}
+        if command.alarm_ack_id and command.alarm_ack_id not in active:
+            return RejectCode.ALARM_UNKNOWN
+        if command.cntrl_cmd != Command.START:
+            return RejectCode.NONE
+        state, mode = self.machine.state, self.machine.mode
+        if command.unit_mode not in (0, mode):
+            code = judge_mode(state, command.unit_mode)
             if code is not RejectCode.NONE:
                 return code
-        return await self._coupling.obey(command)
+            mode = Mode(command.unit_mode)
+        return judge_command(state, mode, Command.START) or self._desk.judge(command, mode)
 
     def line_lost(self) -> None:
         """The line's heartbeat stopped: hold at the next safe point."""
