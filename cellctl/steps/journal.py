@@ -1,5 +1,6 @@
 """Writes down what the steps of one run find out."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -35,6 +36,10 @@ class Journal:
     workers: VisionWorkers
     run: int
     curves: list[ForceCurve] = field(default_factory=list)
+    iterations: int = 0
+    """Passes of the measure-compensate loop so far."""
+    _kept: int = 0
+    _names: Counter[str] = field(default_factory=Counter)
 
     async def measurement(self, kind: str, measured: PartMeasurement) -> None:
         """A measured part with its pictures."""
@@ -83,6 +88,7 @@ class Journal:
             converged=judgement.converged,
             correction_mm_deg=() if correction is None else in_mm_deg(correction).tolist(),
         )
+        self.iterations = number
         await self._pictures(f"iteration-{number}", measured)
 
     async def verification(
@@ -114,19 +120,26 @@ class Journal:
 
     def force_peaks(self) -> tuple[float, ...]:
         """Greatest magnitude of each component over all attempts; NaN before the first."""
-        if not self.curves:
+        if not any(len(curve.wrench) for curve in self.curves):
             return (float("nan"),) * 6
-        peaks = np.max([np.abs(curve.wrench).max(axis=0) for curve in self.curves], axis=0)
-        return tuple(float(value) for value in peaks)
+        wrenches = np.concatenate([curve.wrench for curve in self.curves])
+        return tuple(float(value) for value in np.abs(wrenches).max(axis=0))
 
     async def force_curves(self) -> None:
         """Keep the curve of every attempt, also of one that failed."""
-        for number, curve in enumerate(self.curves, start=1):
+        while self._kept < len(self.curves):
+            curve = self.curves[self._kept]
+            self._kept += 1
             if len(curve.time_s):
-                data = encode_curve(curve, utc_now(), {"attempt": str(number)})
-                await self._artefact(f"force-{number}.mcap", data, MEDIA_TYPE)
+                facts = {"attempt": str(self._kept)}
+                data = await self.workers.run(encode_curve, curve, utc_now(), facts)
+                await self._artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 
     async def _pictures(self, kind: str, measured: PartMeasurement) -> None:
+        """A kind that comes again, after a Hold, gets a number: no picture hides another."""
+        self._names[kind] += 1
+        if self._names[kind] > 1:
+            kind = f"{kind}-again-{self._names[kind]}"
         for head, (pair, found) in enumerate(zip(measured.pairs, measured.heads, strict=True), 1):
             for side, image in (("left", pair.left), ("right", pair.right)):
                 data = await self.workers.run(draw, image, found, side)
