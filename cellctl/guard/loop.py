@@ -56,7 +56,9 @@ class GuardLoop:
             while not (self.ended or self._commands.quit):
                 ready = self._wait()
                 self._take_samples()
-                self._take_pose()
+                if self._line.due(ready):
+                    self._take_pose()
+                self._tell_line()
                 if self._link in ready:
                     self._take_requests()
                 self._tick()
@@ -106,6 +108,9 @@ class GuardLoop:
         state = self._line.poll(now_s())
         if state is not None:
             self._monitor.flange(state)
+
+    def _tell_line(self) -> None:
+        """News of the stop channel, whoever found out."""
         line_is = (self._line.up, self._line.fault)
         if line_is != self._line_was:
             self._line_was = line_is

@@ -2,6 +2,7 @@
 
 import os
 import threading
+from collections.abc import Container
 
 from cellctl.errors.base import CellError
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
@@ -61,6 +62,13 @@ class StopLine:
 
         self._opener = threading.Thread(target=run, name="stop-channel", daemon=True)
         self._opener.start()
+
+    def due(self, ready: Container[object]) -> bool:
+        """Whether ``poll`` has anything to do, given the descriptors that are readable."""
+        if self._channel is None or not self.up:
+            return self._channel is not None
+        descriptor = self._channel.fileno()
+        return descriptor < 0 or descriptor in ready
 
     def poll(self, now_s: float) -> FlangeState | None:
         """Take what has arrived; keep the channel open."""

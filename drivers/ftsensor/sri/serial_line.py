@@ -8,7 +8,7 @@ import serial
 from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.connection import Connection
 
-_CHUNK_BYTES = 65_536
+_CHUNK_BYTES = 4096
 
 
 class SerialConnection(Connection):

@@ -7,7 +7,7 @@ import socket
 from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.connection import Connection
 
-_CHUNK_BYTES = 65_536
+_CHUNK_BYTES = 4096
 _UNANSWERED_MS = 2000
 
 
