@@ -26,7 +26,7 @@ async def calibrate_base(context: ProcedureContext) -> ProcedureOutcome:
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,
-        picture_png=base_frame_picture(result),
+        picture_png=await cell.workers.run(base_frame_picture, result),
         serial_number=await cell.tracker.serial_number(),
     )
 

@@ -76,7 +76,7 @@ async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcom
         record=payload_document(result),
         passed=result.accepted,
         warnings=tuple(str(check) for check in result.checks if not check.passed),
-        picture_png=residual_picture(result),
+        picture_png=await cell.workers.run(residual_picture, result),
         serial_number=cell.guard.health().sensor_serial,
     )
 

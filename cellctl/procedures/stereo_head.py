@@ -47,7 +47,7 @@ async def calibrate_head(context: ProcedureContext, station: HeadStation) -> Pro
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,
-        picture_png=stereo_picture(result),
+        picture_png=await context.cell.workers.run(stereo_picture, result),
         serial_number=await station.camera.serial_number(),
     )
 

@@ -55,7 +55,7 @@ async def measure_board(context: ProcedureContext, station: HeadStation) -> Proc
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,
-        picture_png=transfer_picture(result),
+        picture_png=await context.cell.workers.run(transfer_picture, result),
         serial_number=await context.cell.tracker.serial_number(),
     )
 
