@@ -11,7 +11,7 @@ from cellctl.vision.ellipse import Ellipse, ellipse_from_points
 from cellctl.vision.features import Hole
 from cellctl.vision.plane_patch import PlanePatch, plane_basis, plane_patch, to_plane
 from cellctl.vision.rim_edges import edge_circle
-from cellctl.vision.rim_fit import RimFit, RingPrior, fit_rim, fit_rim_pair, rim_cost
+from cellctl.vision.rim_fit import RimFit, RingPrior, fit_rim, fit_rim_pair, likely_wall
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape
 from cellctl.vision.stereo_head import CameraModel
@@ -22,9 +22,11 @@ _MIN_CONTRAST_GREY = 8.0
 _MAX_MOVE_PX = 2.5
 _BAND_INSIDE_PX, _THREAD_INSIDE_PX, _BAND_OUTSIDE_PX = 6.5, 3.0, 5.5
 _DENSE_PX = 3.0
-_WALL_DEPTHS_M = (0.8e-3, 2.5e-3, 8e-3)
-_HINT, _EVIDENCE, _CLEAR_EVIDENCE = 2.0, 12.0, 40.0
-"""Gains of the information criterion: worth a look, worth the more complex model, beyond doubt."""
+_WALL_DEPTHS_M = (0.5e-3, 1e-3, 2e-3, 4e-3, 9e-3)
+_HINT_GAIN, _CLEAR_GAIN = 12.0, 60.0
+"""Falls of the squares that make a wall worth a fit, and that leave no doubt of it."""
+_EVIDENCE = 15.0
+"""Fall of the information criterion that a more complex model must bring."""
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
 _DIAMETER_SIGMA = 0.01
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
@@ -241,22 +243,17 @@ def _fit_alone(task: _Task) -> RimFit:
     bare = RimShape(task.centre, task.radius, _BLUR_PX)
     if task.hole.kind == "disc":
         return fit_rim(pixels, bare, light)
-    sparse, distance_m = pixels.every(4), task.sight.distance_m
-    walls = [replace(bare, wall_ratio=depth_m / distance_m) for depth_m in _WALL_DEPTHS_M]
-    costs = [rim_cost(sparse, wall, light) for wall in walls]
-    order = np.argsort(costs)
-    if rim_cost(sparse, bare, light) - costs[order[0]] > _CLEAR_EVIDENCE:
-        for index in order:
-            walled = fit_rim(pixels, walls[index], light)
-            if walled.converged:
-                break
-        return walled
-    plain = fit_rim(pixels, bare, light)
-    settled = plain.shapes[0]
-    wall = replace(settled, wall_ratio=walls[order[0]].wall_ratio)
-    if rim_cost(sparse, settled, light) - rim_cost(sparse, wall, light) < _HINT:
+    sparse = pixels.every(3)
+    settled = fit_rim(sparse, bare, light).shapes[0]
+    ratios = [depth_m / task.sight.distance_m for depth_m in _WALL_DEPTHS_M]
+    ratio, gain = likely_wall(sparse, settled, light, ratios)
+    if gain > _CLEAR_GAIN:
+        return fit_rim(pixels, replace(settled, wall_ratio=ratio), light)
+    plain = fit_rim(pixels, settled, light)
+    ratio, gain = likely_wall(pixels, plain.shapes[0], light, ratios)
+    if gain < _HINT_GAIN:
         return plain
-    walled = fit_rim(pixels, wall, light)
+    walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light)
     return walled if walled.bic < plain.bic - _EVIDENCE else plain
 
 

@@ -1,14 +1,15 @@
 """Maximum-likelihood fit of a rim to the grey values around it, in one image or in both."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim_light import Light
-from cellctl.vision.rim_model import RimPixels, RimShape
+from cellctl.vision.rim_model import RimPixels, RimShape, borders
 from cellctl.vision.rim_noise import scatter_factor
-from cellctl.vision.rim_problem import Problem, RimView, Solution, unrefined
+from cellctl.vision.rim_problem import Problem, RimView, Solution, first
 from cellctl.vision.rim_solve import minimise
 
 
@@ -36,9 +37,27 @@ def fit_rim(pixels: RimPixels, start: RimShape, light: Light) -> RimFit:
     return _result(problem, solution, [0, 1, 2], converged=converged)
 
 
-def rim_cost(pixels: RimPixels, shape: RimShape, light: Light) -> float:
-    """Bayesian information criterion of a shape as it stands, with the best light for it."""
-    return _bic(unrefined(_alone(pixels, shape, light), shape.vector))
+def likely_wall(
+    pixels: RimPixels, bare: RimShape, light: Light, ratios: Sequence[float]
+) -> tuple[float, float]:
+    """The wall ratio that would explain most of the misfit of a rim without a wall, and its gain.
+
+    A score test: how far the weighted squares would fall if a wall of unknown, even grey were
+    seen, with shape and light free to follow to first order.
+    """
+    solution = first(_alone(pixels, bare, light), bare.vector)
+    weighted = solution.design * solution.weights
+    normal = np.linalg.inv(solution.normal() + 1e-9 * np.eye(len(solution.design)))
+    rim = solution.outside
+    gains = []
+    for ratio in ratios:
+        seen = borders(pixels, replace(bare, wall_ratio=ratio))[1].outside - rim
+        shared = weighted @ seen
+        slope = float((seen * solution.weights) @ solution.residuals)
+        size = float((seen * solution.weights) @ seen - shared @ normal @ shared)
+        gains.append(slope**2 / size if size > 1e-6 else 0.0)
+    best = int(np.argmax(gains))
+    return ratios[best], gains[best]
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +109,7 @@ def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
     view = RimView(pixels, shape, np.eye(size))
     sigma = np.full(size, np.inf)
     if shape.wall_ratio is not None:
-        sigma[4] = shape.wall_ratio  # Where the lower edge is out of sight, nothing else holds it.
+        sigma[4] = 4.0 * shape.wall_ratio  # Where the lower edge is out of sight, nothing else holds it.
     return Problem((view,), light, shape.vector, sigma)
 
 

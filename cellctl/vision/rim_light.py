@@ -15,7 +15,7 @@ from cellctl.vision.rim_model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 8.0, 4.0, 30.0
+_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 4.0, 30.0
 _THREAD_BAND = 0.15
 """Radial extent, in radii, over which the flanks of a thread change by about their contrast."""
 

@@ -107,12 +107,6 @@ def first(problem: Problem, vector: Array) -> Solution:
     return refreshed(problem, solved(problem, vector, lights_of(problem, vector), weights))
 
 
-def unrefined(problem: Problem, vector: Array) -> Solution:
-    """Best light with equal weights: a cheap look at how well a shape can fit."""
-    weights = np.full(sum(len(view.pixels.grey) for view in problem.views), _FLAT_WEIGHT)
-    return solved(problem, vector, lights_of(problem, vector), weights)
-
-
 def refreshed(problem: Problem, solution: Solution) -> Solution:
     """The same shape with weights and light terms brought up to date."""
     parts = lights_of(problem, solution.vector)
