@@ -16,7 +16,7 @@ R = TypeVar("R")
 
 
 class VisionWorkers:
-    """A small pool of spawned processes; one OpenCV thread each, deaf to Ctrl-C."""
+    """A small pool of spawned processes; one OpenCV thread each, deaf to the terminal."""
 
     def __init__(self, count: int = 2) -> None:
         self._pool = ProcessPoolExecutor(
@@ -41,5 +41,6 @@ class VisionWorkers:
 def _initialise() -> None:
     import cv2
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for number in (signal.SIGINT, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)
     cv2.setNumThreads(1)

@@ -24,7 +24,7 @@ from cellctl.plc.port import PlcPort
 _log = log.get(__name__)
 
 ABORT_TIMEOUT_S = 20.0
-SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
@@ -38,10 +38,12 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
     loop = asyncio.get_running_loop()
     for number in SIGNALS:
         loop.add_signal_handler(number, stop.set)
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
         archive = Archive(data_dir or Path(config.data_dir))
         stack.callback(archive.close)
         cell = Cell(config, cell_file.parent)
+        loop.add_signal_handler(signal.SIGHUP, stop.set)
         stack.callback(cell.workers.close)
         unit = Unit(cell, archive)
         previous_seq = await unit.open()
