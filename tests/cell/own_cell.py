@@ -47,17 +47,27 @@ class OwnCell:
     folder: Path
     ports: dict[int, int] = field(default_factory=dict)
     """Shipped port to own port."""
+    programs: list["Program"] = field(default_factory=list)
 
     @classmethod
     def make(cls, folder: Path) -> Self:
         own = cls(folder)
-        text = _CELL.read_text(encoding="utf-8")
-        text = text.replace('"demo-calibration"', f'"{ROOT}/config/demo-calibration"')
-        text = text.replace('"features/', f'"{ROOT}/config/features/')
-        own.cell.write_text(own._renumbered(text), encoding="utf-8")
+        own._write_cell()
         scenario = _SCENARIO.read_text(encoding="utf-8")
         own.scenario.write_text(own._renumbered(scenario), encoding="utf-8")
         return own
+
+    def visited_from(self, folder: Path) -> Self:
+        """The same fake cell with another cell file and store, and a Modbus port of its own."""
+        visitor = type(self)(folder, {**self.ports, 5020: free_port()})
+        visitor._write_cell()
+        return visitor
+
+    def _write_cell(self) -> None:
+        text = _CELL.read_text(encoding="utf-8")
+        text = text.replace('"demo-calibration"', f'"{ROOT}/config/demo-calibration"')
+        text = text.replace('"features/', f'"{ROOT}/config/features/')
+        self.cell.write_text(self._renumbered(text), encoding="utf-8")
 
     def _renumbered(self, text: str) -> str:
         def own_port(match: re.Match[str]) -> str:
@@ -90,25 +100,29 @@ class OwnCell:
 
     def fake(self, seed: int = 1) -> "Program":
         options = ["--scenario", str(self.scenario), "--seed", str(seed)]
-        return Program.start(self.folder / "fake-cell", "fakes", "run", *options)
+        return self._start("fakes", "run", *options)
 
-    def daemon(self, *options: str) -> "Program":
-        arguments = ["run", str(self.cell), "--data-dir", str(self.data), *options]
-        return Program.start(self.folder / "daemon", "cellctl", *arguments)
+    def daemon(self, *, data: Path | None = None) -> "Program":
+        arguments = ["run", str(self.cell), "--data-dir", str(data or self.data)]
+        return self._start("cellctl", *arguments)
 
     def demo(self, out: Path, *options: str) -> "Program":
         files = ["--scenario", str(self.scenario), "--cell", str(self.cell), "--out", str(out)]
-        return Program.start(self.folder / "demo", "fakes", "demo", *files, *options)
+        return self._start("fakes", "demo", *files, *options)
 
     def plc(self, *options: str) -> "Program":
-        arguments = ["plc", "--port", str(self.modbus_port), *options]
-        return Program.start(self.folder / "plc", "fakes", *arguments)
+        return self._start("fakes", "plc", "--port", str(self.modbus_port), *options)
 
-    def cellctl(
-        self, *arguments: str, data: Path | None = None
-    ) -> subprocess.CompletedProcess[str]:
-        where = [] if data is None else ["--data-dir", str(data)]
-        return cellctl(*arguments, *where)
+    def _start(self, module: str, *arguments: str) -> "Program":
+        files = self.folder / f"{len(self.programs)}-{module}-{arguments[0]}"
+        program = Program.start(files, module, *arguments)
+        self.programs.append(program)
+        return program
+
+    def kill_all(self) -> None:
+        """For the end of a test, whatever its outcome."""
+        for program in reversed(self.programs):
+            program.kill()
 
     @contextmanager
     def control(self) -> Iterator[Control]:
@@ -140,7 +154,7 @@ class Program:
     @classmethod
     def start(cls, files: Path, module: str, *arguments: str) -> Self:
         mark = uuid4().hex
-        out, err = files.with_suffix(f".{mark[:6]}.out"), files.with_suffix(f".{mark[:6]}.err")
+        out, err = files.with_suffix(".out"), files.with_suffix(".err")
         with out.open("wb") as stdout, err.open("wb") as stderr:
             process = subprocess.Popen(
                 [sys.executable, "-m", module, *arguments],

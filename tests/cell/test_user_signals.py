@@ -1,0 +1,171 @@
+"""Ctrl-C and SIGTERM at any moment: motion stops, the run is closed as aborted, nobody is left."""
+
+import os
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cellctl.records.entries import RunHead
+from cellctl.records.store import RunStore
+from fakes.demo.control import Control
+from tests.cell.own_cell import OwnCell, Program, free_port
+
+pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(300)]
+
+STANDSTILL_S = 0.5
+"""More than the stop latency and the ramp of every robot of the scenario."""
+
+
+def send(daemon: Program, number: signal.Signals) -> None:
+    """SIGTERM as a service manager does, SIGINT and SIGHUP as a terminal: to the whole group."""
+    if number is signal.SIGTERM:
+        daemon.process.send_signal(number)
+    else:
+        os.killpg(daemon.process.pid, number)
+
+
+def ends_in_order(daemon: Program) -> None:
+    assert daemon.end() == 0
+    daemon.nobody_left()
+    assert "Traceback" not in daemon.stderr
+    daemon.logged("ended", timeout_s=0.1)
+
+
+def stands(own: OwnCell) -> dict[str, Any]:
+    """The truth, after making sure that nothing moves any more."""
+    time.sleep(STANDSTILL_S)  # of the world, not a handshake: nobody but the world knows
+    with own.control() as control:
+        first = control.request("truth")["truth"]
+        time.sleep(STANDSTILL_S)
+        second = control.request("truth")["truth"]
+    for pose in ("base_T_flange_mm_deg", "base_T_c1_mm_deg", "base_T_c2_mm_deg"):
+        assert second[pose] == pytest.approx(first[pose], abs=2e-4), f"{pose} moves"
+    return dict(second)
+
+
+def heads(store: Path) -> list[RunHead]:
+    opened = RunStore(store, create=False)
+    try:
+        return opened.runs()
+    finally:
+        opened.close()
+
+
+def only_run_is_aborted(own: OwnCell) -> None:
+    (head,) = heads(own.data)
+    assert head.result == "aborted"
+    assert head.ended is not None
+
+
+def camera(control: Control) -> list[float]:
+    """The true pose of head I."""
+    return list(control.request("truth")["truth"]["base_T_c1_mm_deg"])
+
+
+def without_precision(own: OwnCell) -> None:
+    """So coarse a loop that the deck is soon where it is mated."""
+    own.change("threshold_mm = 0.05", "threshold_mm = 0.15\nframes = 1")
+    own.change("threshold_deg = 0.005", "threshold_deg = 0.05")
+
+
+def test_while_connecting(own: OwnCell) -> None:
+    daemon = own.daemon()
+    daemon.until("listening for robots", lambda: _listens(own.ports[7001]))
+    send(daemon, signal.SIGTERM)
+    assert daemon.end(10) == 0
+    daemon.nobody_left()
+    assert "Traceback" not in daemon.stderr
+
+
+def test_idle_and_hung_up(visited: OwnCell) -> None:
+    daemon = visited.daemon()
+    daemon.ready()
+    send(daemon, signal.SIGHUP)
+    ends_in_order(daemon)
+
+
+def test_while_heads_move(visited: OwnCell) -> None:
+    visited.change("speed_percent = 40", "speed_percent = 5")
+    visited.change("[-4.60244, -69.16114", "[-8.60244, -75.16114")  # far from where heads stand
+    daemon = visited.daemon()
+    daemon.ready()
+    plc = visited.plc()
+    with visited.control() as control:
+        before = camera(control)
+        daemon.until("motion", lambda: camera(control) != pytest.approx(before, abs=0.05))
+    send(daemon, signal.SIGTERM)
+    ends_in_order(daemon)
+    stands(visited)
+    only_run_is_aborted(visited)
+    assert plc.end() != 0
+
+
+def test_while_measuring(visited: OwnCell) -> None:
+    daemon = visited.daemon()
+    daemon.ready()
+    visited.plc()
+    daemon.logged("step begins", step="measure frame")
+    send(daemon, signal.SIGINT)
+    ends_in_order(daemon)
+    stands(visited)
+    only_run_is_aborted(visited)
+
+
+def test_while_mating(visited: OwnCell) -> None:
+    without_precision(visited)
+    daemon = visited.daemon()
+    daemon.ready()
+    visited.plc()
+    daemon.logged("step begins", step="mate", timeout_s=120)
+    with visited.control() as control:
+        daemon.until(
+            "way down",
+            lambda: control.request("truth")["truth"]["frame_T_deck_mm_deg"][2] < 23.0,
+        )
+    send(daemon, signal.SIGINT)
+    ends_in_order(daemon)
+    truth = stands(visited)
+    only_run_is_aborted(visited)
+    assert truth["peak_contact_force_n"] < 50.0
+
+
+@pytest.mark.parametrize("moment", ["starting", "measuring"])
+def test_demonstration(own: OwnCell, moment: str) -> None:
+    out = own.folder / "run"
+    demo = own.demo(out)
+    wanted = {"starting": "starting fake cell", "measuring": "measure frame"}[moment]
+    demo.until(wanted, lambda: wanted in demo.stdout)
+    number = signal.SIGTERM if moment == "starting" else signal.SIGINT
+    assert demo.interrupt(number, 40) == 130
+    demo.nobody_left()
+    assert demo.stderr == ""
+    assert "stopped: " in demo.stdout
+    if moment == "measuring":
+        assert "run 1 is closed as aborted" in demo.stdout
+        (head,) = heads(out / "store")
+        assert head.result == "aborted"
+
+
+def test_cell_that_stays_up(own: OwnCell) -> None:
+    """`make cell`: both stay until Ctrl-C, which is not a failure."""
+    demo = own.demo(own.folder / "run", "--stay")
+    demo.until("an address for the PLC", lambda: "Ctrl-C ends both" in demo.stdout)
+    assert f"127.0.0.1:{own.modbus_port}" in demo.stdout
+    assert demo.interrupt(signal.SIGINT, 40) == 130
+    demo.nobody_left()
+
+
+def _listens(port: int) -> bool:
+    """Somebody has the port; does not connect to it."""
+    return any(line.split()[1].endswith(f":{port:04X}") for line in _tcp() if " 0A " in line)
+
+
+def _tcp() -> list[str]:
+    return Path("/proc/net/tcp").read_text(encoding="ascii").splitlines()[1:]
+
+
+def test_port_of_the_test_is_free() -> None:
+    assert not _listens(free_port())
