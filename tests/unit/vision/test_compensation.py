@@ -95,7 +95,7 @@ def test_convergence_needs_both_a_small_error_and_a_small_uncertainty() -> None:
     doubtful = judge(TARGET, UncertainPose(near, unsure), THRESHOLDS)
     assert doubtful.within
     assert not doubtful.converged
-    with pytest.raises(UncertaintyTooLarge, match="x is 0.0316 mm after 5 frames"):
+    with pytest.raises(UncertaintyTooLarge, match=r"x is 0\.0316 mm after 5 frames"):
         check_uncertainty(doubtful, THRESHOLDS, 5)
     far = pose_from_xyzabc([0.03, -0.02, 25.04, 0.006, 0.003, -0.002])
     assert not judge(TARGET, UncertainPose(far, sure), THRESHOLDS).within

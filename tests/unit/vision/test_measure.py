@@ -58,7 +58,7 @@ def errors_m(pair: tuple, pose: RigidTransform | None, method: str = "default") 
 def test_whole_image_and_window_give_the_same_holes(pair: tuple) -> None:
     anywhere, near = errors_m(pair, None), errors_m(pair, POSE)
     assert np.abs(anywhere).max() < 60e-6
-    assert np.abs(anywhere - near).max() < 2e-6
+    assert np.abs(anywhere - near).max() < 5e-6
 
 
 @pytest.mark.parametrize(

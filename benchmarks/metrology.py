@@ -1,0 +1,202 @@
+"""``make bench-metrology``: hole centres, six-hole poses, uncertainties and times against truth.
+
+Every figure is taken on images of the rendered cell, whose renderer has tests of its own. The
+paper's image steps run on the same images.
+"""
+
+import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # Threads only slow the small solves down.
+
+import argparse
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import cv2
+from rich.console import Console
+from rich.table import Table
+
+from benchmarks.metrology_figures import HoleErrors, PoseErrors, band
+from benchmarks.metrology_scenes import PartView, parts
+from cellctl.errors.vision import VisionError
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method, PairMeasurement
+from cellctl.vision.part_pose import part_pose
+from fakes.render import api
+
+CLEAN_GREY = {"pin": 132.0, "countersink": 100.0, "thread": 132.0}
+MACHINED_GREY = {"pin": 90.0, "countersink": 80.0, "thread": 80.0}
+"""Step at the rim, by kind: plate or cone over the dark, and over the lit wall or flank."""
+
+
+@dataclass
+class Run:
+    """Everything measured on one kind of image."""
+
+    holes: dict[str, HoleErrors] = field(default_factory=dict)
+    poses: PoseErrors = field(default_factory=PoseErrors)
+    failures: list[str] = field(default_factory=list)
+    times_ms: list[float] = field(default_factory=list)
+
+
+@dataclass
+class Verdicts:
+    """Figures against their targets."""
+
+    table: Table
+    missed: int = 0
+
+    def add(self, what: str, value: float, limit: float, unit: str = "") -> None:
+        good = value <= limit
+        self.missed += not good
+        mark = "[green]yes[/]" if good else "[red]no[/]"
+        self.table.add_row(what, f"{value:.4g} {unit}", f"≤ {limit:g} {unit}", mark)
+
+    def within(self, what: str, value: float, limits: tuple[float, float]) -> None:
+        good = limits[0] <= value <= limits[1]
+        self.missed += not good
+        mark = "[green]yes[/]" if good else "[red]no[/]"
+        self.table.add_row(what, f"{value:.3f}", f"{limits[0]:.3f} … {limits[1]:.3f}", mark)
+
+    def note(self, what: str, text: str) -> None:
+        self.table.add_row(what, text, "", "")
+
+
+def measure(run: Run, part: PartView, method: Method, contrast: dict[str, float]) -> None:
+    """Both heads in known windows, then the pose."""
+    results: list[PairMeasurement] = []
+    for view in part.views:
+        started = time.process_time()
+        try:
+            result = measure_pair(
+                *view.images,
+                view.head,
+                view.holes,
+                camera_T_part=view.camera_T_part,
+                method=method,
+            )
+        except VisionError as fault:
+            run.failures.append(str(fault))
+            return
+        run.times_ms.append((time.process_time() - started) * 1e3)
+        results.append(result)
+        for kind in {hole.kind for hole in view.holes}:
+            run.holes.setdefault(kind, HoleErrors()).add(view, result, kind, contrast[kind])
+    pose = part_pose(
+        results[0], results[1], part.c1_T_c2, part.holes, method, residual_limit_m=2e-3
+    )
+    run.poses.add(part, pose)
+
+
+def both(kind: str, options: api.RenderOptions, arguments: argparse.Namespace, contrast: dict[str, float]
+         ) -> dict[Method, Run]:  # fmt: skip
+    """Default and paper on the same images."""
+    runs: dict[Method, Run] = {"default": Run(), "paper": Run()}
+    for part in parts(kind, options, arguments.plates, arguments.exposures, seed=arguments.seed):
+        for method, run in runs.items():
+            measure(run, part, method, contrast)
+    return runs
+
+
+def judge_clean(runs: dict[Method, Run], verdicts: Verdicts) -> None:
+    ours, paper = runs["default"], runs["paper"]
+    for kind, errors in ours.holes.items():
+        verdicts.add(f"clean {kind}: median centre error / CRLB", errors.median_ratio(), 1.5)
+        verdicts.within(
+            f"clean {kind}: normalised error², 2-D, n={errors.count}",
+            statistics.fmean(errors.squared_2d),
+            band(2, errors.count),
+        )
+    judge_pose("clean", runs, verdicts)
+    poses = ours.poses
+    count = len(poses.squared)
+    verdicts.within(
+        f"clean pose: normalised error², n={count}", statistics.fmean(poses.squared), band(6, count)
+    )
+    verdicts.note("clean: paper refused", f"{len(paper.failures)} of {count + len(ours.failures)}")
+
+
+def judge_pose(name: str, runs: dict[Method, Run], verdicts: Verdicts) -> None:
+    ours, paper = runs["default"].poses, runs["paper"].poses
+    rotation, position = ours.rotation_deg(), ours.position_um()
+    verdicts.add(f"{name} six-hole pose: worst rotation rms", rotation.max(), 0.0025, "°")
+    verdicts.add(f"{name} six-hole pose: worst position rms", position.max(), 5.0, "µm")
+    if paper.squared:
+        ratio = float(rotation.max() / paper.rotation_deg().max())
+        verdicts.add(f"{name}: worst rotation, ours over paper's", ratio, 0.25)
+        verdicts.note(
+            f"{name}: paper's pose",
+            f"{paper.rotation_deg().max():.4f}°, {paper.position_um().max():.1f} µm",
+        )
+
+
+def judge_machined(name: str, runs: dict[Method, Run], verdicts: Verdicts) -> None:
+    for kind, errors in runs["default"].holes.items():
+        verdicts.add(f"{name} {kind}: median centre error / CRLB", errors.median_ratio(), 4.0)
+        verdicts.add(f"{name} {kind}: 95 % of the centre errors", errors.p95_px(), 0.05, "px")
+        verdicts.note(
+            f"{name} {kind}: bias in depth, worst centre",
+            f"{errors.depth_bias_um():+.1f} µm, {errors.worst_px():.3f} px",
+        )
+        other = runs["paper"].holes.get(kind)
+        if other is not None:
+            verdicts.note(
+                f"{name} {kind}: paper",
+                f"{other.median_ratio():.1f} × CRLB, {other.depth_bias_um():+.0f} µm",
+            )
+    judge_pose(name, runs, verdicts)
+    verdicts.note(f"{name}: refused", f"{len(runs['default'].failures)} of ours, "
+                  f"{len(runs['paper'].failures)} of the paper's")  # fmt: skip
+
+
+def judge_times(part: PartView, verdicts: Verdicts) -> None:
+    """CPU time on one core; the best of several, taken in turns."""
+    view = part.views[0]
+
+    def run(method: Method, *, window: bool) -> Callable[[], object]:
+        pose = view.camera_T_part if window else None
+        return lambda: measure_pair(
+            *view.images, view.head, view.holes, camera_T_part=pose, method=method
+        )
+
+    jobs = {
+        "window": run("default", window=True),
+        "whole image": run("default", window=False),
+        "paper": run("paper", window=False),
+    }
+    best = dict.fromkeys(jobs, float("inf"))
+    for _ in range(15):
+        for name, job in jobs.items():
+            started = time.process_time()
+            job()
+            best[name] = min(best[name], (time.process_time() - started) * 1e3)
+    verdicts.add("three holes of a pair in known windows", best["window"], 40.0, "ms")
+    verdicts.add("whole-image search of a pair", best["whole image"], 400.0, "ms")
+    verdicts.add("windows over the paper's steps", best["window"] / best["paper"], 1.0)
+    verdicts.note("paper's steps", f"{best['paper']:.1f} ms")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--plates", type=int, default=30)
+    parser.add_argument("--exposures", type=int, default=10)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    cv2.setNumThreads(1)
+    table = Table("figure", "measured", "target", "reached")
+    verdicts = Verdicts(table)
+    clean = api.RenderOptions.clean(noise_grey=2.0)
+    judge_clean(both("deck", clean, arguments, CLEAN_GREY), verdicts)
+    for kind in ("deck", "frame"):
+        machined = both(kind, api.RenderOptions(), arguments, MACHINED_GREY)
+        judge_machined(f"machined {kind}", machined, verdicts)
+    judge_times(next(parts("deck", clean, 1, 1)), verdicts)
+    Console(width=110).print(table)
+    return 1 if verdicts.missed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

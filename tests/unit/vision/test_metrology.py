@@ -1,0 +1,55 @@
+"""A quick part of ``make bench-metrology``: rendered holes with exact truth, both heads."""
+
+import statistics
+
+import numpy as np
+import pytest
+
+from benchmarks.metrology import CLEAN_GREY, MACHINED_GREY, Run, measure
+from benchmarks.metrology_figures import band
+from benchmarks.metrology_scenes import parts
+from fakes.render import api
+
+
+@pytest.fixture(scope="module")
+def clean() -> Run:
+    run = Run()
+    for part in parts("deck", api.RenderOptions.clean(noise_grey=2.0), 2, 10, seed=7):
+        measure(run, part, "default", CLEAN_GREY)
+    return run
+
+
+@pytest.fixture(scope="module")
+def machined() -> Run:
+    run = Run()
+    for part in parts("deck", api.RenderOptions(), 2, 2, seed=7):
+        measure(run, part, "default", MACHINED_GREY)
+    return run
+
+
+def test_clean_holes_are_measured_near_the_physical_limit(clean: Run) -> None:
+    assert not clean.failures
+    for errors in clean.holes.values():
+        # 80 and 160 image points: the median scatters by less than 9 % and 6 %.
+        assert errors.median_ratio() < 1.5
+        assert errors.worst_px() < 6.0 * max(errors.bounds_px)
+
+
+def test_stated_uncertainties_of_clean_holes_are_honest(clean: Run) -> None:
+    squared = [value for errors in clean.holes.values() for value in errors.squared_2d]
+    low, high = band(2, len(squared))
+    margin = 0.5 * (high - low)
+    assert low - margin < statistics.fmean(squared) < high + margin
+
+
+def test_the_six_hole_pose_of_clean_holes(clean: Run) -> None:
+    assert clean.poses.rotation_deg().max() < 0.0025
+    assert clean.poses.position_um().max() < 5.0
+
+
+def test_machined_holes_with_walls_and_countersinks(machined: Run) -> None:
+    assert not machined.failures
+    for errors in machined.holes.values():
+        assert errors.worst_px() < 0.12
+        assert np.median(errors.norms_px) < 0.035
+        assert abs(errors.depth_bias_um()) < 25.0
