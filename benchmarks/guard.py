@@ -139,8 +139,8 @@ def verdicts(rows: list[Row]) -> list[tuple[str, bool | None]]:
 def table(rows: list[Row]) -> str:
     """For the terminal."""
     head = (
-        f"{'load':8}{'design':8}{'samples':>8} │{'clean p50':>10}{'p99':>8}{'p99.9':>8}{'max':>8} │"
-        f"{'raw p99.9':>10}{'max':>8} │{'stalled':>8}{'worst':>9}"
+        f"{'load':8}{'design':8}{'samples':>8} │{'clean p50':>10}{'p99':>10}{'p99.9':>10}{'max':>9} │"
+        f"{'raw p99.9':>10}{'max':>9} │{'stalled':>8}{'worst':>9}"
     )
     lines = [head, "─" * len(head)]
     for row in rows:
@@ -148,8 +148,8 @@ def table(rows: list[Row]) -> str:
         note = f"  {row.unanswered} unanswered" if row.unanswered else ""
         note += f"  degraded: {row.degraded}" if row.degraded else ""
         lines.append(
-            f"{row.load:8}{row.design:8}{row.samples:8d} │{p50:10.3f}{p99:8.3f}{p999:8.3f}"
-            f"{most:8.2f} │{row.raw_ms[2]:10.3f}{row.raw_ms[3]:8.2f} │{row.stalled:8.2%}"
+            f"{row.load:8}{row.design:8}{row.samples:8d} │{p50:10.3f}{p99:10.3f}{p999:10.3f}"
+            f"{most:9.2f} │{row.raw_ms[2]:10.3f}{row.raw_ms[3]:9.2f} │{row.stalled:8.2%}"
             f"{row.worst_stall_ms:6.1f} ms{note}"
         )
     return "\n".join(lines)

@@ -142,7 +142,7 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
         lambda reader, writer: robot.set_result((reader, writer)), "127.0.0.1", guard_port
     )
     reader, writer = await asyncio.wait_for(robot, 20)
-    await reader.readline()
+    await asyncio.wait_for(reader.readline(), 5)
     writer.write(sjl.accept_hello(SESSION))
     monitor = Monitor((1, 0, 0, 0, 1, 0, 0, 0, 1), has_channel=True)
     monitor.channel_up = True

@@ -18,6 +18,7 @@ from fakes.wire.sri_session import SriSession
 
 FORCE_N = 30.0
 PRIORITY = 90
+_HELLO = "HELLO,SJL,1,GRD,SR500A,1.0,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"
 _POSE = "1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000"
 _JOINTS = "0.00000,-45.00000,90.00000,0.00000,45.00000,0.00000"
 
@@ -58,8 +59,7 @@ def box(pipe: Connection) -> None:
 
 def robot(pipe: Connection, port: int) -> None:
     """Connect as the job program on GRD; the stamps of the stop requests."""
-    link = _connected(port)
-    link.sendall(_line("HELLO,SJL,1,GRD,SR500A,1.0,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"))
+    link = _greeted(port)
     settle(PRIORITY, None, lock_memory=True)
     stamps: list[float] = []
     tail, count, report_s = b"", 0, time.monotonic()
@@ -85,18 +85,22 @@ def robot(pipe: Connection, port: int) -> None:
     pipe.send(np.array(stamps))
 
 
-def _connected(port: int) -> socket.socket:
+def _greeted(port: int) -> socket.socket:
+    """Try until the design under test listens and has said yes; a stranger may hold the port."""
     give_up_s = time.monotonic() + 20.0
-    while True:
+    while time.monotonic() < give_up_s:
+        link = socket.socket()
+        link.settimeout(2.0)
         try:
-            link = socket.create_connection(("127.0.0.1", port), timeout=5.0)
-        except ConnectionRefusedError:
-            if time.monotonic() > give_up_s:
-                raise
+            link.connect(("127.0.0.1", port))
+            link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            link.sendall(_line(_HELLO))
+            if link.recv(256).startswith(b"OK,HELLO"):
+                return link
+        except (ConnectionError, TimeoutError):
             select.select([], [], [], 0.02)
-            continue
-        link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return link
+        link.close()
+    raise TimeoutError(f"nobody on port {port} speaks SJL")
 
 
 def _line(body: str) -> bytes:
