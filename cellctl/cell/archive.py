@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
+from cellctl.errors.records import RecordNotWritten
 from cellctl.records.store import RunStore
 
 P = ParamSpec("P")
@@ -16,15 +17,33 @@ class Archive:
     """Awaitable access to the run store; faults of the store come back unchanged."""
 
     def __init__(self, path: Path) -> None:
+        """Open the store; raises ``StoreUnavailable``."""
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="archive")
-        self._store: RunStore = self._thread.submit(RunStore, path).result()
+        try:
+            self._store: RunStore = self._thread.submit(RunStore, path).result()
+        except BaseException:
+            self._thread.shutdown()
+            raise
+        self.fault: RecordNotWritten | None = None
+        """The first write that did not reach the disk; the store takes no run after it."""
 
     async def do(
         self, call: Callable[Concatenate[RunStore, P], R], *args: P.args, **kwargs: P.kwargs
     ) -> R:
-        """Call a method of the store: ``await archive.do(RunStore.add_alarm, …)``."""
+        """Call a method of the store: ``await archive.do(RunStore.add_alarm, …)``.
+
+        Once begun it is carried out: cancelling the caller does not take back the write.
+        """
+
+        def work() -> R:
+            try:
+                return call(self._store, *args, **kwargs)
+            except RecordNotWritten as error:
+                self.fault = self.fault or error
+                raise
+
         loop = asyncio.get_running_loop()
-        return await loop.run_in_executor(self._thread, lambda: call(self._store, *args, **kwargs))
+        return await asyncio.shield(loop.run_in_executor(self._thread, work))
 
     def close(self) -> None:
         """Finish pending writes and close the store."""

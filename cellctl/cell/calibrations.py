@@ -21,7 +21,11 @@ from cellctl.calibration.files import (
 from cellctl.calibration.stereo_result import StereoResult
 from cellctl.clock import utc_now
 from cellctl.errors import CellError
-from cellctl.errors.calibration import CalibrationExpired, CalibrationRecordInvalid
+from cellctl.errors.calibration import (
+    CalibrationExpired,
+    CalibrationMissing,
+    CalibrationRecordInvalid,
+)
 from cellctl.force.compensation import Compensation
 from cellctl.force.payload_result import compensation_from_document
 from cellctl.geometry.uncertain import UncertainPose
@@ -31,6 +35,8 @@ PAYLOAD = "payload"
 ALL_KINDS = (*KINDS, PAYLOAD)
 SHOWN = (("head_1", "head_2"), ("base_frame",), ("board_transfer",), (PAYLOAD,))
 """Groups whose remaining validity the line sees."""
+Stamp = tuple[tuple[int, int], ...]
+"""Time of change and size of every file: a file that changes, goes or comes back changes it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +47,16 @@ class Calibrations:
     compensation: Compensation
     ids: Mapping[str, str]
     """Identity of every record by kind."""
+    serial_numbers: Mapping[str, str]
+    """Of the instrument behind every record, by kind."""
+
+    def require_instrument(self, kind: str, serial_number: str) -> None:
+        """Raise ``CalibrationRecordInvalid`` when another instrument is connected."""
+        made_for = self.serial_numbers[kind]
+        if serial_number != made_for:
+            raise CalibrationRecordInvalid(
+                f"{kind} was made for {made_for!r}, connected is {serial_number!r}"
+            )
 
 
 @dataclass(slots=True)
@@ -50,20 +66,24 @@ class CalibrationFolder:
     path: Path
     placements: dict[str, BoardPlacement] = field(default_factory=dict)
     """Target board before head_1 and head_2, waiting for both to be there."""
-    _seen: tuple[float, tuple[float, ...]] | None = None
+    _seen: tuple[Stamp, dict[str, float]] | None = None
 
     def read(self, planned: timedelta) -> Calibrations:
         """All calibrations; raises when one is missing, damaged or expires within ``planned``."""
         until = utc_now() + planned
         geometry = read_calibration_set(self.path, now=until)
         payload = read_calibration(self.path, PAYLOAD)
+        if not payload.record.get("accepted"):
+            raise CalibrationMissing(f"not accepted: {PAYLOAD}")
         if payload.valid_until <= until:
             raise CalibrationExpired(f"{PAYLOAD} ({payload.valid_until:%Y-%m-%d})")
         try:
             compensation = compensation_from_document(dict(payload.record))
         except (KeyError, TypeError, ValueError) as error:
             raise CalibrationRecordInvalid(f"{PAYLOAD}: {error!r}") from error
-        return Calibrations(geometry, compensation, {**geometry.ids, PAYLOAD: payload.id})
+        serial_numbers = {stored.kind: stored.serial_number for stored in self.stored()}
+        ids = {**geometry.ids, PAYLOAD: payload.id}
+        return Calibrations(geometry, compensation, ids, serial_numbers)
 
     def head(self, name: str) -> StereoHead:
         """One stereo head, for procedures that need it before the set is complete."""
@@ -76,17 +96,38 @@ class CalibrationFolder:
         ).c_T_base
 
     def store(
-        self, kind: str, record: Mapping[str, Any], serial_number: str, valid_for: timedelta
+        self,
+        kind: str,
+        record: Mapping[str, Any],
+        serial_number: str,
+        valid_for: timedelta,
+        picture_png: bytes | None = None,
     ) -> StoredCalibration:
-        """Put a record that passed into the folder, in place of the one before."""
+        """Put a record that passed into the folder, in place of the one before.
+
+        A head that is calibrated anew makes its placement of the target board worthless.
+        """
         now = utc_now()
         plain = json.loads(json.dumps(record))  # as it will be read back
         stored = StoredCalibration(
             kind, plain, now, now + valid_for, f"cellctl {__version__}", serial_number
         )
         write_stored(self.path, stored)
+        if picture_png is not None:
+            (self.path / f"{kind}.png").write_bytes(picture_png)
+        self.placements.pop(kind, None)
         self._seen = None
         return stored
+
+    def put_aside(self, kind: str, record: Mapping[str, Any], picture_png: bytes | None) -> Path:
+        """Keep a result that did not pass where nothing reads it; the folder."""
+        folder = self.path / "rejected"
+        folder.mkdir(parents=True, exist_ok=True)
+        text = json.dumps(record, indent=1) + "\n"
+        (folder / f"{kind}.json").write_text(text, encoding="utf-8")
+        if picture_png is not None:
+            (folder / f"{kind}.png").write_bytes(picture_png)
+        return folder
 
     def stored(self) -> list[StoredCalibration]:
         """Every record in its envelope; raises when one is missing or damaged."""
@@ -105,21 +146,23 @@ class CalibrationFolder:
 
         Reads the files again only when one of them has changed.
         """
-        stamp = max((path.stat().st_mtime for path in self.path.glob("*.json")), default=0.0)
+        stamp = self._stamp()
         now = utc_now()
         if self._seen is None or self._seen[0] != stamp:
-            ends = tuple(self._end(kind) for kind in ALL_KINDS)
-            self._seen = stamp, ends
-        ends_s = dict(zip(ALL_KINDS, self._seen[1], strict=True))
+            self._seen = stamp, {kind: self._end(kind) for kind in ALL_KINDS}
+        ends_s = self._seen[1]
         hours = [
             max(0.0, (min(ends_s[kind] for kind in group) - now.timestamp()) / 3600)
             for group in SHOWN
         ]
         return hours[0], hours[1], hours[2], hours[3]
 
-    def all_valid(self) -> bool:
-        """True when every calibration has time left."""
-        return min(self.validity_h()) > 0
+    def all_valid(self, planned: timedelta = timedelta(0)) -> bool:
+        """True when every calibration stays valid for longer than ``planned``."""
+        return min(self.validity_h()) > planned.total_seconds() / 3600
+
+    def _stamp(self) -> Stamp:
+        return tuple(_changed(self.path / f"{kind}.json") for kind in ALL_KINDS)
 
     def _end(self, kind: str) -> float:
         try:
@@ -127,3 +170,11 @@ class CalibrationFolder:
         except CellError:
             return 0.0  # not valid is what the line is told; production raises the fault itself
         return stored.valid_until.timestamp() if stored.passed or kind == PAYLOAD else 0.0
+
+
+def _changed(path: Path) -> tuple[int, int]:
+    try:
+        status = path.stat()
+    except OSError:
+        return 0, 0
+    return status.st_mtime_ns, status.st_size

@@ -5,8 +5,11 @@ from collections.abc import Awaitable, Callable
 from functools import partial
 from pathlib import Path
 
+from scipy.spatial.transform import RigidTransform
+
 from cellctl import log, plugins
 from cellctl.cell.head_station import HeadStation
+from cellctl.cell.together import together
 from cellctl.config import CellConfig
 from cellctl.config.devices import Device
 from cellctl.errors import CellError
@@ -49,6 +52,8 @@ class Cell:
             ),
         )
         self.workers = VisionWorkers()
+        self.base_T_frame: RigidTransform | None = None
+        """The frame as measured last: only for leaving the station straight."""
 
     @property
     def heads(self) -> tuple[HeadStation, HeadStation]:
@@ -97,18 +102,28 @@ class Cell:
                 _log.warning("while disconnecting", error=str(result))
 
     async def stop_motion(self) -> None:
-        """Stop and latch all robots at once; raises the first fault after trying all."""
+        """Stop and latch all robots at once, then let the guard watch no more force limits.
+
+        Raises the first fault after trying all; a guard that does not answer is only logged, its
+        own supervision reports it.
+        """
         results = await asyncio.gather(
             *(robot.stop() for robot in self.robots), return_exceptions=True
         )
+        try:
+            await self.guard.disarm()
+        except CellError as error:
+            _log.warning("guard not disarmed", fault=str(error))
         failures = [result for result in results if isinstance(result, BaseException)]
+        for second in failures[1:]:
+            failures[0].add_note(f"beside it: {second}")
         if failures:
             raise failures[0]
 
     async def rearm(self) -> None:
         """Release the stop latches of guard and robots; moves nothing."""
         await self.guard.acknowledge()
-        await asyncio.gather(*(robot.rearm() for robot in self.robots))
+        await together(*(robot.rearm() for robot in self.robots))
 
 
 def _build(group: str, name: str, device: Device):  # type: ignore[no-untyped-def]

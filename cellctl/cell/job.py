@@ -1,13 +1,26 @@
 """One run of the cell, from Starting to Completing: an assembly or a calibration procedure."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Awaitable, Callable
+from typing import Protocol
 
 from cellctl.errors import CellError
 from cellctl.records.entries import RunResult
 
-SafePoint = Callable[[], Awaitable[bool]]
-"""Obeys a pending Hold; True when the cell was held in between, so that it must measure again."""
+
+class SafePoint(Protocol):
+    """Where a run may pause."""
+
+    async def __call__(self, *, hold: bool = False) -> bool:
+        """Obey a pending Hold; with ``hold`` ask for one first.
+
+        True when the cell was held in between: nobody knows what has moved meanwhile, so whatever
+        was measured before counts no longer.
+        """
+        ...
+
+
+class HeldMeanwhile(Exception):
+    """Measured values are no longer to be trusted after a Hold; never leaves a job."""
 
 
 class Job(ABC):
@@ -18,6 +31,11 @@ class Job(ABC):
     serial: str
     run_number: int = 0
 
+    @property
+    def outcome(self) -> RunResult:
+        """What a run is that came to its end without a fault."""
+        return RunResult.GOOD
+
     @abstractmethod
     async def start(self) -> None:
         """Starting: open the run record, then bring robots to where the run begins."""
@@ -27,5 +45,5 @@ class Job(ABC):
         """Execute: do the work; a fault leaves as an exception."""
 
     @abstractmethod
-    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
-        """Completing, Stopping or Aborting: close the run record."""
+    async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
+        """Completing, Stopping or Aborting: close the run record; the outcome that it states."""

@@ -1,6 +1,5 @@
 """Measure a part with both heads: grab, find holes, average, fit, until it is certain enough."""
 
-import asyncio
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -10,11 +9,12 @@ from scipy.spatial.transform import RigidTransform
 from cellctl import log
 from cellctl.cell.devices import Cell
 from cellctl.cell.head_station import HeadStation
+from cellctl.cell.together import together
 from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import UncertaintyTooLarge
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.interfaces import StereoPair
+from cellctl.interfaces import Robot, StereoPair
 from cellctl.vision.average import average
 from cellctl.vision.features import FeatureFile, Hole
 from cellctl.vision.measure import measure_pair
@@ -26,7 +26,7 @@ _log = log.get(__name__)
 
 MOVED_M = 0.05 * MM
 MOVED_RAD = np.radians(0.005)
-"""A measuring robot whose encoders changed by more has moved since the reference was taken."""
+"""A robot whose encoders changed by more has moved since the reference was taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,18 +97,19 @@ class PartMeasurer:
         """Measure a part near a predicted pose.
 
         Takes ``frames`` pairs, then more until every standard deviation is below the wanted one;
-        raises ``UncertaintyTooLarge`` after ``max_frames``, ``HeadMoved`` when a head moved, and
-        the faults of ``cellctl.vision`` when holes are missing or do not fit.
+        raises ``UncertaintyTooLarge`` after ``max_frames``, ``HeadMoved`` when a head or the main
+        robot moved while the pictures were taken, and the faults of ``cellctl.vision`` when holes
+        are missing or do not fit.
         """
         predictions = self._geometry.camera_T_part(c1_T_part)
+        base_T_flange = self._cell.main.state().base_T_flange
         taken: list[tuple[PairMeasurement, PairMeasurement]] = []
         while True:
-            self._check_heads()
-            base_T_flange = self._cell.main.state().base_T_flange
-            wanted = frames if not taken else min(len(taken), max_frames - len(taken))
+            wanted = min(len(taken) or frames, max_frames - len(taken))
             for _ in range(wanted):
                 pairs, found = await self._one_frame(features, predictions)
                 taken.append(found)
+            self._check_standstill(base_T_flange)
             measurement = self._combine(features, taken, pairs, base_T_flange)
             if (measurement.sigma_mm_deg <= wanted_sigma_mm_deg).all():
                 return measurement
@@ -122,7 +123,7 @@ class PartMeasurer:
         stations = self._cell.heads
         models = (self._geometry.head_1, self._geometry.head_2)
         holes = (features.seen_by(1), features.seen_by(2))
-        results = await asyncio.gather(
+        results = await together(
             *(
                 self._grab_and_find(station, model, hole, prediction)
                 for station, model, hole, prediction in zip(
@@ -162,11 +163,17 @@ class PartMeasurer:
         pose = part_pose(*heads, self._geometry.c1_T_c2, features.holes, self._method)
         return PartMeasurement(pose, heads, pairs, len(taken), base_T_flange)
 
-    def _check_heads(self) -> None:
+    def _check_standstill(self, base_T_flange: RigidTransform) -> None:
         for head, reference in zip(self._cell.heads, self._reference, strict=True):
-            distance_m, angle_rad = head.robot.state().distance_to(reference)
-            if distance_m > MOVED_M or angle_rad > MOVED_RAD:
-                raise HeadMoved(f"{head.name} by {distance_m / MM:.3f} mm")
+            require_unmoved(head.name, head.robot, reference)
+        require_unmoved("the main robot", self._cell.main, base_T_flange)
+
+
+def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
+    """Raise ``HeadMoved`` when a robot is not where it was."""
+    distance_m, angle_rad = robot.state().distance_to(base_T_flange)
+    if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):
+        raise HeadMoved(f"{name} by {distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°")
 
 
 def _sigma_text(measurement: PartMeasurement, wanted: Array) -> str:

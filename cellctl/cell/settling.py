@@ -4,8 +4,7 @@ import asyncio
 
 import numpy as np
 
-from cellctl.clock import now_s
-from cellctl.errors.force import NotSettled
+from cellctl.errors.force import NotSettled, SensorFrozen
 from cellctl.geometry.pose import Array
 from cellctl.guard.client import GuardClient
 
@@ -20,23 +19,34 @@ POLL_S = 0.05
 
 
 async def settle(guard: GuardClient) -> None:
-    """Return once the raw wrench is steady; raises ``NotSettled`` after a time-out."""
-    begin_s = now_s()
+    """Return once the raw wrench is steady.
+
+    Raises ``NotSettled`` after a time-out, also when samples stay away, and ``SensorFrozen`` when
+    they are all the same: a live sensor is never that still.
+    """
+    loop = asyncio.get_running_loop()  # its clock is the one that stamps samples
+    begin_s = loop.time()
     scatter = np.full(6, np.inf)
-    while now_s() - begin_s < TIMEOUT_S:
+    while loop.time() - begin_s < TIMEOUT_S:
         await asyncio.sleep(POLL_S)
-        since_s = now_s() - WINDOW_S
+        since_s = loop.time() - WINDOW_S
         if since_s < begin_s:
             continue
-        scatter = block_scatter(guard.samples(since_s).raw)
+        raw = guard.samples(since_s).raw
+        scatter = block_scatter(raw)
         if (scatter < STILL).all():
+            if not np.ptp(raw, axis=0).any():
+                raise SensorFrozen(f"{len(raw)} samples in a row are equal in all six channels")
             return
     shown = ", ".join(f"{value:.2f}" for value in scatter)
     raise NotSettled(f"readings still scatter by ({shown}) N, N·m after {TIMEOUT_S:g} s")
 
 
 def block_scatter(raw: Array) -> Array:
-    """Standard deviation of block means, shape (6,), of raw wrenches, shape (n, 6)."""
+    """Standard deviation of block means, shape (6,), of raw wrenches, shape (n, 6).
+
+    Infinite when there are too few samples to say.
+    """
     blocks = len(raw) // BLOCK
     if blocks < 2:
         return np.full(6, np.inf)

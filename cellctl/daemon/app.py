@@ -6,32 +6,35 @@ import signal
 import sys
 from collections.abc import Coroutine
 from contextlib import AsyncExitStack
+from functools import partial
 from pathlib import Path
+from types import TracebackType
 from typing import Any
 
 from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.devices import Cell
 from cellctl.config import CellConfig, load_cell
+from cellctl.daemon.line import Line
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.unit import Unit
-from cellctl.errors.internal import StateDidNotEnd
-from cellctl.packml.command import Command
-from cellctl.packml.state import State
+from cellctl.errors import CellError
+from cellctl.errors.internal import Unexpected
 from cellctl.plc.port import PlcPort
+from cellctl.records.store import RunStore
 
 _log = log.get(__name__)
 
-ABORT_TIMEOUT_S = 20.0
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
     """Run one cell until a signal; returns the exit code.
 
-    Raises the numbered fault when the cell cannot be started. However it ends, motion is
-    stopped, an open run is closed as aborted and no child process is left.
+    Raises the numbered fault when the cell cannot be started, or when a part of the daemon dies.
+    However it ends, motion is stopped, an open run is closed as aborted and no child process is
+    left.
     """
     config = _with_port(load_cell(cell_file), modbus_port)
     stop = asyncio.Event()
@@ -46,38 +49,53 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         loop.add_signal_handler(signal.SIGHUP, stop.set)
         stack.callback(cell.workers.close)
         unit = Unit(cell, archive)
-        previous_seq = await unit.open()
-        port = PlcPort(config.plc, unit.take, unit.line_lost, previous_seq=previous_seq)
-        unit.attach(port)
+        stack.push_async_callback(unit.background.drain)
+        await unit.open()
+        line = Line(unit, archive)
+        previous_seq = await archive.do(RunStore.line_seq)
+        port = PlcPort(config.plc, line.take, unit.line_lost, previous_seq=previous_seq)
+        line.attach(port)
         stack.push_async_callback(port.stop)
         await port.start()  # first of all: a second daemon must not take over the robots
         stack.push_async_callback(cell.disconnect)
         if not await _connect(cell, stop):
             return 0
-        stack.push_async_callback(_abort, unit)
+        stack.push_async_exit(partial(_end, unit))
+        unit.live = True
         _ready(config, port)
-        await _until_told(stop, supervise(cell, unit, port))
+        await until_told(stop, supervise(cell, unit, line, port))
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")
     return 0
 
 
-async def _until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
-    """Wait for the signal; raises the fault when a part of the daemon itself dies before."""
+async def until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
+    """Wait for the signal; raises a numbered fault when a part of the daemon itself dies before."""
     try:
         async with asyncio.TaskGroup() as tasks:
             watcher = tasks.create_task(work)
             await stop.wait()
             watcher.cancel()
     except BaseExceptionGroup as group:
-        raise _first(group) from group
+        raise _numbered(group) from group
 
 
-def _first(error: BaseException) -> BaseException:
+def _numbered(error: BaseException) -> CellError:
     while isinstance(error, BaseExceptionGroup):
         error = error.exceptions[0]
-    return error
+    if isinstance(error, CellError):
+        return error
+    return Unexpected(f"{type(error).__name__} in the daemon: {error}")
+
+
+async def _end(
+    unit: Unit,
+    _kind: type[BaseException] | None,
+    error: BaseException | None,
+    _traceback: TracebackType | None,
+) -> None:
+    await unit.close(error if isinstance(error, CellError) else None)
 
 
 async def _connect(cell: Cell, stop: asyncio.Event) -> bool:
@@ -92,19 +110,6 @@ async def _connect(cell: Cell, stop: asyncio.Event) -> bool:
         return False
     connecting.result()
     return True
-
-
-async def _abort(unit: Unit) -> None:
-    """Stop motion and close the run, whatever the unit is doing."""
-    machine = unit.machine
-    if machine.state not in (State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED):
-        await machine.command(Command.ABORT)
-        try:
-            await machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
-        except TimeoutError:
-            late = StateDidNotEnd(f"{machine.state.name} lasts more than {ABORT_TIMEOUT_S:g} s")
-            _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
-    await machine.close()
 
 
 def _ready(config: CellConfig, port: PlcPort) -> None:

@@ -1,11 +1,15 @@
 """What Start asks for: judged before it is taken, turned into a job when the unit starts."""
 
+import asyncio
+
 from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import Job
 from cellctl.cell.progress import ProgressBoard
+from cellctl.cell.readiness import require_ready
+from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
@@ -26,13 +30,14 @@ class OrderDesk:
         self._order: tuple[Mode, LineCommand] | None = None
         self.calibrations = CalibrationFolder(cell.folder / cell.config.calibration_dir)
 
-    def judge(self, command: LineCommand, mode: Mode) -> RejectCode:
-        """Why Start is refused; remembers the order when it is not."""
-        code = RejectCode.NONE
-        if mode is Mode.PRODUCTION:
-            code = self._judge_production(command)
-        elif not is_procedure(command.recipe_id):
-            code = RejectCode.RECIPE_UNKNOWN
+    async def judge(self, command: LineCommand, mode: Mode) -> RejectCode:
+        """Why Start is refused in Idle; remembers the order when it is not.
+
+        The state machine itself refuses modes without Start, in other states the whole command.
+        """
+        code = await self._judge_order(command, mode)
+        if code is RejectCode.NONE:
+            code = self._judge_cell()
         if code is RejectCode.NONE:
             self._order = mode, command
         return code
@@ -56,11 +61,32 @@ class OrderDesk:
             )
         return Maintenance(self._cell, self._archive, self._board, self.calibrations, command)
 
-    def _judge_production(self, command: LineCommand) -> RejectCode:
-        if self._cell.config.recipe(command.recipe_id) is None:
-            return RejectCode.RECIPE_UNKNOWN
-        fault = self.calibrations.fault(PLANNED)
-        if fault is not None:
-            _log.warning("Start refused", number=fault.number, fault=str(fault))
-            return RejectCode.CALIBRATION_INVALID
+    async def _judge_order(self, command: LineCommand, mode: Mode) -> RejectCode:
+        if mode is Mode.PRODUCTION:
+            if self._cell.config.recipe(command.recipe_id) is None:
+                return RejectCode.RECIPE_UNKNOWN
+            fault = await asyncio.to_thread(self.calibrations.fault, PLANNED)
+            return _refused(RejectCode.CALIBRATION_INVALID, fault)
+        if mode is Mode.MAINTENANCE:
+            if not is_procedure(command.recipe_id):
+                return RejectCode.RECIPE_UNKNOWN
+            if command.options:
+                return RejectCode.OPTIONS_UNKNOWN  # a procedure is neither dry nor in steps
         return RejectCode.NONE
+
+    def _judge_cell(self) -> RejectCode:
+        if self._archive.fault is not None:
+            return _refused(RejectCode.RECORDS_NOT_READY, self._archive.fault)
+        try:
+            require_ready(self._cell.robots)
+            self._cell.guard.check()
+        except CellError as error:
+            return _refused(RejectCode.DEVICE_NOT_READY, error)
+        return RejectCode.NONE
+
+
+def _refused(code: RejectCode, fault: CellError | None) -> RejectCode:
+    if fault is None:
+        return RejectCode.NONE
+    _log.warning("Start refused", number=fault.number, fault=str(fault))
+    return code

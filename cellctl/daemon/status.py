@@ -1,9 +1,10 @@
 """The snapshot that the line sees."""
 
+from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import Job
 from cellctl.cell.progress import ProgressBoard
-from cellctl.daemon.orders import OrderDesk
+from cellctl.daemon.alarms import Alarms
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
 from cellctl.packml.machine import PackMLMachine
@@ -11,50 +12,64 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.state import State
 from cellctl.plc.result import Result
 from cellctl.plc.status import NO_VALUE, CellStatus
+from cellctl.steps.assembly import PLANNED
 
 
 class StatusView:
-    """Reads devices, machine and progress; changes nothing."""
+    """Reads devices, machine and progress; changes nothing and does not raise."""
 
     def __init__(
-        self, cell: Cell, machine: PackMLMachine, board: ProgressBoard, desk: OrderDesk
+        self,
+        cell: Cell,
+        machine: PackMLMachine,
+        board: ProgressBoard,
+        calibrations: CalibrationFolder,
+        alarms: Alarms,
     ) -> None:
         self._cell = cell
         self._machine = machine
         self._board = board
-        self._desk = desk
+        self._calibrations = calibrations
+        self._alarms = alarms
 
-    def snapshot(self, job: Job | None, result: Result) -> CellStatus:
+    def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
         """Everything at this moment; ``job`` is the present or the last one."""
         machine, progress = self._machine, self._board.current
-        calibrations = self._desk.calibrations
         faults = machine.faults
+        alarms = tuple(dict.fromkeys((*self._alarms.numbers, *(f.number for f in faults))))
         return CellStatus(
             state=machine.state,
             state_requested=machine.state_requested,
             mode=machine.mode,
             step=progress.step,
             iteration=progress.iteration,
-            ready=machine.state is State.IDLE
-            and (machine.mode is not Mode.PRODUCTION or calibrations.all_valid()),
+            ready=machine.state is State.IDLE and self._may_start(),
             error=bool(faults),
-            calibration_ok=calibrations.all_valid(),
+            warning=bool(alarms) and not faults,
+            calibration_ok=self._calibrations.all_valid(),
             simulation=self._cell.config.simulated,
             manual=self._any_manual(),
             force_guard_tripped=self._cell.guard.trip is not None,
             hold_requested=machine.hold_requested,
-            alarms=tuple(fault.number for fault in faults),
+            alarms=alarms,
             first_out_alarm=faults[0].number if faults else 0,
             recipe_active=job.number if job else 0,
+            cycle_counter=parts,
             run_number=job.run_number if job else 0,
             run_result=result,
-            validity_h=calibrations.validity_h(),
+            validity_h=self._calibrations.validity_h(),
             error_mm_deg=progress.error_mm_deg,
             force_peaks=progress.force_peaks,
             force_z_n=self._force_z_n(),
             force_limit_n=progress.force_limit_n,
             serial=job.serial if job else "",
         )
+
+    def _may_start(self) -> bool:
+        return {
+            Mode.PRODUCTION: self._calibrations.all_valid(PLANNED),
+            Mode.MAINTENANCE: True,
+        }.get(self._machine.mode, False)
 
     def _any_manual(self) -> bool:
         for robot in self._cell.robots:

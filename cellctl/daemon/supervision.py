@@ -1,55 +1,76 @@
 """What the daemon watches all the time: the machine's own life, links, guard, line, systemd."""
 
 import asyncio
+from functools import partial
 
 from cellctl.cell.devices import Cell
-from cellctl.daemon.notify import notify, watchdog_interval_s
+from cellctl.daemon.line import Line
+from cellctl.daemon.notify import Watchdog
 from cellctl.daemon.unit import Unit
 from cellctl.errors import CellError
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.plc.port import PlcPort
 
 PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25
 
 
-async def supervise(cell: Cell, unit: Unit, port: PlcPort) -> None:
+async def supervise(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
+    beat = partial(_beat, port, Watchdog())
     async with asyncio.TaskGroup() as tasks:
-        tasks.create_task(unit.machine.beat_while_alive(lambda: _beat(port)))
+        tasks.create_task(unit.machine.beat_while_alive(beat))
         tasks.create_task(port.failed())
-        tasks.create_task(_publish(unit))
+        tasks.create_task(_publish(line))
         tasks.create_task(_watch_links(cell, unit))
-        tasks.create_task(_watchdog())
 
 
-def _beat(port: PlcPort) -> None:
+def _beat(port: PlcPort, watchdog: Watchdog) -> None:
+    """The machine has taken a turn: it lives, so does the daemon for systemd."""
     port.beat()
+    watchdog.feed()
 
 
-async def _publish(unit: Unit) -> None:
+async def _publish(line: Line) -> None:
     while True:
-        unit.publish()
+        line.publish()
         await asyncio.sleep(PUBLISH_PERIOD_S)
 
 
 async def _watch_links(cell: Cell, unit: Unit) -> None:
-    """Report each broken link once, and again only after it has been whole in between."""
-    broken: set[str] = set()
+    watch = LinkWatch(cell, unit)
     while True:
-        for name, check in cell.health_checks().items():
-            try:
-                check()
-            except CellError as error:
-                if name not in broken:
-                    broken.add(name)
-                    await unit.machine.fail(error)
-            else:
-                broken.discard(name)
+        await watch.look()
         await asyncio.sleep(LINK_PERIOD_S)
 
 
-async def _watchdog() -> None:
-    interval_s = watchdog_interval_s()
-    while interval_s is not None:
-        notify("WATCHDOG=1")
-        await asyncio.sleep(interval_s)
+class LinkWatch:
+    """Reports each broken link once, and again only after it has been whole in between."""
+
+    def __init__(self, cell: Cell, unit: Unit) -> None:
+        self._cell = cell
+        self._unit = unit
+        self._broken: set[str] = set()
+        self._trip: GuardTrip | None = None
+
+    async def look(self) -> None:
+        """Look at every device once; its fault goes to the machine."""
+        for name, check in self._cell.health_checks().items():
+            try:
+                check()
+            except CellError as error:
+                if name not in self._broken:
+                    self._broken.add(name)
+                    await self._unit.machine.fail(error)
+            else:
+                self._broken.discard(name)
+        await self._look_at_trip()
+
+    async def _look_at_trip(self) -> None:
+        """A trip that no step waits for is a fault; the guard's death is one of the above."""
+        trip, known = self._cell.guard.trip, self._trip
+        self._trip = trip
+        if trip is None or trip is known or trip.reason is TripReason.GUARD_DIED:
+            return
+        if not self._unit.expects_trips:
+            await self._unit.machine.fail(trip.fault())

@@ -1,57 +1,48 @@
 """The unit: what the cell does in each PackML state."""
 
 import asyncio
-from collections.abc import Coroutine
-from typing import Any
 
 from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.devices import Cell
-from cellctl.cell.job import Job
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.readiness import require_ready
+from cellctl.cell.step import Step
+from cellctl.daemon.alarms import Alarms
+from cellctl.daemon.background import Background
 from cellctl.daemon.orders import OrderDesk
 from cellctl.daemon.status import StatusView
+from cellctl.daemon.work import Work
 from cellctl.errors import CellError
+from cellctl.errors.internal import StateDidNotEnd
 from cellctl.errors.line import LineLost
-from cellctl.errors.records import RecordsError
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
-from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
-from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.state import State
-from cellctl.plc.commands import LineCommand
-from cellctl.plc.coupling import LineCoupling
-from cellctl.plc.port import PlcPort
-from cellctl.plc.result import Result
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.steps.positions import lift_off
 
 _log = log.get(__name__)
 
-_TO_THE_LINE = {
-    RunResult.GOOD: Result.GOOD,
-    RunResult.STOPPED: Result.STOPPED,
-    RunResult.ABORTED: Result.ABORTED,
-}
+ABORT_TIMEOUT_S = 20.0
+MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
+"""Commands after which a robot may move."""
+_AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 
 
 class Unit:
-    """Joins state machine, devices, records and line. Belongs to one event loop."""
+    """Joins state machine, devices and records. Belongs to one event loop."""
 
     def __init__(self, cell: Cell, archive: Archive) -> None:
         self._cell = cell
         self._archive = archive
-        self._board = ProgressBoard()
-        self._desk = OrderDesk(cell, archive, self._board)
-        self._job: Job | None = None
-        self._last_job: Job | None = None
-        self._reports: set[asyncio.Task[object]] = set()
-        self._port: PlcPort | None = None
-        self._coupling: LineCoupling | None = None
-        self._result = Result.NONE
+        self._work = Work()
+        self.board = ProgressBoard()
+        self.background = Background()
+        self.alarms = Alarms(archive, self.background)
+        self.desk = OrderDesk(cell, archive, self.board)
         self.machine = PackMLMachine(
             {
                 State.RESETTING: self._resetting,
@@ -62,69 +53,59 @@ class Unit:
                 State.ABORTING: self._aborting,
             },
             initial=State.STOPPED,
+            gate=self._gate,
         )
+        self.live = False
+        """True while all devices are connected and the daemon does not end: robots may move."""
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
-        self._view = StatusView(cell, self.machine, self._board, self._desk)
+        self.view = StatusView(cell, self.machine, self.board, self.desk.calibrations, self.alarms)
+        self.parts = 0
+        """Good parts since installation."""
 
-    async def open(self) -> int | None:
-        """Close runs that an earlier process left open, as interrupted.
-
-        Returns the number of the last command that it took from the line.
-        """
+    async def open(self) -> None:
+        """Close runs that an earlier process left open, as interrupted; take over its alarms."""
         interrupted = await self._archive.do(RunStore.mark_interrupted)
         if interrupted:
             _log.warning("an earlier process left runs open", runs=interrupted)
-        return await self._archive.do(RunStore.line_seq)
+        await self.alarms.open()
+        heads = await self._archive.do(RunStore.runs, limit=1_000_000)
+        self.parts = sum(head.result == RunResult.GOOD for head in heads)
 
-    def attach(self, port: PlcPort) -> None:
-        """Give the unit its line; once, before the port starts."""
-        self._port = port
-        self._coupling = LineCoupling(self.machine, port.finish, lambda: self._result)
+    @property
+    def work(self) -> Work:
+        """Present and last job."""
+        return self._work
 
-    async def take(self, command: LineCommand) -> RejectCode:
-        """A command of the line: note its number, judge what Start asks for, then obey.
-
-        Stop and Abort wait for nothing.
-        """
-        assert self._coupling is not None
-        note = self._archive.do(RunStore.note_line_seq, command.seq)
-        if command.ends_motion:
-            self._later(note)
-        else:
-            try:
-                await note
-            except RecordsError as error:
-                self._faulted(error)
-                return RejectCode.RECORDS_NOT_READY
-        code = self._judge(command)
-        return code or await self._coupling.obey(command)
-
-    def _judge(self, command: LineCommand) -> RejectCode:
-        """What speaks against a command before anything of it is obeyed."""
-        if command.ends_motion:
-            return RejectCode.NONE
-        active = {fault.number for fault in self.machine.faults}
-        if command.alarm_ack_id and command.alarm_ack_id not in active:
-            return RejectCode.ALARM_UNKNOWN
-        if command.cntrl_cmd != Command.START:
-            return RejectCode.NONE
-        state, mode = self.machine.state, self.machine.mode
-        if command.unit_mode not in (0, mode):
-            code = judge_mode(state, command.unit_mode)
-            if code is not RejectCode.NONE:
-                return code
-            mode = Mode(command.unit_mode)
-        return judge_command(state, mode, Command.START) or self._desk.judge(command, mode)
+    @property
+    def expects_trips(self) -> bool:
+        """True while a step deals with the trips of the guard itself."""
+        return self.board.current.step is Step.MATE
 
     def line_lost(self) -> None:
         """The line's heartbeat stopped: hold at the next safe point."""
-        self._later(self.machine.fail(LineLost()))
+        self.background.start(self.machine.fail(LineLost()))
 
-    def publish(self) -> None:
-        """Show the line what is going on."""
-        if self._port is not None:
-            self._port.publish(self._view.snapshot(self._job or self._last_job, self._result))
+    async def close(self, fault: CellError | None = None) -> None:
+        """Abort what runs, because of ``fault`` if there is one, and wait for the records.
+
+        Nothing begins to move any more, whatever the line asks for. Gives up after a while: the
+        links are dropped next, and robots without a link stop.
+        """
+        self.live = False
+        try:
+            async with asyncio.timeout(ABORT_TIMEOUT_S):
+                if fault is not None:
+                    await self.machine.fail(fault)
+                if self.machine.state not in _AT_REST:
+                    await self.machine.command(Command.ABORT)
+                    await self.machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+        except TimeoutError:
+            state = self.machine.state.name
+            late = StateDidNotEnd(f"{state} lasts more than {ABORT_TIMEOUT_S:g} s")
+            _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
+        await self.machine.close()
+        await self.background.drain()
 
     async def _resetting(self) -> None:
         await self._cell.rearm()
@@ -132,17 +113,21 @@ class Unit:
         await lift_off(self._cell)
 
     async def _starting(self) -> None:
-        self._result = Result.NONE
-        self._board.reset()
-        self._job = self._desk.job()
-        await self._job.start()
+        self.board.reset()
+        await self._work.start(self.desk.job())
 
     async def _execute(self) -> None:
-        assert self._job is not None
-        await self._job.execute(self.machine.safe_point)
+        await self._work.execute(self._safe_point)
 
     async def _completing(self) -> None:
-        await self._close_job(RunResult.GOOD)
+        """A run that Complete cut short ends like a stopped one, and its part is not good."""
+        outcome = self._work.outcome
+        if outcome is None:
+            await self._halt(RunResult.BAD)
+            return
+        assembled = self._work.run_number is not None and outcome is RunResult.GOOD
+        await self._work.close(outcome, None)
+        self.parts += assembled
 
     async def _stopping(self) -> None:
         await self._halt(RunResult.STOPPED)
@@ -152,40 +137,26 @@ class Unit:
 
     async def _halt(self, outcome: RunResult) -> None:
         """Stop everything that moves, then write down how the run ended, in this order."""
-        try:
-            await self._cell.stop_motion()
-        finally:
-            await self._close_job(outcome)
+        stopping = self._cell.stop_motion()
+        [error] = await asyncio.gather(stopping, return_exceptions=True)
+        await self._work.left()
+        await self._work.close(outcome, self.machine.fault)
+        if error is not None:
+            raise error
 
-    async def _close_job(self, outcome: RunResult) -> None:
-        """Nobody but Completing may call a run good, whether or not there is a fault."""
-        job, self._job = self._job, None
-        if job is not None:
-            self._last_job = job
-            fault = None if outcome is RunResult.GOOD else self.machine.fault
-            with log.bound(run=job.run_number):
-                await job.close(outcome, fault)
-            self._result = _TO_THE_LINE[outcome]
+    async def _safe_point(self, *, hold: bool = False) -> bool:
+        if hold:
+            await self.machine.command(Command.HOLD)
+        return await self.machine.safe_point()
+
+    def _gate(self, _state: State, command: Command) -> RejectCode:
+        refused = command in MAY_MOVE and not self.live
+        return RejectCode.DEVICE_NOT_READY if refused else RejectCode.NONE
 
     def _changed(self, before: State, after: State) -> None:
         if before is not after:
             _log.info("state", state=after.name, was=before.name, mode=self.machine.mode.name)
-        self.publish()
 
     def _faulted(self, error: CellError) -> None:
         _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
-        run_number = self._job.run_number if self._job else None
-        self._later(self._archive.do(RunStore.add_alarm, run_number, error.number, str(error)))
-        self.publish()
-
-    def _later(self, work: Coroutine[Any, Any, object]) -> None:
-        """What nobody waits for; a failure of it is in the log."""
-        task = asyncio.create_task(work)
-        self._reports.add(task)
-        task.add_done_callback(self._reported)
-
-    def _reported(self, task: asyncio.Task[object]) -> None:
-        self._reports.discard(task)
-        error = None if task.cancelled() else task.exception()
-        if error is not None:
-            _log.error("not recorded", fault=str(error))
+        self.alarms.add(error, self._work.run_number)

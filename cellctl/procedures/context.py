@@ -6,7 +6,7 @@ from typing import Any
 
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
-from cellctl.cell.job import SafePoint
+from cellctl.cell.job import HeldMeanwhile, SafePoint
 from cellctl.cell.progress import ProgressBoard
 
 
@@ -20,9 +20,14 @@ class ProcedureContext:
     safe_point: SafePoint
 
     async def progress(self, done: int, total: int, message: str) -> None:
-        """Tell how far it is, and obey a pending Hold."""
+        """Tell how far it is, and obey a pending Hold.
+
+        Raises ``HeldMeanwhile`` when the cell was held: boards, heads and payload may have been
+        touched, so the procedure begins again.
+        """
         self.board.update(iteration=done, message=f"{message} {done} of {total}")
-        await self.safe_point()
+        if await self.safe_point():
+            raise HeldMeanwhile
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,5 +1,6 @@
 """A run in Maintenance mode: one procedure, chosen by its number."""
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from datetime import timedelta
 
@@ -7,7 +8,7 @@ from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
-from cellctl.cell.job import Job, SafePoint
+from cellctl.cell.job import HeldMeanwhile, Job, SafePoint
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.step import Step
 from cellctl.errors import CellError
@@ -66,30 +67,63 @@ class Maintenance(Job):
         self._board.update(step=Step(self.number))
 
     async def execute(self, safe_point: SafePoint) -> None:
-        """Run the procedure; raises ``ResultOutOfLimits`` when its verdict is bad."""
+        """Run the procedure, from its beginning again when a Hold has spoilt its measurements.
+
+        Raises ``ResultOutOfLimits`` when the verdict is bad.
+        """
         context = ProcedureContext(self._cell, self._calibrations, self._board, safe_point)
-        outcome = await PROCEDURES[self.number](context)
+        while True:
+            try:
+                outcome = await PROCEDURES[self.number](context)
+                break
+            except HeldMeanwhile:
+                _log.info("held meanwhile: the procedure begins again")
         if outcome is None:
             _log.info("measured, waiting for its counterpart")
             return
         await self._keep(outcome)
 
-    async def close(self, outcome: RunResult, fault: CellError | None) -> None:  # noqa: ARG002
-        """Procedures keep no run row: their record is the calibration itself."""
+    async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
+        """Procedures keep no run row: their record is the calibration and the audit log."""
+        step = Step(self.number)
         self._board.update(step=Step.NONE)
+        ended = {"procedure": step.label, "outcome": outcome.value, "fault": str(fault or "")}
+        await self._archive.do(RunStore.audit, self._who, "procedure ended", ended)
+        return outcome
+
+    @property
+    def _who(self) -> str:
+        return self._command.order or "line"
 
     async def _keep(self, outcome: ProcedureOutcome) -> None:
-        """Store a result that passed, its picture beside it; a bad one is only logged."""
+        """Store a result that passed; put a bad one aside for whoever looks for the reason."""
         for warning in outcome.warnings:
             _log.warning("calibration", item=outcome.item, warning=warning)
         if not outcome.passed:
-            raise ResultOutOfLimits(f"{outcome.item}: see the checks in the log")
+            folder = await asyncio.to_thread(
+                self._calibrations.put_aside, outcome.item, outcome.record, outcome.picture_png
+            )
+            reasons = "; ".join(_failed_checks(outcome)) or "see the record"
+            raise ResultOutOfLimits(f"{outcome.item}: {reasons}; kept in {folder}")
         days = self._cell.config.procedures.validity_days
-        stored = self._calibrations.store(
-            outcome.item, outcome.record, outcome.serial_number, timedelta(days=days)
+        stored = await asyncio.to_thread(
+            self._calibrations.store,
+            outcome.item,
+            outcome.record,
+            outcome.serial_number,
+            timedelta(days=days),
+            outcome.picture_png,
         )
-        if outcome.picture_png is not None:
-            picture = self._calibrations.path / f"{outcome.item}.png"
-            picture.write_bytes(outcome.picture_png)
         await self._archive.do(RunStore.add_calibration, stored)
+        detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
+        await self._archive.do(RunStore.audit, self._who, "calibration stored", detail)
         _log.info("calibration stored", item=outcome.item, id=stored.id)
+
+
+def _failed_checks(outcome: ProcedureOutcome) -> list[str]:
+    checks = outcome.record.get("checks", ())
+    return [
+        f"{check['name']} {check['value']:.4g}, limit {check['limit']:.4g} {check['unit']}".rstrip()
+        for check in checks
+        if not check["passed"]
+    ]

@@ -1,7 +1,5 @@
 """Procedures 104, 105: the target board before head I, then II (paper fig. 3, eq. 1 to 3)."""
 
-import asyncio
-
 import numpy as np
 
 from cellctl.calibration.board_pose import (
@@ -13,11 +11,11 @@ from cellctl.calibration.board_pose import (
 )
 from cellctl.calibration.board_transfer import (
     BoardPlacement,
-    TransferResult,
     calibrate_board_transfer,
 )
 from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.cell.head_station import HeadStation
+from cellctl.cell.together import together
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.vision.average import average
@@ -34,7 +32,8 @@ SEARCH_RADIUS_M = 35 * MM
 async def measure_board(context: ProcedureContext, station: HeadStation) -> ProcedureOutcome | None:
     """Measure the board with head and large-field head; solve once both heads have seen it.
 
-    Returns None while the other head's turn is still to come.
+    Returns None while the other head's turn is still to come. A placement serves once: what was
+    seen an hour ago, before something else was calibrated, must not meet what is seen now.
     """
     calibrations = context.calibrations
     await station.robot.move_joint(
@@ -43,13 +42,18 @@ async def measure_board(context: ProcedureContext, station: HeadStation) -> Proc
     )
     model = calibrations.head(station.name)
     context.board.update(message=f"{station.name}: target board")
-    in_head, in_large_field = await asyncio.gather(
+    in_head, in_large_field = await together(
         _in_head(context, station, model), _in_large_field(context)
     )
     calibrations.placements[station.name] = BoardPlacement(in_large_field, in_head)
     if len(calibrations.placements) < 2:
         return None
-    result = _solve(context)
+    result = await context.cell.workers.run(
+        calibrate_board_transfer,
+        calibrations.c_T_base(),
+        [calibrations.placements.pop("head_1")],
+        [calibrations.placements.pop("head_2")],
+    )
     return ProcedureOutcome(
         item="board_transfer",
         record=result.to_record(),
@@ -58,12 +62,6 @@ async def measure_board(context: ProcedureContext, station: HeadStation) -> Proc
         picture_png=await context.cell.workers.run(transfer_picture, result),
         serial_number=await context.cell.tracker.serial_number(),
     )
-
-
-def _solve(context: ProcedureContext) -> TransferResult:
-    calibrations = context.calibrations
-    one, two = calibrations.placements["head_1"], calibrations.placements["head_2"]
-    return calibrate_board_transfer(calibrations.c_T_base(), [one], [two])
 
 
 async def _in_head(context: ProcedureContext, station: HeadStation, model: StereoHead) -> BoardPose:

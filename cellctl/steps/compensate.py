@@ -4,6 +4,7 @@ import numpy as np
 
 from cellctl.cell.measuring import PartMeasurement
 from cellctl.geometry.pose import MM
+from cellctl.steps.plausible import require_clearance, require_near
 from cellctl.steps.run import AssemblyRun
 from cellctl.steps.units import in_mm_deg
 from cellctl.vision.compensation import (
@@ -21,7 +22,10 @@ from cellctl.vision.compensation import (
 
 
 async def compensate(run: AssemblyRun) -> None:
-    """Iterate to the thresholds of the recipe, or raise what keeps it from converging."""
+    """Iterate to the thresholds of the recipe, or raise what keeps it from converging.
+
+    Iterations are numbered through the run: a further mating attempt goes on counting.
+    """
     settings = run.recipe.compensation
     limits = CorrectionLimits(
         max_corrections=settings.max_iterations,
@@ -31,12 +35,11 @@ async def compensate(run: AssemblyRun) -> None:
     history: list[Judgement] = []
     while True:
         await run.safe_point()
-        judgement, measurement = await _measure(run, len(history) + 1)
+        iteration = run.journal.iterations + 1
+        judgement, measurement = await _measure(run, iteration)
         history.append(judgement)
         correction = None if judgement.converged else judgement.error
-        await run.journal.iteration(
-            len(history), judgement, run.thresholds, measurement, correction
-        )
+        await run.journal.iteration(iteration, judgement, run.thresholds, measurement, correction)
         if correction is None:
             return
         check_uncertainty(judgement, run.thresholds, measurement.frames)
@@ -53,18 +56,24 @@ async def _measure(run: AssemblyRun, iteration: int) -> tuple[Judgement, PartMea
     predicted = run.base_T_c1.inv() * run.base_T_flange * run.flange_T_deck
     measurement = await run.measure(run.deck_features, predicted)
     run.M_T_D = uncertain_deck_in_frame(run.c1_T_M, measurement.own)
+    run.measured_at = measurement.base_T_flange
     judgement = judge(run.target_M_T_D, run.M_T_D, run.thresholds)
     run.board.update(iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()))
     return judgement, measurement
 
 
 async def _correct(run: AssemblyRun) -> None:
-    """Equations 11 to 15: command the deck anew from what was measured."""
+    """Equations 11 to 15: command the deck anew from what was measured.
+
+    However many corrections add up, the deck stays near its stand-off and away from the frame.
+    """
     assert run.c1_T_M is not None
     assert run.M_T_D is not None
     assert run.flange_T_deck is not None
     rule: CorrectionMethod = "default" if run.recipe.compensation.rule == "compose" else "paper"
     commanded = next_target(run.commanded[-1], run.target_M_T_D, run.M_T_D.pose, rule)
+    require_clearance(run.recipe, run.deck_features, commanded)
+    require_near("commanded deck", run.recipe, run.target_M_T_D, commanded)
     run.commanded.append(commanded)
     run.base_T_flange = flange_target(run.base_T_c1, run.c1_T_M.pose, commanded, run.flange_T_deck)
     await run.move_flange(run.base_T_flange)

@@ -2,7 +2,10 @@
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl import log
+from cellctl.cell.measuring import require_unmoved
 from cellctl.cell.step import Step
+from cellctl.errors import CellError
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.steps.compensate import compensate
 from cellctl.steps.mate import mate_until_seated
@@ -11,10 +14,11 @@ from cellctl.steps.mating.result import MatingProgress
 from cellctl.steps.mating.settings import MatingSettings
 from cellctl.steps.run import AssemblyRun
 
+_log = log.get(__name__)
+
 
 async def mate_deck(run: AssemblyRun) -> None:
     """Mate, measuring and correcting again before each further try after a false seat."""
-    await run.safe_point()
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
 
     async def measured_plan(attempt: int) -> MatingPlan:
@@ -34,15 +38,33 @@ async def mate_deck(run: AssemblyRun) -> None:
         result = await mate_until_seated(
             run.cell.main, run.cell.guard, measured_plan, report, run.recipe.mating.max_tries
         )
-        await run.journal.mating_result(result)
-    finally:
-        run.board.update(force_peaks=run.journal.force_peaks())
-        await run.journal.force_curves()
+    except BaseException as reason:
+        await _keep_curves_of_failure(run, reason)
+        raise
+    await _keep_curves(run)
+    await run.journal.mating_result(result)
+
+
+async def _keep_curves(run: AssemblyRun) -> None:
+    run.board.update(force_peaks=run.journal.force_peaks())
+    await run.journal.force_curves()
+
+
+async def _keep_curves_of_failure(run: AssemblyRun, reason: BaseException) -> None:
+    """The curve belongs to the fault; a disk that fails now must not hide it."""
+    try:
+        await _keep_curves(run)
+    except CellError as second:
+        reason.add_note(f"force curve not kept: {second}")
+        _log.error("force curve not kept", fault=str(second))
 
 
 def _plan(run: AssemblyRun) -> MatingPlan:
+    """From the pose that was measured, which must still be the present one."""
     assert run.flange_T_deck is not None
     assert run.M_T_D is not None
+    assert run.measured_at is not None
+    require_unmoved("the main robot", run.cell.main, run.measured_at)
     recipe = run.recipe
     return plan_mating(
         base_T_flange=run.cell.main.state().base_T_flange,

@@ -10,6 +10,8 @@ async def measure_frame(run: AssemblyRun) -> None:
     base_T_frame = pose_from_xyzabc(run.recipe.base_T_frame)
     predicted = run.base_T_c1.inv() * base_T_frame
     measurement = await run.measure(run.frame_features, predicted)
-    require_near("frame", run.recipe, base_T_frame, run.base_T_c1 * measurement.c1_T_part)
+    measured = run.base_T_c1 * measurement.c1_T_part
+    require_near("frame", run.recipe, base_T_frame, measured)
     run.c1_T_M = measurement.own
+    run.cell.base_T_frame = measured
     await run.journal.measurement("frame", measurement)

@@ -8,7 +8,6 @@ async def pre_assembly(run: AssemblyRun) -> None:
     """First assembly motion, from the two measured poses."""
     assert run.c1_T_M is not None
     assert run.flange_T_deck is not None
-    await run.safe_point()
     commanded = run.target_M_T_D
     run.base_T_flange = flange_target(run.base_T_c1, run.c1_T_M.pose, commanded, run.flange_T_deck)
     run.commanded.append(commanded)

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.calibrations import Calibrations
 from cellctl.cell.devices import Cell
-from cellctl.cell.job import SafePoint
+from cellctl.cell.job import HeldMeanwhile, SafePoint
 from cellctl.cell.measuring import PartMeasurement, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.settling import settle
@@ -35,13 +35,15 @@ class AssemblyRun:
     deck_features: FeatureFile
     board: ProgressBoard
     journal: Journal
-    safe_point: SafePoint
+    pause: SafePoint
     measurer: PartMeasurer
     c1_T_M: UncertainPose | None = None
     """The frame, with the uncertainty of its own measurement."""
     flange_T_deck: RigidTransform | None = None
     M_T_D: UncertainPose | None = None
     """The deck as last measured."""
+    measured_at: RigidTransform | None = None
+    """``base_T_flange`` as reported while ``M_T_D`` was measured."""
     base_T_flange: RigidTransform | None = None
     """Commanded flange pose behind ``M_T_D``."""
     commanded: list[RigidTransform] = field(default_factory=list)
@@ -63,6 +65,15 @@ class AssemblyRun:
         """Head I at its measuring pose."""
         return self.calibrations.geometry.base_T_c1.pose
 
+    async def safe_point(self, *, hold: bool = False) -> None:
+        """Obey a pending Hold, or with ``hold`` ask for one.
+
+        Raises ``HeldMeanwhile`` when the cell was held: frame, deck and heads may have been moved
+        since they were measured, and the deck hides the frame, so the run begins again.
+        """
+        if await self.pause(hold=hold):
+            raise HeldMeanwhile
+
     async def measure(self, features: FeatureFile, c1_T_part: RigidTransform) -> PartMeasurement:
         """Measure a part near a predicted pose, as certainly as the loop needs it."""
         settings, thresholds = self.recipe.compensation, self.thresholds
@@ -76,7 +87,7 @@ class AssemblyRun:
         )
 
     async def move_flange(self, base_T_flange: RigidTransform) -> None:
-        """Straight move of the main robot, until the deck is still."""
+        """Straight move of the main robot, until the deck is still; raises ``NotSettled``."""
         main = self.cell.config.robots.main
         await self.cell.main.move_linear(
             base_T_flange,

@@ -10,7 +10,10 @@ from cellctl.vision.compensation import assembly_error, deck_in_frame
 
 
 async def verify(run: AssemblyRun) -> None:
-    """Measure the deck where it sits; raises ``SeatedOffPosition`` beyond the recipe's limit."""
+    """Measure the deck where it sits; raises ``SeatedOffPosition`` beyond the recipe's limit.
+
+    Judged at the pin holes, at every hole of a part that has none.
+    """
     assert run.c1_T_M is not None
     assert run.flange_T_deck is not None
     flange = run.cell.main.state().base_T_flange
@@ -19,10 +22,11 @@ async def verify(run: AssemblyRun) -> None:
     )
     M_T_D = deck_in_frame(run.c1_T_M.pose, measurement.c1_T_part)
     seated = RigidTransform.from_translation([0.0, 0.0, run.recipe.deck_thickness_mm * MM])
+    holes = run.deck_features.holes
+    judged = [hole for hole in holes if hole.kind == "pin"] or holes
     offsets_mm = {
         hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
-        for hole in run.deck_features.holes
-        if hole.kind == "pin"
+        for hole in judged
     }
     await run.journal.verification(assembly_error(seated, M_T_D), offsets_mm, measurement)
     limit_mm = run.recipe.seated_limit_mm

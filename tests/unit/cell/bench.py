@@ -1,0 +1,226 @@
+"""A whole cell in memory, with a true world behind its heads."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import timedelta
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
+from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD, CalibrationFolder
+from cellctl.cell.devices import Cell
+from cellctl.cell.head_station import HeadStation
+from cellctl.cell.measuring import HeadGeometry, PartMeasurement
+from cellctl.clock import now_s, utc_now
+from cellctl.config import CellConfig, load_cell
+from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import StereoPair
+from cellctl.plc.commands import LineCommand
+from cellctl.vision.features import FeatureFile, read_features
+from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.part_pose import PartPose
+from tests.contracts.inprocess.stereo_camera import InProcessHead
+from tests.contracts.inprocess.target_tracker import InProcessTracker
+from tests.unit.cell.guard import TinyGuard
+from tests.unit.cell.robots import StillRobot
+
+ROOT = Path(__file__).parents[3]
+CELL_FILE = ROOT / "config" / "cell.fake.toml"
+HEADS = {"head_1": "FH-0001", "head_2": "FH-0002"}
+SIGMA = np.repeat([2e-6, 5e-6], 3)
+
+
+class Head(InProcessHead):
+    """With the serial number of its calibration."""
+
+    def __init__(self, name: str, serial: str) -> None:
+        super().__init__(name)
+        self.serial = serial
+
+    async def serial_number(self) -> str:
+        return self.serial
+
+
+class InlineWorkers:
+    """Runs in the loop what a worker process would run; a test may put answers in its place."""
+
+    def __init__(self) -> None:
+        self.answers: dict[str, Callable[..., Any]] = {}
+        self.ran: list[str] = []
+
+    async def run(self, function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
+        self.ran.append(function.__name__)
+        return self.answers.get(function.__name__, function)(*args, **kwargs)
+
+    def close(self) -> None:
+        self.ran.append("closed")
+
+
+@dataclass
+class World:
+    """Where things really are."""
+
+    base_T_frame: RigidTransform
+    flange_T_deck: RigidTransform
+    robot_error: RigidTransform = field(default_factory=RigidTransform.identity)
+    """Of the flange, in its own frame: what the encoders do not see."""
+    sigma: Array = field(default_factory=lambda: SIGMA)
+
+
+class CellInMemory:
+    """Has what ``Cell`` has."""
+
+    stop_motion: Any = Cell.stop_motion
+    rearm: Any = Cell.rearm
+    health_checks: Any = Cell.health_checks
+    connect: Any = Cell.connect
+    disconnect: Any = Cell.disconnect
+
+    def __init__(self, config: CellConfig, folder: Path) -> None:
+        self.config, self.folder = config, folder
+        self.main, self.aux_1, self.aux_2 = map(StillRobot, ("main", "aux_1", "aux_2"))
+        cameras = [Head(name, serial) for name, serial in HEADS.items()]
+        robots = config.robots
+        self.head_1 = HeadStation("head_1", cameras[0], self.aux_1, robots.aux_1)
+        self.head_2 = HeadStation("head_2", cameras[1], self.aux_2, robots.aux_2)
+        self.tracker = InProcessTracker("tracker", {})
+        self.guard = TinyGuard()
+        self.workers = InlineWorkers()
+        self.base_T_frame: RigidTransform | None = None
+
+    @property
+    def heads(self) -> tuple[HeadStation, HeadStation]:
+        return self.head_1, self.head_2
+
+    @property
+    def robots(self) -> tuple[StillRobot, StillRobot, StillRobot]:
+        return self.main, self.aux_1, self.aux_2
+
+
+@dataclass
+class Bench:
+    """The cell, its true world and its calibrations."""
+
+    cell: CellInMemory
+    world: World
+    calibrations: CalibrationFolder
+    station: RigidTransform
+    """Nominal ``base_T_frame``."""
+    grip: RigidTransform
+    """Nominal ``flange_T_deck``."""
+
+    @property
+    def as_cell(self) -> Cell:
+        return cast(Cell, self.cell)
+
+    def flange_over_seat(self, height_m: float) -> RigidTransform:
+        """Nominal flange pose with the deck so high above its seat."""
+        recipe = self.cell.config.recipes[0]
+        up = RigidTransform.from_translation([0.0, 0.0, recipe.deck_thickness_mm / 1e3 + height_m])
+        return self.station * up * self.grip.inv()
+
+    def features(self) -> tuple[FeatureFile, FeatureFile]:
+        recipe, folder = self.cell.config.recipes[0], CELL_FILE.parent
+        return (
+            read_features(folder / recipe.frame_features),
+            read_features(folder / recipe.deck_features),
+        )
+
+
+def make_bench(tmp_path: Path) -> Bench:
+    """Everything nominal but frame and grip, which are off by a few millimetres."""
+    folder = tmp_path / "calibration"
+    renew_calibrations(folder)
+    config = load_cell(CELL_FILE)
+    config = config.model_copy(update={"calibration_dir": str(folder)})
+    cell = CellInMemory(config, CELL_FILE.parent)
+    for head in cell.heads:
+        cast(InProcessHead, head.camera)._connected = True
+    cell.tracker._connected = True
+    recipe = config.recipes[0]
+    station = pose_from_xyzabc(recipe.base_T_frame)
+    grip = pose_from_xyzabc(recipe.flange_T_deck)
+    world = World(
+        base_T_frame=station * pose_from_xyzabc([2.0, -1.5, 0.0, 0.2, 0.0, 0.0]),
+        flange_T_deck=grip * pose_from_xyzabc([1.0, -2.0, 0.5, -0.3, 0.05, 0.02]),
+        robot_error=pose_from_xyzabc([0.3, -0.2, 0.1, 0.02, -0.01, 0.01]),
+    )
+    bench = Bench(cell, world, CalibrationFolder(folder), station, grip)
+    teach(bench)
+    return bench
+
+
+def teach(bench: Bench) -> None:
+    main = bench.cell.config.robots.main
+    bench.cell.main.taught = [
+        (np.radians(main.home_joints_deg), RigidTransform.from_translation([1.5, 0.0, 1.8])),
+        (np.radians(main.deck_measure_joints_deg), bench.flange_over_seat(0.05)),
+    ]
+
+
+def renew_calibrations(folder: Path, valid_for: timedelta = timedelta(days=1)) -> None:
+    """The shipped calibrations, with the instruments of this cell and a validity of their own."""
+    serials = {**HEADS, PAYLOAD: "M4347K-1"}
+    for kind in ALL_KINDS:
+        shipped = read_calibration(CELL_FILE.parent / "demo-calibration", kind)
+        now = utc_now()
+        write_stored(
+            folder,
+            StoredCalibration(
+                kind, shipped.record, now, now + valid_for, "test", serials.get(kind, "ET-0001")
+            ),
+        )
+
+
+@dataclass
+class TruthMeasurer:
+    """Stands in for ``PartMeasurer``: sees the true world, exactly."""
+
+    bench: Bench
+    geometry: HeadGeometry
+    base_T_c1: RigidTransform
+    measured: list[str] = field(default_factory=list)
+
+    async def measure(
+        self, features: FeatureFile, c1_T_part: RigidTransform, **_: Any
+    ) -> PartMeasurement:
+        world, flange = self.bench.world, self.bench.cell.main.state().base_T_flange
+        deck = any(hole.kind == "countersink" for hole in features.holes)
+        self.measured.append("deck" if deck else "frame")
+        base_T_part = world.base_T_frame
+        if deck:
+            base_T_part = flange * world.robot_error * world.flange_T_deck
+        return measurement(self.base_T_c1.inv() * base_T_part, flange, features, world.sigma)
+
+
+def measurement(
+    c1_T_part: RigidTransform, base_T_flange: RigidTransform, features: FeatureFile, sigma: Array
+) -> PartMeasurement:
+    covariance = np.diag(sigma**2)
+    names = tuple(hole.name for hole in features.holes)
+    pose = PartPose(
+        UncertainPose(c1_T_part, covariance), covariance, names,
+        np.zeros((len(names), 3)), (), 1.0, 12,
+    )  # fmt: skip
+    image = np.zeros((4, 6), np.uint8)
+    pair = StereoPair(image, image, now_s(), 1)
+    found = PairMeasurement("default", ())
+    return PartMeasurement(pose, (found, found), (pair, pair), 2, base_T_flange)
+
+
+def start_command(seq: int = 1, serial: str = "SAT-0001", **changes: Any) -> LineCommand:
+    """Start of recipe 1 in Production."""
+    values: dict[str, Any] = {"unit_mode": 1, "cntrl_cmd": 2, "recipe_id": 1, "options": 0}
+    values |= {"order": "", "alarm_ack_id": 0}
+    return LineCommand(seq=seq, serial=serial, **(values | changes))
+
+
+def spoil(path: Path, **changes: Any) -> None:
+    """Change keys of a JSON file."""
+    data = json.loads(path.read_text(encoding="utf-8"))
+    path.write_text(json.dumps(data | changes), encoding="utf-8")

@@ -1,0 +1,77 @@
+"""The guard as the daemon sees it, without a process."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cellctl.clock import now_s
+from cellctl.errors.base import CellError
+from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
+
+SENSOR = "M4347K-1"
+
+
+@dataclass
+class TinyGuard:
+    """Remembers what it was asked; a test sets the trip and what is wrong."""
+
+    serial: str = SENSOR
+    trip: GuardTrip | None = None
+    asked: list[str] = field(default_factory=list)
+    faults: dict[str, CellError] = field(default_factory=dict)
+    raw: np.ndarray = field(
+        default_factory=lambda: np.random.default_rng(1).normal(0.0, 0.2, (200, 6))
+    )
+
+    async def start(self) -> None:
+        self._do("start")
+
+    async def stop(self) -> None:
+        self._do("stop")
+
+    async def set_compensation(self, compensation: object) -> None:
+        self._do("set_compensation")
+
+    async def set_deck_frame(self, sensor_T_deck: object) -> None:
+        self._do("set_deck_frame")
+
+    async def tare(self, duration_s: float) -> TareResult:
+        self._do("tare")
+        return TareResult(np.zeros(6), np.ones(6), 100)
+
+    async def arm(self, limits: object) -> None:
+        self._do("arm")
+
+    async def disarm(self) -> None:
+        self._do("disarm")
+
+    async def acknowledge(self) -> None:
+        self._do("acknowledge")
+        self.trip = None
+
+    def samples(self, since_s: float) -> Curve:
+        count = len(self.raw)
+        return Curve(np.full(count, now_s()), self.raw, self.raw, np.zeros(count), overrun=False)
+
+    def newest(self) -> GuardSample | None:
+        if not len(self.raw):
+            return None
+        time_s = now_s()
+        return GuardSample(time_s, time_s, 1, self.raw[-1], self.raw[-1], 0.01)
+
+    def latest(self) -> GuardSample:
+        sample = self.newest()
+        assert sample is not None
+        return sample
+
+    def check(self) -> None:
+        if "check" in self.faults:
+            raise self.faults["check"]
+
+    def health(self) -> GuardHealth:
+        return GuardHealth(alive=True, sensor_serial=self.serial)
+
+    def _do(self, what: str) -> None:
+        self.asked.append(what)
+        if what in self.faults:
+            raise self.faults[what]

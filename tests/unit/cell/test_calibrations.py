@@ -1,0 +1,90 @@
+"""The folder of calibrations: what production gets, and what the line is told."""
+
+import json
+from datetime import timedelta
+
+import pytest
+
+from cellctl.calibration.board_transfer import BoardPlacement
+from cellctl.calibration.files import read_calibration
+from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD
+from cellctl.errors.calibration import (
+    CalibrationExpired,
+    CalibrationMissing,
+    CalibrationRecordInvalid,
+)
+from tests.unit.cell.bench import Bench, renew_calibrations, spoil
+
+HOUR = timedelta(hours=1)
+
+
+def test_all_of_them_are_read_with_their_identities(bench: Bench) -> None:
+    found = bench.calibrations.read(HOUR)
+    assert set(found.ids) == set(ALL_KINDS)
+    assert found.serial_numbers["head_2"] == "FH-0002"
+    assert found.compensation.A.shape == (6, 3)
+    assert bench.calibrations.fault(HOUR) is None
+    assert bench.calibrations.all_valid(HOUR)
+    assert all(23 < hours < 24.01 for hours in bench.calibrations.validity_h())
+
+
+@pytest.mark.parametrize("kind", ALL_KINDS)
+def test_each_of_them_is_needed(bench: Bench, kind: str) -> None:
+    assert bench.calibrations.all_valid()
+    (bench.calibrations.path / f"{kind}.json").unlink()
+    assert isinstance(bench.calibrations.fault(HOUR), CalibrationMissing)
+    assert not bench.calibrations.all_valid(), "noticed although no other file has changed"
+
+
+def test_one_that_expires_on_the_way_is_refused(bench: Bench) -> None:
+    renew_calibrations(bench.calibrations.path, timedelta(minutes=20))
+    assert isinstance(bench.calibrations.fault(timedelta(minutes=30)), CalibrationExpired)
+    assert bench.calibrations.fault(timedelta(minutes=10)) is None
+    assert bench.calibrations.all_valid()
+    assert not bench.calibrations.all_valid(timedelta(minutes=30))
+
+
+def test_a_changed_record_is_refused(bench: Bench) -> None:
+    folder = bench.calibrations
+    record = dict(read_calibration(folder.path, "head_1").record)
+    spoil(folder.path / "head_1.json", record=record | {"rms_px": 0.001})
+    assert isinstance(folder.fault(HOUR), CalibrationRecordInvalid)
+    assert folder.validity_h()[0] == 0.0
+    assert folder.validity_h()[1] > 0.0
+
+
+def test_a_payload_that_was_not_accepted_is_refused(bench: Bench) -> None:
+    folder = bench.calibrations
+    record = dict(read_calibration(folder.path, PAYLOAD).record) | {"accepted": False}
+    folder.store(PAYLOAD, record, "M4347K-1", HOUR)
+    assert isinstance(folder.fault(timedelta(0)), CalibrationMissing)
+
+
+def test_another_instrument_does_not_get_the_calibration(bench: Bench) -> None:
+    found = bench.calibrations.read(HOUR)
+    found.require_instrument("head_1", "FH-0001")
+    with pytest.raises(CalibrationRecordInvalid, match="FH-0009"):
+        found.require_instrument("head_1", "FH-0009")
+
+
+def test_a_stored_record_takes_effect_at_once(bench: Bench) -> None:
+    folder = bench.calibrations
+    record = read_calibration(folder.path, "head_1").record
+    placement = BoardPlacement(None, None)  # type: ignore[arg-type]
+    folder.placements |= {"head_1": placement, "head_2": placement}
+    assert folder.validity_h()[0] > 2.0
+    stored = folder.store("head_1", record, "FH-0001", HOUR, b"picture")
+    assert folder.validity_h()[0] == pytest.approx(1.0, abs=0.01)
+    assert folder.read(timedelta(0)).ids["head_1"] == stored.id
+    assert (folder.path / "head_1.png").read_bytes() == b"picture"
+    assert set(folder.placements) == {"head_2"}, "seen through the head's old calibration"
+    assert folder.head("head_1").image_size == (2448, 2048)
+    assert folder.c_T_base().covariance.shape == (6, 6)
+    assert {one.kind for one in folder.stored()} == set(ALL_KINDS)
+
+
+def test_a_bad_result_is_kept_where_nothing_reads_it(bench: Bench) -> None:
+    before = bench.calibrations.read(HOUR).ids
+    folder = bench.calibrations.put_aside("head_1", {"verdict": "fail"}, b"picture")
+    assert json.loads((folder / "head_1.json").read_text()) == {"verdict": "fail"}
+    assert bench.calibrations.read(HOUR).ids == before

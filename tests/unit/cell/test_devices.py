@@ -1,0 +1,76 @@
+"""All devices together: connect, stop, rearm, whatever fails."""
+
+import pytest
+
+from cellctl.cell.devices import Cell
+from cellctl.errors.force import GuardDied
+from cellctl.errors.link import ConnectTimeout, LinkLost
+from cellctl.errors.robot import StopFailed
+from tests.unit.cell.bench import CELL_FILE, Bench
+
+
+def test_a_cell_is_built_from_its_file_without_io(bench: Bench) -> None:
+    cell = Cell(bench.cell.config, CELL_FILE.parent)
+    assert [robot.name for robot in cell.robots] == ["main", "aux_1", "aux_2"]
+    assert [head.name for head in cell.heads] == ["head_1", "head_2"]
+    assert cell.heads[1].robot is cell.aux_2
+    with pytest.raises(GuardDied):
+        cell.health_checks()["guard"]()
+    cell.workers.close()
+
+
+async def test_one_device_that_fails_is_named_by_its_own_fault(bench: Bench) -> None:
+    bench.cell.aux_1.faults["connect"] = ConnectTimeout("aux_1 on 7011")
+    with pytest.raises(ConnectTimeout, match="7011"):
+        await bench.cell.connect()
+
+
+async def test_all_devices_that_fail_are_named(bench: Bench) -> None:
+    bench.cell.aux_1.faults["connect"] = ConnectTimeout("port 7011")
+    bench.cell.guard.faults["start"] = GuardDied("no sensor")
+    with pytest.raises(ConnectTimeout) as caught:
+        await bench.cell.connect()
+    assert "robots.aux_1" in caught.value.detail
+    assert "guard: F510" in caught.value.detail
+
+
+async def test_a_defect_is_not_taken_for_a_device(bench: Bench) -> None:
+    bench.cell.aux_1.faults["connect"] = ValueError("defect")  # type: ignore[assignment]
+    with pytest.raises(ValueError, match="defect"):
+        await bench.cell.connect()
+
+
+async def test_stop_reaches_every_robot_though_one_fails(bench: Bench) -> None:
+    bench.cell.main.faults["stop"] = StopFailed("main")
+    bench.cell.aux_1.faults["stop"] = LinkLost("aux_1")
+    with pytest.raises(StopFailed) as caught:
+        await bench.cell.stop_motion()
+    assert [robot.stops for robot in bench.cell.robots] == [1, 1, 1]
+    assert any("F202" in note for note in caught.value.__notes__)
+    assert bench.cell.guard.asked == ["disarm"]
+
+
+async def test_a_dead_guard_does_not_keep_the_robots_from_stopping(bench: Bench) -> None:
+    bench.cell.guard.faults["disarm"] = GuardDied("killed")
+    await bench.cell.stop_motion()
+    assert all(robot.latched for robot in bench.cell.robots)
+
+
+async def test_rearm_releases_the_guard_first(bench: Bench) -> None:
+    await bench.cell.stop_motion()
+    bench.cell.guard.faults["acknowledge"] = GuardDied("killed")
+    with pytest.raises(GuardDied):
+        await bench.cell.rearm()
+    assert all(robot.latched for robot in bench.cell.robots)
+    bench.cell.guard.faults.clear()
+    await bench.cell.rearm()
+    assert not any(robot.latched for robot in bench.cell.robots)
+    assert not any(robot.moves for robot in bench.cell.robots)
+
+
+async def test_disconnecting_skips_nobody(bench: Bench) -> None:
+    bench.cell.main.faults["disconnect"] = LinkLost("main")
+    await bench.cell.disconnect()
+    assert bench.cell.guard.asked == ["stop"]
+    with pytest.raises(LinkLost):
+        await bench.cell.tracker.serial_number()
