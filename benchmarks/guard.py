@@ -140,7 +140,8 @@ def table(rows: list[Row]) -> str:
     """For the terminal."""
     head = (
         f"{'load':8}{'design':8}{'samples':>8} │"
-        f"{'clean p50':>10}{'p99':>10}{'p99.9':>10}{'max':>9} │{'raw p99.9':>10}{'max':>9} │{'stalled':>8}{'worst':>9}"
+        f"{'clean p50':>10}{'p99':>10}{'p99.9':>10}{'max':>9} │"
+        f"{'raw p99.9':>10}{'max':>9} │{'stalled':>8}{'worst':>9}"
     )
     lines = [head, "─" * len(head)]
     for row in rows:
