@@ -234,7 +234,7 @@ def _band(
     columns, rows = columns[wanted], rows[wanted]
     points, jacobians = patch.from_px(columns.astype(float), rows.astype(float))
     grey = sight.image[rows, columns].astype(float)
-    return RimPixels(points, jacobians, grey, patch.unit_px)
+    return RimPixels(points, jacobians, grey, np.stack([columns, rows]), patch.unit_px)
 
 
 def _fit_alone(task: _Task) -> RimFit:

@@ -8,9 +8,12 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape, borders
-from cellctl.vision.rim_noise import scatter_factor
+from cellctl.vision.rim_noise import arc_covariance, texture_covariance, widened
 from cellctl.vision.rim_problem import Problem, RimView, Solution, first
 from cellctl.vision.rim_solve import minimise
+
+_WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.045, 0.022, 0.12
+"""Error of a centre when the light at the rim varies by as much as the rim's contrast."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +112,9 @@ def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
     view = RimView(pixels, shape, np.eye(size))
     sigma = np.full(size, np.inf)
     if shape.wall_ratio is not None:
-        sigma[4] = 4.0 * shape.wall_ratio  # Where the lower edge is out of sight, nothing else holds it.
+        sigma[4] = (
+            4.0 * shape.wall_ratio
+        )  # Where the lower edge is out of sight, nothing else holds it.
     return Problem((view,), light, shape.vector, sigma)
 
 
@@ -128,25 +133,46 @@ def _result(
     rows = [solution.lights + index for index in geometry]
     everything = solution.covariance()
     covariance = everything[np.ix_(rows, rows)]
-    scores = (everything[rows] @ solution.design) * (solution.weights * solution.residuals)
-    offsets = np.concatenate(
-        [
-            view.pixels.points - view.shape(solution.vector).centre[:, None]
-            for view in problem.views
-        ],
-        axis=1,
-    )
-    factor = scatter_factor(scores, np.arctan2(offsets[1], offsets[0]), covariance)
+    influence = (everything[rows] @ solution.design) * solution.weights
+    seen, start = np.zeros_like(covariance), 0
+    offsets = []
+    for view in problem.views:
+        part = slice(start, start + len(view.pixels.grey))
+        start = part.stop
+        offsets.append(view.pixels.points - view.shape(solution.vector).centre[:, None])
+        seen += texture_covariance(
+            view.pixels.place,
+            solution.residuals[part],
+            solution.outside[part],
+            influence[:, part],
+        )
+    x, y = np.concatenate(offsets, axis=1)
+    arcs = arc_covariance(influence * solution.residuals, np.arctan2(y, x))
+    covariance = widened(widened(covariance, arcs), seen)
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
+    contrast = float(np.average(grey, weights=outside + 1e-9)) - float(
+        np.average(grey, weights=1.0 - outside + 1e-9)
+    )
+    covariance += _model_covariance(problem, grey, outside, contrast, len(geometry))
     return RimFit(
         shapes=tuple(view.shape(solution.vector) for view in problem.views),
-        covariance=factor @ covariance @ factor.T,
+        covariance=covariance,
         residual_grey=float(np.sqrt(np.mean(solution.residuals**2))),
-        contrast_grey=float(
-            np.average(grey, weights=outside + 1e-9)
-            - np.average(grey, weights=1.0 - outside + 1e-9)
-        ),
+        contrast_grey=contrast,
         bic=_bic(solution),
         converged=converged,
     )
+
+
+def _model_covariance(
+    problem: Problem, grey: Array, outside: Array, contrast: float, size: int
+) -> Array:
+    """What a few smooth terms leave unexplained grows with how uneven the light at a rim is."""
+    bright, dark = grey[outside > 0.95], grey[outside < 0.05]
+    uneven = np.hypot(np.std(bright), np.std(dark)) / max(abs(contrast), 1.0)
+    share_px = _CONE_MODEL_PX if problem.light.cone else _WALL_MODEL_PX
+    if problem.views[0].model.ring_ratio is not None:
+        share_px = _RING_MODEL_PX
+    sigma = share_px * float(uneven) * problem.views[0].pixels.unit_px
+    return np.diag([*[sigma**2] * (size - 1), 0.0])

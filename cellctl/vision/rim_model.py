@@ -11,6 +11,7 @@ Arrays hold one pixel a column: this is the inner loop of every measurement.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from cellctl.geometry.pose import Array
@@ -28,6 +29,8 @@ class RimPixels:
     """Shape (2, 2, n): derivative of ``points`` by the pixel's column and row."""
     grey: Array
     """Shape (n,)."""
+    place: NDArray[np.intp]
+    """Column and row in the image, shape (2, n)."""
     unit_px: float
     """Plane units in a pixel."""
 
@@ -37,6 +40,7 @@ class RimPixels:
             np.ascontiguousarray(self.points[:, ::nth]),
             np.ascontiguousarray(self.jacobian[:, :, ::nth]),
             self.grey[::nth],
+            self.place[:, ::nth],
             self.unit_px,
         )
 
