@@ -25,15 +25,6 @@ class WorkerDied(InternalError):
     remedy = "Restart the daemon; keep the log."
 
 
-class GuardDied(InternalError):
-    """The guard process ended or does not answer."""
-
-    number = 903
-    text = "The force guard process died"
-    cause = "Killed, out of memory, or a defect. The robot has been stopped by its dead man."
-    remedy = "Restart the daemon; keep the log."
-
-
 class StateDidNotEnd(InternalError):
     """A cancelled state coroutine did not clean up in time."""
 
