@@ -13,8 +13,8 @@ async def together(*work: Coroutine[Any, Any, T]) -> list[T]:
     """Results in the order given, of one or more; the first failure cancels the others.
 
     Returns, or raises that failure, only after every one of them has ended, so a robot move among
-    them has stopped its robot. What goes wrong while the others are left is noted on the first failure;
-    after a cancellation it is raised itself, because a robot that did not stop must be heard of.
+    them has stopped its robot. What goes wrong while the others are left is noted on the first
+    failure; after a cancellation it is raised itself: a robot that did not stop must be heard of.
     """
     tasks = [asyncio.create_task(one) for one in work]
     try:

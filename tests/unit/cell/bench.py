@@ -124,6 +124,10 @@ class Bench:
         up = RigidTransform.from_translation([0.0, 0.0, recipe.deck_thickness_mm / 1e3 + height_m])
         return self.station * up * self.grip.inv()
 
+    def base_T_c1(self) -> RigidTransform:
+        """Head I as calibrated."""
+        return self.calibrations.read(timedelta(0)).geometry.base_T_c1.pose
+
     def features(self) -> tuple[FeatureFile, FeatureFile]:
         recipe, folder = self.cell.config.recipes[0], CELL_FILE.parent
         return (

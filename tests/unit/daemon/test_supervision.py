@@ -1,0 +1,149 @@
+"""Links, trips, heartbeat, and the death of a part of the daemon."""
+
+import asyncio
+from typing import cast
+
+import pytest
+
+from cellctl.cell.step import Step
+from cellctl.daemon.app import until_told
+from cellctl.daemon.supervision import LinkWatch, supervise
+from cellctl.errors.force import GuardDied
+from cellctl.errors.internal import Unexpected
+from cellctl.errors.line import LineTaskDied
+from cellctl.errors.link import StaleData
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.state import State
+from cellctl.plc.port import PlcPort
+from tests.unit.daemon.rig import DaemonRig, PaperPort
+
+TRIP = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
+
+
+def watch(rig: DaemonRig) -> LinkWatch:
+    return LinkWatch(rig.bench.as_cell, rig.unit)
+
+
+async def alarms(rig: DaemonRig) -> list[int]:
+    await rig.unit.background.drain()
+    return [alarm.number for alarm in await rig.archive.do(type(rig.archive._store).active_alarms)]
+
+
+async def test_a_broken_link_is_reported_once_until_it_is_whole_again(rig: DaemonRig) -> None:
+    await rig.idle()
+    links = watch(rig)
+    await links.look()
+    assert rig.unit.machine.state is State.IDLE
+    rig.bench.cell.aux_1.faults["state"] = StaleData("2 s")
+    await links.look()
+    await links.look()
+    await rig.to(State.ABORTED)
+    assert await alarms(rig) == [207]
+    del rig.bench.cell.aux_1.faults["state"]
+    await links.look()
+    rig.bench.cell.aux_1.faults["state"] = StaleData("2 s")
+    await links.look()
+    assert await alarms(rig) == [207, 207]
+
+
+async def test_the_death_of_the_guard_aborts_a_run(rig: DaemonRig) -> None:
+    rig.contact.may_end.clear()
+    await rig.started()
+    await rig.contact.reached.wait()
+    guard = rig.bench.cell.guard
+    guard.faults["check"] = GuardDied("killed")
+    guard.trip = GuardTrip(TripReason.GUARD_DIED, 1.0, "killed")
+    await watch(rig).look()
+    await rig.to(State.ABORTED)
+    assert (await rig.record()).head.fault_number == 510
+    assert await alarms(rig) == [510], "one death, one alarm"
+
+
+async def test_a_trip_nobody_waits_for_is_a_fault(rig: DaemonRig) -> None:
+    await rig.idle()
+    rig.bench.cell.guard.trip = TRIP
+    links = watch(rig)
+    await links.look()
+    await links.look()
+    await rig.to(State.ABORTED)
+    assert await alarms(rig) == [512]
+    await rig.idle()
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 2.0, "Fx 40 N", 0, 40.0)
+    await links.look()
+    assert await alarms(rig) == [512, 512]
+
+
+async def test_the_mating_deals_with_its_trips_itself(rig: DaemonRig) -> None:
+    await rig.idle()
+    rig.unit.board.update(step=Step.MATE)
+    rig.bench.cell.guard.trip = TRIP
+    links = watch(rig)
+    await links.look()
+    rig.unit.board.update(step=Step.NONE)
+    await links.look()
+    assert rig.unit.machine.state is State.IDLE
+    assert await alarms(rig) == []
+
+
+class Port(PaperPort):
+    """With the life of its command task in the test's hand."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.death: asyncio.Future[None] = asyncio.get_running_loop().create_future()
+
+    async def failed(self) -> None:
+        await self.death
+
+
+async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio.Task[None]]:
+    port = Port()
+    work = supervise(rig.bench.as_cell, rig.unit, rig.line, cast(PlcPort, port))
+    task = asyncio.create_task(until_told(stop, work))
+    await rig.until(lambda: port.beats > 0)
+    return port, task
+
+
+async def test_a_signal_ends_the_supervision(rig: DaemonRig) -> None:
+    stop = asyncio.Event()
+    _, task = await supervised(rig, stop)
+    stop.set()
+    await asyncio.wait_for(task, 5)
+
+
+async def test_a_dead_line_task_is_its_own_fault(rig: DaemonRig) -> None:
+    port, task = await supervised(rig, asyncio.Event())
+    port.death.set_exception(LineTaskDied("KeyError"))
+    with pytest.raises(LineTaskDied):
+        await asyncio.wait_for(task, 5)
+
+
+async def test_a_defect_in_the_daemon_aborts_the_run_with_901(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rig.contact.may_end.clear()
+    await rig.started()
+    await rig.contact.reached.wait()
+    _, task = await supervised(rig, asyncio.Event())
+
+    def defect() -> dict[str, object]:
+        raise KeyError("defect")
+
+    monkeypatch.setattr(rig.bench.cell, "health_checks", defect)
+    with pytest.raises(Unexpected, match="KeyError"):
+        await asyncio.wait_for(task, 5)
+    await rig.unit.close(Unexpected("KeyError in the daemon"))
+    assert rig.unit.machine.state is State.ABORTED
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("aborted", 901)
+    assert all(robot.latched for robot in rig.bench.cell.robots)
+
+
+async def test_a_machine_that_hangs_is_given_up(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cellctl.daemon.unit.ABORT_TIMEOUT_S", 0.05)
+    await rig.idle()
+    async with rig.unit.machine._turn:
+        await asyncio.wait_for(rig.unit.close(Unexpected("defect")), 5)
+    assert not rig.unit.live
