@@ -24,7 +24,7 @@ class FrameServerHead(StereoCamera):
 
     async def connect(self) -> None:
         """Connect and see that a head answers."""
-        await self._connection.open()
+        await self._connection.link.open()
         self._wanted = True
         try:
             await self.serial_number()
@@ -35,7 +35,7 @@ class FrameServerHead(StereoCamera):
     async def disconnect(self) -> None:
         """Drop the connection."""
         self._wanted = False
-        await self._connection.close()
+        await self._connection.link.close()
 
     async def serial_number(self) -> str:
         """Serial number of the head."""
@@ -54,7 +54,7 @@ class FrameServerHead(StereoCamera):
         if last is not None and (
             header.frame_id == last.frame_id or header.exposure_time_us <= last.exposure_time_us
         ):
-            await self._connection.close()
+            await self._connection.link.close()
             raise ProtocolViolation(f"{self.name}: the server sent pair {header.frame_id} again")
         left, right = protocol.split_images(header, payload)
         return StereoPair(left, right, time_s, header.frame_id)
@@ -62,6 +62,6 @@ class FrameServerHead(StereoCamera):
     async def _ready(self) -> None:
         if not self._wanted:
             raise LinkLost(f"{self.name} is not connected")
-        if not self._connection.connected:
+        if not self._connection.link.connected:
             self._last = None
-            await self._connection.open()
+            await self._connection.link.open()

@@ -22,7 +22,7 @@ class TargetServerTracker(TargetTracker):
 
     async def connect(self) -> None:
         """Connect and see that a head answers."""
-        await self._connection.open()
+        await self._connection.link.open()
         self._wanted = True
         try:
             await self.serial_number()
@@ -33,7 +33,7 @@ class TargetServerTracker(TargetTracker):
     async def disconnect(self) -> None:
         """Drop the connection."""
         self._wanted = False
-        await self._connection.close()
+        await self._connection.link.close()
 
     async def serial_number(self) -> str:
         """Serial number of the head."""
@@ -57,5 +57,5 @@ class TargetServerTracker(TargetTracker):
     async def _ready(self) -> None:
         if not self._wanted:
             raise LinkLost(f"{self.name} is not connected")
-        if not self._connection.connected:
-            await self._connection.open()
+        if not self._connection.link.connected:
+            await self._connection.link.open()

@@ -7,9 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.errors.link import DeviceFault, ProtocolViolation
+from cellctl.errors.link import ProtocolViolation
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.target_tracker import Target
+from drivers.camera.target_server import faults
 
 MAX_LINE_BYTES = 65536
 MAX_FRAMES = 200
@@ -61,7 +62,7 @@ def _reply(line: bytes, request_id: int) -> dict[str, Any]:
     if type(reply.get("id")) is not int or reply["id"] != request_id:
         raise ProtocolViolation(f"reply to request {reply.get('id')!r} instead of {request_id}")
     if reply.get("status") == "error":
-        raise DeviceFault(str(reply.get("message", "no message"))[:160])
+        raise faults.reported(reply.get("message", "no message"))
     if reply.get("status") != "ok":
         raise ProtocolViolation(f"unknown status {str(reply.get('status'))[:40]!r}")
     return reply
