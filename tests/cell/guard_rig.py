@@ -15,7 +15,8 @@ from cellctl.force.compensation import Compensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from fakes.wire.sri_box import SriBox
-from tests.wire.siasun_peer import Peer, free_ports
+from tests.ports import free_ports
+from tests.wire.siasun_peer import Peer
 
 NOTHING = Compensation(np.zeros((6, 3)), np.zeros(6), "affine24")
 PATIENT = GuardLimits(raw=(20.0,) * 6, stale_s=0.3, flange_age_s=0.5)

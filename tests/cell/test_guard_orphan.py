@@ -10,7 +10,8 @@ import pytest
 
 from fakes.wire.sri_box import SriBox
 from tests.cell.guard_rig import Robot, noisy, until
-from tests.wire.siasun_peer import Peer, free_ports
+from tests.ports import free_ports
+from tests.wire.siasun_peer import Peer
 
 ROOT = Path(__file__).parents[2]
 

@@ -18,7 +18,7 @@ from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
 from fakes.wire.sri_box import SriBox
 from tests.cell.guard_rig import NOTHING, PATIENT, SETTINGS, rig, until
-from tests.wire.siasun_peer import free_ports
+from tests.ports import free_ports
 
 
 async def test_it_publishes_and_beats_without_being_armed() -> None:

@@ -1,7 +1,6 @@
 """A scripted controller end of one SJL/1 channel: literal lines, sums made here by hand."""
 
 import asyncio
-import socket
 from typing import Self
 
 POSE = "1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000"
@@ -11,15 +10,6 @@ JOINTS = "0.00000,-45.00000,90.00000,0.00000,45.00000,0.00000"
 def line(body: str) -> bytes:
     """A record with its sum."""
     return f"{body}*{sum(body.encode()) % 256:02X}\n".encode()
-
-
-def free_ports(count: int) -> list[int]:
-    """Ports that nobody listens on just now."""
-    sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(count)]
-    ports = [int(s.getsockname()[1]) for s in sockets]
-    for s in sockets:
-        s.close()
-    return ports
 
 
 class Peer:

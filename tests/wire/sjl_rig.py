@@ -16,9 +16,9 @@ from fakes.scenario import Channel, Scenario
 from fakes.wire.sjl_controller import SjlController
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
+from tests.ports import free_ports
 from tests.wire.proxy import ChaosProxy
 from tests.wire.scenarios import as_on_a_real_cell
-from tests.wire.siasun_peer import free_ports
 
 SCENARIO = Path(__file__).parents[2] / "config" / "fake-cell.toml"
 READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)

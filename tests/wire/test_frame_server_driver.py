@@ -21,8 +21,8 @@ from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
 from drivers.camera.frame_server.protocol import Command
+from tests.ports import free_ports
 from tests.wire.scripted_server import Script, serving
-from tests.wire.siasun_peer import free_ports
 
 OFFSETS = {"version": (4, 2), "status": (6, 2), "id": (8, 4), "frame_id": (12, 4),
            "time_us": (16, 8), "width": (28, 2), "height": (30, 2), "images": (32, 2),

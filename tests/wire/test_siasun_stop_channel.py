@@ -21,7 +21,8 @@ from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.stop_channel import FlangeState
 from drivers.robot.siasun.config import SiasunStopChannelConfig
 from drivers.robot.siasun.stop_channel import SiasunStopChannel, rotation_from_abc
-from tests.wire.siasun_peer import POSE, Peer, free_ports
+from tests.ports import free_ports
+from tests.wire.siasun_peer import POSE, Peer
 from tests.wire.sjl_rig import sjl_rig
 
 

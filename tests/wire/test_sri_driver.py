@@ -12,7 +12,7 @@ from cellctl.errors.force import SensorSetupWrong
 from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout
 from drivers.ftsensor.sri.driver import SriSensor
 from fakes.wire.sri_box import SriBox
-from tests.wire.siasun_peer import free_ports
+from tests.ports import free_ports
 from tests.wire.sri_rig import WRENCH, blocking, noisy, read_until, tcp_sensor
 
 

@@ -17,8 +17,8 @@ from cellctl.errors.link import (
 from drivers.camera.target_server import protocol
 from drivers.camera.target_server.config import TargetServerConfig
 from drivers.camera.target_server.driver import TargetServerTracker
+from tests.ports import free_ports
 from tests.wire.scripted_server import Script, serving
-from tests.wire.siasun_peer import free_ports
 
 IDENTITY = (
     b'{"id": %d, "status": "ok", "model": "E-Track", "serial": "ET-0001", "firmware": "1.0"}\n'
