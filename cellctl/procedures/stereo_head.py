@@ -40,7 +40,7 @@ async def calibrate_head(context: ProcedureContext, station: HeadStation) -> Pro
             views.append(view)
     await _move(station, poses[0])
     if not views:
-        raise BoardNotFound(f"{station.name} sees a board of {board} in none of {len(poses)} views")
+        raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
     result = await context.cell.workers.run(calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
         item=station.name,

@@ -1,0 +1,52 @@
+"""A procedure's surroundings: cell in memory, archive, and a safe point that a test controls."""
+
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import select
+
+from cellctl.cell.archive import Archive
+from cellctl.cell.progress import Progress, ProgressBoard
+from cellctl.procedures.context import ProcedureContext
+from cellctl.procedures.maintenance import Maintenance
+from cellctl.records.schema import AuditRow
+from cellctl.records.store import RunStore
+from tests.unit.cell.bench import Bench, start_command
+from tests.unit.steps.rig import Pauses
+
+
+class ProcedureRig:
+    """Everything a procedure is given."""
+
+    def __init__(self, bench: Bench, store: Path) -> None:
+        self.bench = bench
+        self.archive = Archive(store)
+        self.board = ProgressBoard()
+        self.pauses = Pauses()
+        self.told: list[Progress] = []
+        self.board.observers.append(self.told.append)
+
+    @property
+    def context(self) -> ProcedureContext:
+        return ProcedureContext(
+            self.bench.as_cell, self.bench.calibrations, self.board, self.pauses
+        )
+
+    def answer(self, **answers: Any) -> None:
+        """What the workers return instead of working."""
+        for name, value in answers.items():
+            self.bench.cell.workers.answers[name] = value
+
+    def job(self, number: int) -> Maintenance:
+        command = start_command(unit_mode=2, recipe_id=number, order="OP-3")
+        return Maintenance(
+            self.bench.as_cell, self.archive, self.board, self.bench.calibrations, command
+        )
+
+    async def audit(self) -> list[tuple[str, str, dict[str, Any]]]:
+        def read(store: RunStore) -> list[tuple[str, str, dict[str, Any]]]:
+            with store._database.read() as session:
+                rows = session.scalars(select(AuditRow).order_by(AuditRow.id)).all()
+                return [(row.actor, row.action, row.detail) for row in rows]
+
+        return await self.archive.do(read)

@@ -1,0 +1,77 @@
+"""Procedure 103: the arm turns one axis at a time, and the solver finds the base."""
+
+import numpy as np
+import pytest
+
+from cellctl.calibration.base_frame import BaseFrameResult
+from cellctl.cell.job import HeldMeanwhile
+from cellctl.errors.link import ReplyTimeout
+from cellctl.geometry.pose import pose_error
+from cellctl.interfaces import Target
+from cellctl.procedures.base_frame import calibrate_base
+from tests.unit.calibration.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
+from tests.unit.procedures.rig import ProcedureRig
+
+
+class Watching:
+    """A large-field head that sees the flange's targets, and one that lies about."""
+
+    def __init__(self, rig: ProcedureRig) -> None:
+        self._main = rig.bench.cell.main
+        self._rng = np.random.default_rng(0)
+        self.frames: list[int] = []
+
+    async def serial_number(self) -> str:
+        return "ET-7"
+
+    async def measure(self, frames: int = 1) -> tuple[Target, ...]:
+        self.frames.append(frames)
+        c_T_flange = C_T_BASE * flange(self._main.joints_rad)
+        places = [c_T_flange.apply(place) + self._rng.normal(0, SIGMA_M, 3) for place in RING]
+        named = [Target(f"F{n}", place, SIGMA_M) for n, place in enumerate(places, 1)]
+        return (*named, Target("P1", np.zeros(3), SIGMA_M))
+
+
+@pytest.fixture
+def watching(rig: ProcedureRig) -> Watching:
+    rig.bench.cell.tracker = watching = Watching(rig)  # type: ignore[assignment]
+    rig.answer(base_frame_picture=lambda _: b"png")
+    return watching
+
+
+async def test_the_base_is_found_and_the_arm_goes_home(
+    rig: ProcedureRig, watching: Watching
+) -> None:
+    outcome = await calibrate_base(rig.context)
+    settings, main = rig.bench.cell.config.procedures, rig.bench.cell.config.robots.main
+    assert (outcome.item, outcome.serial_number, outcome.passed) == ("base_frame", "ET-7", True)
+    found = BaseFrameResult.from_record(outcome.record).c_T_base.pose
+    distance, angle = pose_error(C_T_BASE, found)
+    assert np.linalg.norm(distance) < 1e-3
+    assert np.degrees(np.linalg.norm(angle)) < 0.05
+    joints = np.degrees([move.target for move in rig.bench.cell.main.moves])
+    start, stops = np.array(settings.base_frame_joints_deg), settings.circle_stops
+    assert len(joints) == 2 * stops + 2
+    first, second = joints[:stops] - start, joints[stops : 2 * stops] - start
+    half = settings.circle_arc_deg / 2
+    np.testing.assert_allclose(first[:, 0], np.linspace(-half, half, stops), atol=1e-9)
+    np.testing.assert_allclose(second[:, 1], np.linspace(-half, half, stops), atol=1e-9)
+    np.testing.assert_allclose(np.delete(first, 0, axis=1), 0.0, atol=1e-9)
+    np.testing.assert_allclose(np.delete(second, 1, axis=1), 0.0, atol=1e-9)
+    np.testing.assert_allclose(joints[-1], main.home_joints_deg, atol=1e-9)
+    assert watching.frames == [settings.tracker_frames] * 2 * stops
+    assert all(move.speed == main.speed_percent / 100 for move in rig.bench.cell.main.moves)
+
+
+async def test_a_hold_on_the_way_spoils_the_circle(rig: ProcedureRig, watching: Watching) -> None:
+    rig.pauses._held_at = (5,)
+    with pytest.raises(HeldMeanwhile):
+        await calibrate_base(rig.context)
+    assert len(watching.frames) == 4
+
+
+async def test_a_silent_head_ends_it(rig: ProcedureRig) -> None:
+    rig.bench.cell.tracker.silent = True
+    with pytest.raises(ReplyTimeout):
+        await calibrate_base(rig.context)
+    assert len(rig.bench.cell.main.moves) == 1

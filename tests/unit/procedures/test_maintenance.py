@@ -1,0 +1,110 @@
+"""A procedure as a job: what is kept, what is put aside, and what the audit log says."""
+
+import json
+
+import pytest
+
+from cellctl.calibration.files import read_calibration
+from cellctl.cell.job import HeldMeanwhile
+from cellctl.cell.step import Step
+from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.procedures import maintenance
+from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.procedures.maintenance import PROCEDURES, is_procedure
+from cellctl.records.entries import RunResult
+from cellctl.records.store import RunStore
+from tests.unit.procedures.rig import ProcedureRig
+
+CHECKS = [
+    {"name": "rms", "value": 0.31, "limit": 0.2, "unit": "px", "side": "max", "passed": False},
+    {"name": "views", "value": 24, "limit": 12, "unit": "", "side": "min", "passed": True},
+]
+
+
+def outcome(rig: ProcedureRig, *, passed: bool = True) -> ProcedureOutcome:
+    record = dict(read_calibration(rig.bench.calibrations.path, "head_1").record)
+    checks = [] if passed else CHECKS
+    return ProcedureOutcome(
+        "head_1", record | {"checks": checks}, passed, ("few views",), b"png", "FH-0001"
+    )
+
+
+@pytest.fixture
+def procedure(rig: ProcedureRig, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+    """Answers of procedure 101, one after the other."""
+    answers: list[object] = []
+
+    async def run(context: ProcedureContext) -> ProcedureOutcome | None:
+        answer = answers.pop(0)
+        if isinstance(answer, BaseException):
+            raise answer
+        assert answer is None or isinstance(answer, ProcedureOutcome)
+        return answer
+
+    monkeypatch.setitem(maintenance.PROCEDURES, Step.CALIBRATE_HEAD_1, run)
+    return answers
+
+
+def test_every_step_of_maintenance_has_its_procedure() -> None:
+    assert set(PROCEDURES) == {step for step in Step if step > 100}
+    assert is_procedure(103)
+    assert not is_procedure(1)
+
+
+async def test_a_result_that_passed_is_kept(rig: ProcedureRig, procedure: list[object]) -> None:
+    procedure.append(outcome(rig))
+    job = rig.job(101)
+    await job.start()
+    assert rig.board.current.step is Step.CALIBRATE_HEAD_1
+    await job.execute(rig.pauses)
+    assert await job.close(RunResult.GOOD, None) is RunResult.GOOD
+    assert rig.board.current.step is Step.NONE
+    stored = read_calibration(rig.bench.calibrations.path, "head_1")
+    assert stored.serial_number == "FH-0001"
+    days = (stored.valid_until - stored.made).days
+    assert days == rig.bench.cell.config.procedures.validity_days
+    assert (rig.bench.calibrations.path / "head_1.png").read_bytes() == b"png"
+    known = await rig.archive.do(RunStore.calibrations)
+    assert [entry.id for entry in known] == [stored.id]
+    (who, what, detail), (_, ended, end) = await rig.audit()
+    assert (who, what, detail["item"]) == ("OP-3", "calibration stored", "head_1")
+    assert (ended, end["outcome"]) == ("procedure ended", "good")
+    assert await rig.archive.do(RunStore.runs) == []
+
+
+async def test_a_bad_result_is_put_aside_with_its_reason(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    before = read_calibration(rig.bench.calibrations.path, "head_1").id
+    procedure.append(outcome(rig, passed=False))
+    job = rig.job(101)
+    with pytest.raises(ResultOutOfLimits, match=r"head_1: rms 0\.31, limit 0\.2 px; kept in"):
+        await job.execute(rig.pauses)
+    assert read_calibration(rig.bench.calibrations.path, "head_1").id == before
+    aside = rig.bench.calibrations.path / "rejected" / "head_1.json"
+    assert json.loads(aside.read_text())["checks"] == CHECKS
+    assert await job.close(RunResult.ABORTED, ResultOutOfLimits("head_1")) is RunResult.ABORTED
+    assert "F614" in (await rig.audit())[-1][2]["fault"]
+
+
+async def test_a_procedure_that_was_held_begins_again(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    procedure += [HeldMeanwhile(), HeldMeanwhile(), outcome(rig)]
+    await rig.job(101).execute(rig.pauses)
+    assert procedure == []
+
+
+async def test_half_of_a_pair_stores_nothing(rig: ProcedureRig, procedure: list[object]) -> None:
+    procedure.append(None)
+    await rig.job(101).execute(rig.pauses)
+    assert await rig.archive.do(RunStore.calibrations) == []
+
+
+async def test_progress_is_told_and_a_hold_is_obeyed(rig: ProcedureRig) -> None:
+    await rig.context.progress(3, 24, "view")
+    assert rig.board.current.iteration == 3
+    assert rig.board.current.message == "view 3 of 24"
+    rig.pauses._held_at = (2,)
+    with pytest.raises(HeldMeanwhile):
+        await rig.context.progress(4, 24, "view")

@@ -1,0 +1,74 @@
+"""Procedures 101 and 102: the head swings about the board and comes back."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from cellctl.errors.calibration import BoardNotFound
+from cellctl.errors.link import ReplyTimeout
+from cellctl.geometry.pose import MM
+from cellctl.procedures.stereo_head import calibrate_head
+from tests.unit.procedures.rig import ProcedureRig
+
+
+class Solver:
+    """Stands in for detection and adjustment."""
+
+    def __init__(self, rig: ProcedureRig, seen: bool = True) -> None:
+        self.views: list[str] = []
+        self.given: tuple[object, ...] = ()
+        self._seen = seen
+        rig.answer(
+            detect_view=self._detect, calibrate_stereo=self._solve, stereo_picture=lambda _: b"png"
+        )
+
+    def _detect(self, pair: object, board: object) -> object | None:
+        self.views.append(pair.name)  # type: ignore[attr-defined]
+        every_other = len(self.views) % 2
+        return pair if self._seen and every_other else None
+
+    def _solve(self, views: object, board: object, image_size: object) -> object:
+        self.given = views, board, image_size
+        return SimpleNamespace(
+            to_record=lambda: {"verdict": "pass"}, passed=True, warnings=("few corners",)
+        )
+
+
+async def test_all_views_are_taken_and_the_head_comes_back(rig: ProcedureRig) -> None:
+    solver, station = Solver(rig), rig.bench.cell.head_1
+    outcome = await calibrate_head(rig.context, station)
+    count = rig.bench.cell.config.procedures.stereo_views
+    robot = rig.bench.cell.aux_1
+    taught, *views, back = robot.moves
+    np.testing.assert_allclose(taught.target, np.radians(station.config.measuring_joints_deg))
+    assert len(views) == count == len(solver.views)
+    assert all(move.kind == "linear" for move in views)
+    assert views[0].speed == pytest.approx(station.config.linear_speed_mm_s * MM)
+    np.testing.assert_allclose(views[0].target.as_matrix(), back.target.as_matrix(), atol=1e-9)
+    assert (outcome.item, outcome.serial_number, outcome.picture_png) == (
+        "head_1", "FH-0001", b"png",
+    )  # fmt: skip
+    used, board, image_size = solver.given
+    assert len(used) == count / 2  # type: ignore[arg-type]
+    assert str(board).startswith("9 x 6 chessboard, 25 mm")
+    assert image_size == (6, 4)
+    assert [progress.iteration for progress in rig.told] == list(range(1, count + 1))
+    assert rig.bench.cell.main.moves == []
+
+
+async def test_no_board_is_a_fault_of_its_own_and_the_head_is_back(rig: ProcedureRig) -> None:
+    solver = Solver(rig, seen=False)
+    with pytest.raises(BoardNotFound, match=r"head_2 sees no 9 x 6 chessboard.* in any of 24"):
+        await calibrate_head(rig.context, rig.bench.cell.head_2)
+    assert solver.given == ()
+    moves = rig.bench.cell.aux_2.moves
+    np.testing.assert_allclose(moves[-1].target.as_matrix(), moves[1].target.as_matrix())
+
+
+async def test_a_camera_that_falls_silent_ends_it(rig: ProcedureRig) -> None:
+    Solver(rig)
+    rig.bench.cell.head_1.camera.silent = True  # type: ignore[attr-defined]
+    with pytest.raises(ReplyTimeout):
+        await calibrate_head(rig.context, rig.bench.cell.head_1)
+    assert len(rig.bench.cell.aux_1.moves) == 2

@@ -1,0 +1,130 @@
+"""Procedures 104 and 105: one board, seen twice before each head; both are needed, once."""
+
+import asyncio
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.board_pose import target_board_discs
+from cellctl.calibration.board_transfer import TransferResult
+from cellctl.errors.calibration import CalibrationMissing
+from cellctl.errors.link import ReplyTimeout
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc
+from cellctl.interfaces import Target
+from cellctl.procedures.target_board import PAIRS, measure_board
+from cellctl.vision.ellipse import Ellipse
+from cellctl.vision.features import Hole
+from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
+from tests.contracts.inprocess.target_tracker import InProcessTracker
+from tests.unit.procedures.rig import ProcedureRig
+
+HEAD_SIGMA_M, FIELD_SIGMA_M = 5e-6, 7e-6
+BASE_T_C = {
+    "head_1": pose_from_xyzabc([1700, -400, 950, 90, 5, 178]),
+    "head_2": pose_from_xyzabc([2100, 400, 950, -90, 5, 178]),
+}
+
+
+class Field(InProcessTracker):
+    """Averages over many frames."""
+
+    async def measure(self, frames: int = 1) -> tuple[Target, ...]:
+        return tuple(
+            replace(target, sigma_m=FIELD_SIGMA_M) for target in await super().measure(frames)
+        )
+
+
+class Boards:
+    """A board before one head, where both that head and the large-field head see it."""
+
+    def __init__(self, rig: ProcedureRig) -> None:
+        self.rng = np.random.default_rng(0)
+        self.rig = rig
+        self.c_T_base = rig.bench.calibrations.c_T_base().pose
+        self.head_T_board = pose_from_xyzabc([5, -8, 505, 3, 1, 179])
+        self.predicted: list[RigidTransform] = []
+        rig.answer(measure_pair=self._measure, transfer_picture=lambda _: b"png")
+
+    def place(self, head: str) -> None:
+        c_T_board = self.c_T_base * BASE_T_C[head] * self.head_T_board
+        truth = {
+            name: c_T_board.apply(place) + self.rng.normal(0, FIELD_SIGMA_M, 3)
+            for name, place in target_board_discs().items()
+        }
+        self.rig.bench.cell.tracker = field = Field("tracker", truth | {"F1": np.zeros(3)})
+        field._connected = True
+
+    def _measure(
+        self, left: Any, right: Any, model: object, discs: Sequence[Hole], *,
+        camera_T_part: RigidTransform, search_radius_m: float,
+    ) -> PairMeasurement:  # fmt: skip
+        assert search_radius_m < 0.04, "less than half the pitch of the discs"
+        self.predicted.append(camera_T_part)
+        return PairMeasurement("default", tuple(self._disc(disc) for disc in discs))
+
+    def _disc(self, disc: Hole) -> HoleMeasurement:
+        place = self.head_T_board.apply(disc.position_m) + self.rng.normal(0, HEAD_SIGMA_M, 3)
+        ellipse = Ellipse(np.zeros(2), (30.0, 29.0), 0.0)
+        pixel, spread = np.zeros(2), np.eye(2)
+        return HoleMeasurement(
+            disc.name, disc.kind, pixel, pixel, spread, spread, place,
+            np.eye(3) * HEAD_SIGMA_M**2, ellipse, ellipse, disc.diameter_m, 0.1,
+        )  # fmt: skip
+
+
+@pytest.fixture
+def boards(rig: ProcedureRig) -> Boards:
+    return Boards(rig)
+
+
+async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Boards) -> None:
+    cell = rig.bench.cell
+    boards.place("head_1")
+    assert await measure_board(rig.context, cell.head_1) is None
+    boards.place("head_2")
+    outcome = await measure_board(rig.context, cell.head_2)
+    assert outcome is not None
+    assert (outcome.item, outcome.passed, outcome.picture_png) == ("board_transfer", True, b"png")
+    result = TransferResult.from_record(outcome.record)
+    for head, found in (("head_1", result.base_T_c1), ("head_2", result.base_T_c2)):
+        distance, angle = pose_error(BASE_T_C[head], found.pose)
+        assert np.linalg.norm(distance) < 2e-4
+        assert np.degrees(np.linalg.norm(angle)) < 0.03
+    assert len(boards.predicted) == 2 * PAIRS
+    for head, robot in zip(cell.heads, (cell.aux_1, cell.aux_2), strict=True):
+        (move,) = robot.moves
+        np.testing.assert_allclose(move.target, np.radians(head.config.measuring_joints_deg))
+
+
+async def test_a_placement_serves_once(rig: ProcedureRig, boards: Boards) -> None:
+    for head in (rig.bench.cell.head_1, rig.bench.cell.head_2):
+        boards.place(head.name)
+        await measure_board(rig.context, head)
+    assert rig.bench.calibrations.placements == {}
+    assert await measure_board(rig.context, rig.bench.cell.head_2) is None
+
+
+async def test_the_same_head_twice_does_not_make_a_pair(rig: ProcedureRig, boards: Boards) -> None:
+    boards.place("head_1")
+    for _ in range(2):
+        assert await measure_board(rig.context, rig.bench.cell.head_1) is None
+
+
+async def test_the_head_must_be_calibrated_first(rig: ProcedureRig, boards: Boards) -> None:
+    (rig.bench.calibrations.path / "head_1.json").unlink()
+    boards.place("head_1")
+    with pytest.raises(CalibrationMissing, match="head_1"):
+        await measure_board(rig.context, rig.bench.cell.head_1)
+
+
+async def test_a_silent_large_field_head_ends_both(rig: ProcedureRig, boards: Boards) -> None:
+    boards.place("head_1")
+    rig.bench.cell.tracker.silent = True
+    with pytest.raises(ReplyTimeout):
+        await measure_board(rig.context, rig.bench.cell.head_1)
+    assert len(asyncio.all_tasks()) == 1, "nobody goes on grabbing"
+    assert rig.bench.calibrations.placements == {}
