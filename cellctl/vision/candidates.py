@@ -18,6 +18,7 @@ Image32 = NDArray[np.float32]
 _MAX_EDGES = 12000
 _SUPPORT = 0.42
 """Share of the circumference that must vote for a centre."""
+_ARC_SUPPORT = 0.6
 _NOISE_FACTOR = 5.0
 
 
@@ -55,9 +56,9 @@ def find_candidates(
 
 
 def _shrink(smallest_radius_px: float) -> int:
-    """Largest reduction that leaves a radius of 3 px."""
+    """Largest reduction that leaves a radius of 4 px."""
     for shrink in (4, 3, 2):
-        if smallest_radius_px / shrink >= 3.0:
+        if smallest_radius_px / shrink >= 4.0:
             return shrink
     return 1
 
@@ -115,11 +116,22 @@ def _peaks(votes: Image32, radii: Array, limit: int) -> list[tuple[Array, float,
     size = 2 * max(1, int(radii[0] * 0.5)) + 1
     highest = cv2.dilate(best, np.ones((size, size), np.uint8))
     rows, columns = np.nonzero((best >= highest) & (best > _SUPPORT))
-    order = np.argsort(-best[rows, columns])[:limit]
-    found = []
+    order = np.argsort(-best[rows, columns])
+    found: list[tuple[Array, float, float]] = []
     for row, column in zip(rows[order], columns[order], strict=True):
         which = int(np.argmax(votes[:, row, column]))
-        found.append(
-            (np.array([column, row], dtype=float), float(radii[which]), float(best[row, column]))
-        )
+        centre, support = np.array([column, row], dtype=float), float(best[row, column])
+        around = slice(max(which - 1, 0), which + 2)
+        weights = np.maximum(votes[around, row, column] - 0.4 * best[row, column], 0.0)
+        radius = float(weights @ radii[around] / weights.sum())
+        if not any(_shadowed(centre, support, stronger) for stronger in found):
+            found.append((centre, radius, support))
+        if len(found) == limit:
+            break
     return found
+
+
+def _shadowed(centre: Array, support: float, stronger: tuple[Array, float, float]) -> bool:
+    """Whether a peak is an arc of a much better supported feature that it overlaps."""
+    near = float(np.linalg.norm(centre - stronger[0])) < 1.6 * stronger[1]
+    return near and support < _ARC_SUPPORT * stronger[2]

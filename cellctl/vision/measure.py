@@ -43,8 +43,9 @@ _COARSE_TOLERANCE_M = 2.5e-3
 _COARSE_REACH_PX = 7.0
 _COARSE_EPIPOLAR_PX, _FINE_EPIPOLAR_PX = 2.5, 0.35
 _SIZE_AGREEMENT = 0.02
-_SAME_PLACE_M = 2e-3
-_MAX_TRIED = 6
+_SAME_PLACE_M, _APART_M = 2.5e-3, 0.5e-3
+"""Coarse places closer than the first lead to one fine place; fine ones farther apart differ."""
+_MAX_TRIED = 10
 _SIDES = ("left", "right")
 
 _T = TypeVar("_T")
@@ -76,11 +77,15 @@ def measure_pair(
         return measure_pair_by_paper(pair, holes, expectation)
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
-    for assignment in _find(pair, holes, expectation)[:_MAX_TRIED]:
+    for assignment in _find(pair, holes, expectation):
+        if any(_same_place(assignment, other) for other in good):
+            continue
         try:
             good.append(_measure(pair, holes, assignment, expectation, layout_tolerance_m))
         except VisionError as fault:
             faults.append(fault)
+        if len(good) + len(faults) >= _MAX_TRIED:
+            break
     if not good:
         raise faults[0]
     for other in good[1:]:
@@ -91,7 +96,7 @@ def measure_pair(
 def _find(
     pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
 ) -> list[Assignment]:
-    """Distinct assignments of features to holes, best first; a fault when there is none."""
+    """Assignments of features to holes, best first; a fault when there is none."""
     spots: list[Spot] = []
     for reach in (NEAR, WIDE):
         if expectation is None:
@@ -100,20 +105,15 @@ def _find(
             spots = spots_near(pair, holes, expectation)
         found = assignments(holes, spots, tolerance_m=_COARSE_TOLERANCE_M, expectation=expectation)
         if found:
-            return _distinct(found)
+            return found
         if expectation is not None:
             break
     raise fault_without_layout(pair, holes, spots, expectation)
 
 
-def _distinct(found: Sequence[Assignment]) -> list[Assignment]:
-    """One of each group of assignments that put all holes at the same places."""
-    kept: list[Assignment] = []
-    for item in found:
-        apart = (np.abs(item.positions_m - other.positions_m).max() for other in kept)
-        if all(distance > _SAME_PLACE_M for distance in apart):
-            kept.append(item)
-    return kept
+def _same_place(assignment: Assignment, measured: PairMeasurement) -> bool:
+    """Whether an assignment is another coarse view of what is measured already."""
+    return bool(np.abs(assignment.positions_m - measured.positions_m).max() < _SAME_PLACE_M)
 
 
 def _measure(
@@ -256,7 +256,7 @@ def _check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float)
 def _refuse_ambiguity(first: PairMeasurement, other: PairMeasurement) -> None:
     for one, two in zip(first.holes, other.holes, strict=True):
         distance_m = float(np.linalg.norm(one.position_m - two.position_m))
-        if distance_m > _SAME_PLACE_M / 4.0:
+        if distance_m > _APART_M:
             raise HoleAmbiguous(
                 f"{one.name} could be either of two features {distance_m / MM:.1f} mm apart"
             )

@@ -11,7 +11,16 @@ from cellctl.vision.ellipse import Ellipse, ellipse_from_points
 from cellctl.vision.features import Hole
 from cellctl.vision.plane_patch import PlanePatch, plane_basis, plane_patch, to_plane
 from cellctl.vision.rim_edges import edge_circle
-from cellctl.vision.rim_fit import RimFit, RingPrior, fit_rim, fit_rim_pair, likely_wall
+from cellctl.vision.rim_fit import (
+    Fitted,
+    RimFit,
+    RingPrior,
+    fit_rim,
+    fit_rim_pair,
+    likely_wall,
+    rated,
+    rough_rim,
+)
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape
 from cellctl.vision.stereo_head import CameraModel
@@ -116,8 +125,9 @@ def measure_rim(sight: Sight, hole: Hole, located: Located) -> Rim | Rejection:
     task = _task(sight, hole, located)
     if isinstance(task, Rejection):
         return task
-    fit = _fit_alone(task)
-    refusal = _refusal(task, fit, fit.shapes[0])
+    fitted = _fit_alone(task)
+    fit = rated(fitted)
+    refusal = _refusal(task, fitted, fit, fit.shapes[0])
     return refusal or _rim(task, fit, fit.shapes[0], fit.covariance[:2, :2])
 
 
@@ -146,14 +156,15 @@ def measure_thread(
         RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO)
         for task, blur in zip(tasks, blurs, strict=True)
     ]
-    fit = fit_rim_pair(
+    fitted = fit_rim_pair(
         (left.pixels, right.pixels),
         (starts[0], starts[1]),
         Light(thread=True),
         RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
     )
+    fit = rated(fitted)
     for task, shape in zip(tasks, fit.shapes, strict=True):
-        refusal = _refusal(task, fit, shape)
+        refusal = _refusal(task, fitted, fit, shape)
         if refusal is not None:
             return refusal
     jacobian = np.zeros((4, 4))
@@ -237,29 +248,29 @@ def _band(
     return RimPixels(points, jacobians, grey, np.stack([columns, rows]), patch.unit_px)
 
 
-def _fit_alone(task: _Task) -> RimFit:
+def _fit_alone(task: _Task) -> Fitted:
     """The simplest model of the rim that the grey values do not contradict."""
     pixels, light = task.pixels, Light(cone=task.hole.countersink_m is not None)
     bare = RimShape(task.centre, task.radius, _BLUR_PX)
     if task.hole.kind == "disc":
         return fit_rim(pixels, bare, light)
-    sparse = pixels.every(3)
-    settled = fit_rim(sparse, bare, light).shapes[0]
     ratios = [depth_m / task.sight.distance_m for depth_m in _WALL_DEPTHS_M]
-    ratio, gain = likely_wall(sparse, settled, light, ratios)
+    rough = rough_rim(pixels, bare, light)
+    settled = rough.shapes[0]
+    ratio, gain = likely_wall(rough, ratios)
     if gain > _CLEAR_GAIN:
         return fit_rim(pixels, replace(settled, wall_ratio=ratio), light)
-    plain = fit_rim(pixels, settled, light)
-    ratio, gain = likely_wall(pixels, plain.shapes[0], light, ratios)
+    plain = fit_rim(pixels, settled, light, settled=True)
+    ratio, gain = likely_wall(plain, ratios)
     if gain < _HINT_GAIN:
         return plain
     walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light)
-    return walled if walled.bic < plain.bic - _EVIDENCE else plain
+    return walled if walled.bic() < plain.bic() - _EVIDENCE else plain
 
 
-def _refusal(task: _Task, fit: RimFit, shape: RimShape) -> Rejection | None:
+def _refusal(task: _Task, fitted: Fitted, fit: RimFit, shape: RimShape) -> Rejection | None:
     moved_px = float(np.linalg.norm(shape.centre - task.centre)) / task.patch.unit_px
-    if not fit.converged:
+    if not fitted.converged:
         return Rejection("fit of the rim did not settle")
     if abs(fit.contrast_grey) < _MIN_CONTRAST_GREY:
         return Rejection("too little contrast at the rim")

@@ -9,7 +9,7 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape, borders
 from cellctl.vision.rim_noise import arc_covariance, texture_covariance, widened
-from cellctl.vision.rim_problem import Problem, RimView, Solution, first
+from cellctl.vision.rim_problem import Problem, RimView, Solution
 from cellctl.vision.rim_solve import minimise
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.045, 0.022, 0.12
@@ -28,33 +28,58 @@ class RimFit:
     """Standard deviation of the residuals."""
     contrast_grey: float
     """Step from inside to outside."""
-    bic: float
-    """Bayesian information criterion, to compare models on the same pixels."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """A model at its best, before anything is said about its uncertainty."""
+
+    problem: Problem
+    solution: Solution
     converged: bool
 
+    @property
+    def shapes(self) -> tuple[RimShape, ...]:
+        """In each image."""
+        return tuple(view.shape(self.solution.vector) for view in self.problem.views)
 
-def fit_rim(pixels: RimPixels, start: RimShape, light: Light) -> RimFit:
-    """Fit one image from a start within 1–2 px."""
+    def bic(self) -> float:
+        """Bayesian information criterion, to compare models on the same pixels."""
+        residuals = np.abs(self.solution.residuals)
+        count = len(residuals)
+        limit = 4.0 * max(float(np.median(residuals)), 0.2)
+        mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
+        free = int(np.count_nonzero(self.solution.precision == 0.0))
+        return count * float(np.log(mean_square)) + free * float(np.log(count))
+
+
+def fit_rim(pixels: RimPixels, start: RimShape, light: Light, *, settled: bool = False) -> Fitted:
+    """Fit one image from a start within 1–2 px, or from one that already fits."""
     problem = _alone(pixels, start, light)
-    solution, converged = minimise(problem, start.vector)
-    return _result(problem, solution, [0, 1, 2], converged=converged)
+    solution, converged = minimise(problem, start.vector, weighing_rounds=1 if settled else 2)
+    return Fitted(problem, solution, converged)
 
 
-def likely_wall(
-    pixels: RimPixels, bare: RimShape, light: Light, ratios: Sequence[float]
-) -> tuple[float, float]:
+def rough_rim(pixels: RimPixels, start: RimShape, light: Light) -> Fitted:
+    """A quick fit to a few hundredths of a pixel, on few of the pixels."""
+    problem = _alone(pixels.every(3), start, light)
+    solution, converged = minimise(problem, start.vector, tolerance_px=0.03, weighing_rounds=1)
+    return Fitted(problem, solution, converged)
+
+
+def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
     """The wall ratio that would explain most of the misfit of a rim without a wall, and its gain.
 
     A score test: how far the weighted squares would fall if a wall of unknown, even grey were
     seen, with shape and light free to follow to first order.
     """
-    solution = first(_alone(pixels, bare, light), bare.vector)
+    solution, shape = bare.solution, bare.shapes[0]
     weighted = solution.design * solution.weights
     normal = np.linalg.inv(solution.normal() + 1e-9 * np.eye(len(solution.design)))
-    rim = solution.outside
     gains = []
     for ratio in ratios:
-        seen = borders(pixels, replace(bare, wall_ratio=ratio))[1].outside - rim
+        low = borders(bare.problem.views[0].pixels, replace(shape, wall_ratio=ratio))[1]
+        seen = low.outside - solution.outside
         shared = weighted @ seen
         slope = float((seen * solution.weights) @ solution.residuals)
         size = float((seen * solution.weights) @ seen - shared @ normal @ shared)
@@ -79,7 +104,7 @@ def fit_rim_pair(
     starts: tuple[RimShape, RimShape],
     light: Light,
     prior: RingPrior,
-) -> RimFit:
+) -> Fitted:
     """Fit a rim with a ring in both images at once.
 
     A ring two pixels wide whose grey is not known is easily taken for a shift of the rim. Both
@@ -104,7 +129,7 @@ def fit_rim_pair(
     )
     problem = Problem(views, light, mean, sigma)
     solution, converged = minimise(problem, mean)
-    return _result(problem, solution, [0, 1, 2, 3, 4], converged=converged)
+    return Fitted(problem, solution, converged)
 
 
 def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
@@ -118,18 +143,10 @@ def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
     return Problem((view,), light, shape.vector, sigma)
 
 
-def _bic(solution: Solution) -> float:
-    residuals = np.abs(solution.residuals)
-    count = len(residuals)
-    limit = 4.0 * max(float(np.median(residuals)), 0.2)
-    mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
-    free = int(np.count_nonzero(solution.precision == 0.0))
-    return count * float(np.log(mean_square)) + free * float(np.log(count))
-
-
-def _result(
-    problem: Problem, solution: Solution, geometry: list[int], *, converged: bool
-) -> RimFit:
+def rated(fitted: Fitted) -> RimFit:
+    """The fit with its uncertainty: pixel noise, texture, and what the model leaves unexplained."""
+    problem, solution = fitted.problem, fitted.solution
+    geometry = range(2 * len(problem.views) + 1)
     rows = [solution.lights + index for index in geometry]
     everything = solution.covariance()
     covariance = everything[np.ix_(rows, rows)]
@@ -156,12 +173,10 @@ def _result(
     )
     covariance += _model_covariance(problem, grey, outside, contrast, len(geometry))
     return RimFit(
-        shapes=tuple(view.shape(solution.vector) for view in problem.views),
+        shapes=fitted.shapes,
         covariance=covariance,
         residual_grey=float(np.sqrt(np.mean(solution.residuals**2))),
         contrast_grey=contrast,
-        bic=_bic(solution),
-        converged=converged,
     )
 
 

@@ -16,6 +16,8 @@ _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
 _WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 4.0, 30.0
+_CONE_SLOPE_GREY = 25.0
+"""Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
 """Radial extent, in radii, over which the flanks of a thread change by about their contrast."""
 
@@ -122,7 +124,8 @@ def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
         return _free(np.stack([np.ones_like(flat[0]), *flat]))
     around = _around(points, shape)
     above = _polar(points, shape)[0] - 1.0
-    return _free(np.concatenate([around, above * around[:3]]))
+    terms = np.concatenate([around, above * around[:3]])
+    return terms, np.array([*[np.inf] * 6, _CONE_SLOPE_GREY, _CONE_SLOPE_GREY])
 
 
 def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:

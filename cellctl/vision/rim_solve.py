@@ -8,22 +8,22 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim_problem import Problem, Solution, first, lights_of, refreshed, solved
 
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
-_CONVERGED_PX = 8e-4
 _SETTLED_PX = 0.01
 _LOWER_EDGE = 0.03
 """How much of a movement of the lower edge reaches the rim, at most."""
-_WEIGHING_ROUNDS = 2
 _EXTRAPOLATE_PX = 0.01
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
 
 
-def minimise(problem: Problem, start: Array) -> tuple[Solution, bool]:
+def minimise(
+    problem: Problem, start: Array, *, tolerance_px: float = 1.5e-3, weighing_rounds: int = 2
+) -> tuple[Solution, bool]:
     """The best solution, and whether it settled.
 
     The terms of the light depend weakly on the shape. They are held fixed for a few steps and then
     brought up to date; the series of these rounds converges linearly and is extrapolated. The
-    weights of the pixels are final after the first rounds.
+    weights of the pixels are final after ``weighing_rounds``.
     """
     best = first(problem, start)
     before: Array | None = None
@@ -33,8 +33,8 @@ def minimise(problem: Problem, start: Array) -> tuple[Solution, bool]:
         best = _settle(problem, best)
         change = best.vector - anchor
         change_px = _step_px(problem, change)
-        weighing = number < _WEIGHING_ROUNDS
-        if change_px < _CONVERGED_PX and not weighing:
+        weighing = number < weighing_rounds
+        if change_px < tolerance_px and not weighing:
             return best, True
         if before is not None and change_px < _EXTRAPOLATE_PX:
             best = replace(best, vector=best.vector + change * _gain(problem, before, change))
@@ -44,7 +44,7 @@ def minimise(problem: Problem, start: Array) -> tuple[Solution, bool]:
             if weighing
             else solved(problem, best.vector, lights_of(problem, best.vector), best.weights)
         )
-    return best, change_px < 5.0 * _CONVERGED_PX
+    return best, change_px < 4.0 * tolerance_px
 
 
 def _settle(problem: Problem, best: Solution) -> Solution:

@@ -29,9 +29,10 @@ def machined() -> Run:
 
 def test_clean_holes_are_measured_near_the_physical_limit(clean: Run) -> None:
     assert not clean.failures
-    for errors in clean.holes.values():
-        # 80 and 160 image points: the median scatters by less than 9 % and 6 %.
-        assert errors.median_ratio() < 1.5
+    for kind, errors in clean.holes.items():
+        # 80 and 160 image points: the median scatters by less than 9 % and 6 %. The bound knows
+        # nothing of a cone, whose grey must be estimated too.
+        assert errors.median_ratio() < {"pin": 1.4, "countersink": 1.9}[kind]
         assert errors.worst_px() < 6.0 * max(errors.bounds_px)
 
 
