@@ -5,20 +5,20 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
-from rich.table import Table
 
 from cellctl.config import load_cell, problems
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
-    """Check a cell file; exit code 1 and one line per error when it is not good."""
+    """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
     found = problems(cell_file)
     console = Console(soft_wrap=True, highlight=False)
     if found:
-        table = Table("fault", "key", "value", "allowed", title=f"{cell_file}: {len(found)} errors")
+        errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
+        console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
         for problem in found:
-            table.add_row(f"F{problem.number}", problem.key, problem.value, problem.allowed)
-        console.print(table)
+            console.print(f"F{problem.number} {problem.key} = {problem.value}", markup=False)
+            console.print(f"     {problem.allowed}", markup=False)
         raise typer.Exit(1)
     cell = load_cell(cell_file)
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")

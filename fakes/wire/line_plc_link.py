@@ -66,11 +66,19 @@ class CellLink:
         return self.report
 
     async def _beat(self) -> None:
-        count = 0
+        count = await self._standing_beat()
         while True:
             count = count % 0xFFFF + 1
             await self.write(HEARTBEAT_ADDRESS, [count])
             await asyncio.sleep(HEARTBEAT_PERIOD_S)
+
+    async def _standing_beat(self) -> int:
+        """What an earlier life of this PLC left in the register: it counts on from there."""
+        async with self._turn:
+            answer = await self._ask(self.client.read_holding_registers(HEARTBEAT_ADDRESS))
+        if answer.isError():
+            raise CellLost(f"read refused: {answer}")
+        return int(answer.registers[0])
 
     async def _poll(self) -> None:
         clock = asyncio.get_running_loop().time
