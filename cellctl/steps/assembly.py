@@ -140,7 +140,7 @@ class Assembly(Job):
         calibrations.require_instrument(PAYLOAD, self._cell.guard.health().sensor_serial)
 
     async def _to_the_beginning(self) -> None:
-        self._board.update(step=Step.NONE, message="to the beginning")
+        self._board.update(step=Step.NONE, iteration=0, message="to the beginning")
         await main_to_home(self._cell)
         await heads_to_measuring_poses(self._cell)
 
