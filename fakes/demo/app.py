@@ -49,8 +49,9 @@ def demo(
         with Family() as family:
             session = Session(family, console, complaint, folder=folder, seed=seed)
             try:
-                session.start(scenario, cell)
+                session.start_fake(scenario)
                 session.inject(fault or [])
+                session.start_daemon(cell)
                 code = session.run(calibrate=calibrate, stay=stay)
             except KeyboardInterrupt:
                 console.print("\nstopping the cell …")
@@ -76,12 +77,15 @@ class Session:
         self._begun_s = time.monotonic()
         self._daemon: Child | None = None
 
-    def start(self, scenario: Path, cell: Path) -> None:
-        """Both processes, each until it says that it is ready."""
+    def start_fake(self, scenario: Path) -> None:
+        """The fake cell, until all its devices listen."""
         self._console.print(f"starting fake cell (seed {self._seed}) and daemon …")
         arguments = ["-m", "fakes", "run", "--scenario", str(scenario), "--seed", str(self._seed)]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
         self._control = Control(int(ports["control"]))
+
+    def start_daemon(self, cell: Path) -> None:
+        """The daemon, until every device of its cell file is connected."""
         store = self._folder / "store"
         self._daemon = self._spawn(
             "daemon", ["-m", "cellctl", "run", str(cell), "--data-dir", str(store)]

@@ -14,9 +14,11 @@ _log = logging.getLogger(__name__)
 class FrameServerConnection:
     """The link to one head; see ``RequestLink`` for how it ends."""
 
-    def __init__(self, config: FrameServerConfig) -> None:
+    def __init__(self, name: str, config: FrameServerConfig) -> None:
         self._reply_timeout_s = config.reply_timeout_s
-        self.link = RequestLink("frame server", config.host, config.port, config.connect_timeout_s)
+        self.link = RequestLink(
+            f"{name}, frame server", config.host, config.port, config.connect_timeout_s
+        )
         self._request_id = 0
 
     async def exchange(self, command: Command) -> tuple[Header, bytes]:

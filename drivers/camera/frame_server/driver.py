@@ -18,7 +18,7 @@ class FrameServerHead(StereoCamera):
 
     def __init__(self, name: str, config: FrameServerConfig) -> None:
         self.name = name
-        self._connection = FrameServerConnection(config)
+        self._connection = FrameServerConnection(name, config)
         self._wanted = False
         self._last: Header | None = None
 

@@ -16,9 +16,9 @@ Value = TypeVar("Value")
 class TargetServerConnection:
     """The link to one head; see ``RequestLink`` for how it ends."""
 
-    def __init__(self, config: TargetServerConfig) -> None:
+    def __init__(self, name: str, config: TargetServerConfig) -> None:
         self.link = RequestLink(
-            "target server",
+            f"{name}, target server",
             config.host,
             config.port,
             config.connect_timeout_s,

@@ -17,7 +17,7 @@ class TargetServerTracker(TargetTracker):
     def __init__(self, name: str, config: TargetServerConfig) -> None:
         self.name = name
         self._config = config
-        self._connection = TargetServerConnection(config)
+        self._connection = TargetServerConnection(name, config)
         self._wanted = False
 
     async def connect(self) -> None:
