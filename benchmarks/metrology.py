@@ -91,8 +91,12 @@ def measure(run: Run, part: PartView, method: Method, contrast: dict[str, float]
     run.poses.add(part, pose)
 
 
-def both(kind: str, options: api.RenderOptions, arguments: argparse.Namespace, contrast: dict[str, float]
-         ) -> dict[Method, Run]:  # fmt: skip
+def both(
+    kind: str,
+    options: api.RenderOptions,
+    arguments: argparse.Namespace,
+    contrast: dict[str, float],
+) -> dict[Method, Run]:
     """Default and paper on the same images."""
     runs: dict[Method, Run] = {"default": Run(), "paper": Run()}
     for part in parts(kind, options, arguments.plates, arguments.exposures, seed=arguments.seed):

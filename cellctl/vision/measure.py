@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.vision import (
     HoleAmbiguous,
     HoleMissing,
+    ImageBlurred,
     ResidualsTooLarge,
     VisionError,
 )
@@ -43,6 +44,7 @@ _COARSE_TOLERANCE_M = 2.5e-3
 _COARSE_REACH_PX = 7.0
 _COARSE_EPIPOLAR_PX, _FINE_EPIPOLAR_PX = 2.5, 0.35
 _SIZE_AGREEMENT = 0.02
+_MAX_BLUR_PX = 2.5
 _SAME_PLACE_M, _APART_M = 2.5e-3, 0.5e-3
 """Coarse places closer than the first lead to one fine place; fine ones farther apart differ."""
 _MAX_TRIED = 10
@@ -145,6 +147,7 @@ def _measure(
             )
             blurs.append((left.blur_px, right.blur_px))
             rims = left, right, joint_covariance(left.covariance_px2, right.covariance_px2)
+        _check_sharpness(hole, rims[0], rims[1])
         measured[hole.name] = _stereo(pair.head, hole, *rims)
     result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     _check_layout(holes, result.positions_m, tolerance_m)
@@ -189,6 +192,15 @@ def _positions(
         if distance > _COARSE_EPIPOLAR_PX:
             raise HoleMissing(f"{hole.name}: left and right image disagree by {distance:.1f} px")
     return midpoints(head, left_px, right_px)
+
+
+def _check_sharpness(hole: Hole, left: Rim, right: Rim) -> None:
+    for side, rim in zip(_SIDES, (left, right), strict=True):
+        if rim.blur_px > _MAX_BLUR_PX:
+            raise ImageBlurred(
+                f"{side}: the rim of {hole.name} is blurred over {rim.blur_px:.1f} px, "
+                f"allowed {_MAX_BLUR_PX:.1f} px"
+            )
 
 
 def _stereo(

@@ -36,8 +36,6 @@ class EdgeCircle:
     radius: float
     support: float
     """Share of the azimuths with an edge point within the tolerance."""
-    points_px: Array
-    """Supporting edge points in the raw image, shape (n, 2)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,4 +162,4 @@ def _refined(edges: _Edges, start: tuple[Array, float], patch: PlanePatch) -> Ed
         tolerance = min(tolerance, max(4.0 * spread, 0.25 * px))
     close = np.abs(np.linalg.norm(edges.points - centre, axis=1) - radius) < _TOLERANCE_PX * px
     support = len(np.unique(edges.azimuth[close])) / _AZIMUTHS
-    return EdgeCircle(centre, radius, support, patch.to_px(edges.points[close]))
+    return EdgeCircle(centre, radius, support)

@@ -184,10 +184,11 @@ def _model_covariance(
     problem: Problem, grey: Array, outside: Array, contrast: float, size: int
 ) -> Array:
     """What a few smooth terms leave unexplained grows with how uneven the light at a rim is."""
-    bright, dark = grey[outside > 0.95], grey[outside < 0.05]
-    uneven = np.hypot(np.std(bright), np.std(dark)) / max(abs(contrast), 1.0)
+    sides = (grey[outside > 0.95], grey[outside < 0.05])
+    variances = [float(np.var(side)) if len(side) else 0.0 for side in sides]
+    uneven = float(np.sqrt(sum(variances))) / max(abs(contrast), 1.0)
     share_px = _CONE_MODEL_PX if problem.light.cone else _WALL_MODEL_PX
     if problem.views[0].model.ring_ratio is not None:
         share_px = _RING_MODEL_PX
-    sigma = share_px * float(uneven) * problem.views[0].pixels.unit_px
+    sigma = share_px * uneven * problem.views[0].pixels.unit_px
     return np.diag([*[sigma**2] * (size - 1), 0.0])

@@ -1,5 +1,6 @@
 """Detection and measurement on analytic images of this folder's own renderer."""
 
+import cv2
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
@@ -143,6 +144,13 @@ def test_images_that_cannot_be_measured(pair: tuple, spoil, fault: type[VisionEr
     left, right = pair
     with pytest.raises(fault, match="right"):
         measure_pair(left, spoil(right), HEAD, HOLES)
+
+
+def test_an_image_out_of_focus_is_called_that(pair: tuple) -> None:
+    left, right = pair
+    soft = cv2.GaussianBlur(right, (0, 0), 3.5)
+    with pytest.raises(ImageBlurred, match=r"right: the rim of P\d is blurred"):
+        measure_pair(left, soft, HEAD, HOLES)
 
 
 def test_averages_shrink_the_random_part_only(pair: tuple) -> None:
