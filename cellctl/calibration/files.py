@@ -69,22 +69,22 @@ class CalibrationSet:
         return self.head_1.head, self.head_2.head
 
     @property
-    def c_T_base(self) -> UncertainPose:  # noqa: N802
+    def c_T_base(self) -> UncertainPose:
         """Base of the main robot in the large-field head."""
         return self.base_frame.c_T_base
 
     @property
-    def base_T_c1(self) -> UncertainPose:  # noqa: N802
+    def base_T_c1(self) -> UncertainPose:
         """Head I in the base."""
         return self.transfer.base_T_c1
 
     @property
-    def base_T_c2(self) -> UncertainPose:  # noqa: N802
+    def base_T_c2(self) -> UncertainPose:
         """Head II in the base."""
         return self.transfer.base_T_c2
 
     @property
-    def c1_T_c2(self) -> UncertainPose:  # noqa: N802
+    def c1_T_c2(self) -> UncertainPose:
         """Head II in head I."""
         return self.transfer.c1_T_c2
 

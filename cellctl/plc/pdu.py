@@ -26,11 +26,11 @@ class Exc(IntEnum):
     ILLEGAL_VALUE = 3
 
 
-class _Malformed(Exception):  # noqa: N818
+class _Malformed(Exception):
     """A field does not fit: exception 03."""
 
 
-class _Unsupported(Exception):  # noqa: N818
+class _Unsupported(Exception):
     """Exception 01."""
 
 

@@ -9,7 +9,7 @@ _COMMIT = item("cmd_seq").address
 _HEARTBEAT = item("plc_heartbeat").address
 
 
-class AddressRefused(Exception):  # noqa: N818  # an answer to the client, not a fault of the cell
+class AddressRefused(Exception):  # an answer to the client, not a fault of the cell
     """Outside the map, or part of an item only: Modbus exception 02."""
 
 

@@ -51,7 +51,7 @@ def test_a_deaf_systemd_does_not_stop_the_cell(
     [
         (None, None, None),
         ("3000000", None, 1.5),
-        ("3000000", str(os.getpid()), 1.5),
+        pytest.param("3000000", str(os.getpid()), 1.5, id="own process"),
         ("3000000", "1", None),
         ("0", None, None),
         ("soon", None, None),

@@ -64,7 +64,11 @@ def test_what_was_synced_survives_without_an_end(tmp_path: Path) -> None:
     assert len(recording.curve.time_s) == 100
 
 
-@pytest.mark.parametrize("data", [b"", b"\x89MCAP0\r\n", b"not a recording at all", os.urandom(99)])
+@pytest.mark.parametrize(
+    "data",
+    [b"", b"\x89MCAP0\r\n", b"not a recording at all", bytes(range(99))],
+    ids=["empty", "magic only", "text", "bytes"],
+)
 def test_what_is_no_recording_is_a_clear_fault(data: bytes) -> None:
     with pytest.raises(RecordingUnreadable):
         read_recording(data)
