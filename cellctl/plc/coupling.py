@@ -4,7 +4,9 @@ from collections.abc import Callable
 
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
+from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
+from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.state import State
 from cellctl.plc.commands import LineCommand
 from cellctl.plc.result import Result
@@ -49,7 +51,7 @@ class LineCoupling:
         machine = self._machine
         changes_mode = command.unit_mode not in (0, machine.mode) and not command.ends_motion
         if changes_mode:
-            code = await machine.set_mode(command.unit_mode)
+            code = self._refused_in_new_mode(command) or await machine.set_mode(command.unit_mode)
             if code is not RejectCode.NONE:
                 return code
         if command.cntrl_cmd == Command.UNDEFINED and (changes_mode or command.alarm_ack_id):
@@ -62,6 +64,13 @@ class LineCoupling:
         if code is not RejectCode.NONE:
             self._pursued = before
         return code
+
+    def _refused_in_new_mode(self, command: LineCommand) -> RejectCode:
+        """A command that is refused leaves the mode as it was, too."""
+        state = self._machine.state
+        if command.cntrl_cmd == Command.UNDEFINED or judge_mode(state, command.unit_mode):
+            return RejectCode.NONE
+        return judge_command(state, Mode(command.unit_mode), command.cntrl_cmd)
 
     def _changed(self, before: State, after: State) -> None:
         if self._pursued is None or before is after:
