@@ -92,11 +92,11 @@ class OwnCell:
     def modbus_port(self) -> int:
         return self.ports[5020]
 
-    def change(self, old: str, new: str) -> None:
+    def change(self, old: str, new: str, count: int = -1) -> None:
         """Another line in the cell file; fails when the line is not there."""
         text = self.cell.read_text(encoding="utf-8")
         assert old in text, f"{old!r} is not in the cell file"
-        self.cell.write_text(text.replace(old, new), encoding="utf-8")
+        self.cell.write_text(text.replace(old, new, count), encoding="utf-8")
 
     def fake(self, seed: int = 1) -> "Program":
         options = ["--scenario", str(self.scenario), "--seed", str(seed)]

@@ -1,0 +1,249 @@
+"""What a user does wrong, and what is not there: numbered faults, exit codes, no traceback."""
+
+import json
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
+from tests.cell.own_cell import ROOT, OwnCell, Program, cellctl
+
+pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(120)]
+
+
+def refuses(program: Program, *words: str, code: int = 1, timeout_s: float = 40) -> str:
+    """It ends with that code and these words; what it said on standard error."""
+    assert program.end(timeout_s) == code, program.stdout + program.stderr
+    program.nobody_left()
+    said = program.stderr
+    assert "Traceback" not in said
+    for word in words:
+        assert word in said
+    assert "remedy: " in said
+    return said
+
+
+@contextmanager
+def taken(port: int, host: str = "127.0.0.1") -> Iterator[None]:
+    """Another program listens there."""
+    with socket.create_server((host, port)):
+        yield
+
+
+def test_every_error_of_a_cell_file_at_once(own: OwnCell) -> None:
+    own.change("d1_mm = 1045.0", "d1_mm = -5.0")
+    own.change("max_iterations = 10", "max_iterations = 1000")
+    own.change("[robots.main]\n", "[robots.main]\ncolour = 'red'\n")
+    own.change('transport = "tcp"', 'transport = "telepathy"')
+    checked = cellctl("check", str(own.cell))
+    assert checked.returncode == 1
+    assert checked.stderr == ""
+    for key in ("robots.main.d1_mm", "max_iterations", "robots.main.colour"):
+        assert key in checked.stdout
+    said = refuses(own.daemon(), "F102", "robots.main.d1_mm", "max_iterations", "colour")
+    assert "cellctl check" in said
+
+
+def test_settings_of_drivers_are_checked_too(own: OwnCell) -> None:
+    own.change('transport = "tcp"', 'transport = "telepathy"')
+    own.change('driver = "target-server"', 'driver = "crystal-ball"')
+    checked = cellctl("check", str(own.cell))
+    assert checked.returncode == 1
+    assert "force.sensor.settings.transport" in checked.stdout
+    assert "crystal-ball" in checked.stdout
+    assert "target-server" in checked.stdout  # what is installed
+
+
+def test_cell_file_that_does_not_exist(own: OwnCell) -> None:
+    own.cell.unlink()
+    refuses(own.daemon(), "F101", "cell.toml")
+
+
+def test_cell_file_that_is_no_toml(own: OwnCell) -> None:
+    own.cell.write_text("name = fake", encoding="utf-8")
+    refuses(own.daemon(), "F101", "line 1")
+
+
+def test_modbus_port_is_taken(own: OwnCell) -> None:
+    with taken(own.modbus_port):
+        refuses(own.daemon(), "F206", f":{own.modbus_port}")
+
+
+@pytest.mark.parametrize("shipped", [7002, 7003])
+def test_port_of_a_robot_is_taken(visited: OwnCell, shipped: int) -> None:
+    port = visited.ports[shipped]
+    with taken(port):
+        refuses(visited.daemon(), "F206", str(port))
+
+
+def test_nothing_answers(own: OwnCell) -> None:
+    """The fake cell was not started: every device that failed is named, not the first."""
+    own.change('robot_name = "SR500A"', 'robot_name = "SR500A"\nconnect_timeout_s = 2.0', count=1)
+    said = refuses(own.daemon(), "F201")
+    for device in ("robots.main", "robots.aux_1", "robots.aux_2", "head_1", "head_2", "tracker"):
+        assert device in said, device
+    assert "guard" in said
+
+
+@pytest.mark.parametrize(
+    ("device", "fault", "words"),
+    [
+        ("sensor", "silent", ("F205", "force sensor", "no frame")),
+        ("main", "wrong_version", ("F204", "SR500A", "SJL/2")),
+        ("large_field", "silent", ("F205", "tracker")),
+    ],
+)
+def test_one_device_is_silent_or_strange(
+    visited: OwnCell, device: str, fault: str, words: tuple[str, ...]
+) -> None:
+    with visited.control() as control:
+        control.request("inject", device=device, name=fault)
+    said = refuses(visited.daemon(), *words)
+    assert "T90A-2" not in said  # which is well
+
+
+def test_store_is_in_use(visited: OwnCell) -> None:
+    daemon = visited.daemon()
+    daemon.ready()
+    refuses(visited.daemon(), "F802", str(visited.data))
+    assert daemon.process.poll() is None
+
+
+def test_store_cannot_be_written(own: OwnCell) -> None:
+    (own.folder / "a-file").write_text("not a folder", encoding="utf-8")
+    refuses(own.daemon(data=own.folder / "a-file" / "store"), "F801", "a-file")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is forbidden to the superuser")
+def test_store_may_not_be_written(own: OwnCell) -> None:
+    own.data.mkdir(mode=0o500)
+    refuses(own.daemon(), "F801", str(own.data))
+
+
+def test_calibrations_that_cannot_be_used(visited: OwnCell) -> None:
+    """One daemon, three states of the folder: Start is refused each time, with the reason."""
+    folder = visited.folder / "calibration"
+    visited.change(f"{ROOT}/config/demo-calibration", str(folder))
+    daemon = visited.daemon()
+    daemon.ready()
+
+    def refused() -> str:
+        known = len(daemon.log)
+        plc = visited.plc("--timeout", "30")
+        assert plc.end(40) == 3
+        assert plc.messages[-1]["reject_code"] == 0x106
+        return "\n".join(str(entry.get("fault")) for entry in daemon.log[known:])
+
+    assert "F632" in refused()  # missing
+    copytree(ROOT / "config" / "demo-calibration", folder)
+    payload = folder / "payload.json"
+    payload.write_text(payload.read_text(encoding="utf-8").replace("1", "2", 1), encoding="utf-8")
+    assert "F631" in refused()  # damaged
+    _expire(folder, "head_2")
+    copytree(
+        ROOT / "config" / "demo-calibration",
+        folder,
+        dirs_exist_ok=True,
+        ignore=lambda _folder, names: [name for name in names if name == "head_2.json"],
+    )
+    said = refused()
+    assert "F633" in said
+    assert "head_2" in said
+    assert daemon.process.poll() is None
+
+
+def _expire(folder: Path, kind: str) -> None:
+    old = read_calibration(folder, kind)
+    now = datetime.now(UTC)
+    made, until = now - timedelta(days=200), now - timedelta(days=20)
+    expired = StoredCalibration(kind, old.record, made, until, old.software, old.serial_number)
+    write_stored(folder, expired)
+
+
+def test_head_that_sees_no_hole(visited: OwnCell) -> None:
+    with visited.control() as control:
+        control.request("inject", device="head_1", name="no_hole")
+    daemon = visited.daemon()
+    daemon.ready()
+    plc = visited.plc("--serial", "BLIND-1")
+    assert plc.end(60) == 4
+    assert plc.messages[-1]["result"] in ("stopped", "aborted")
+    fault = daemon.logged("fault", timeout_s=5)
+    assert 400 <= fault["number"] < 500
+    assert "P" in fault["fault"]  # names the holes
+    assert plc.messages[-1]["alarm"] == fault["number"]
+    shown = cellctl("runs", "show", "1", "--data-dir", str(visited.data))
+    assert f"F{fault['number']}" in shown.stdout
+    assert "Traceback" not in daemon.stderr
+
+
+def test_frame_server_that_never_answers(visited: OwnCell) -> None:
+    port = visited.ports[7102]
+    visited.change(f"port = {port} }}", f"port = {port}, reply_timeout_s = 3.0 }}")
+    daemon = visited.daemon()
+    daemon.ready()
+    with visited.control() as control:
+        control.request("inject", device="head_2", name="silent")
+    plc = visited.plc()
+    assert plc.end(60) == 4
+    fault = daemon.logged("fault", timeout_s=5)
+    assert fault["number"] == 205
+    assert "head_2" in fault["fault"]
+    assert "Traceback" not in daemon.stderr
+
+
+def test_demonstration_tells_the_fault(own: OwnCell) -> None:
+    """A fault that the user injects: exit code, words, and a record all the same."""
+    out = own.folder / "run"
+    demo = own.demo(out, "--fault", "head_1:no_hole")
+    assert demo.end(90) == 2
+    demo.nobody_left()
+    assert "Traceback" not in demo.stderr
+    assert "not good: " in demo.stderr
+    assert "F4" in demo.stderr
+    assert "remedy: " in demo.stderr
+    result = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    assert not result["passed"]
+    assert (out / "report" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--fault", "head_1:measles"], ["no such fault", "no_hole"]),
+        (["--fault", "nobody:silent"], ["unknown device", "head_1"]),
+    ],
+)
+def test_demonstration_refuses_nonsense(own: OwnCell, options: list[str], words: list[str]) -> None:
+    demo = own.demo(own.folder / "run", *options)
+    assert demo.end(60) == 1
+    demo.nobody_left()
+    assert "Traceback" not in demo.stderr
+    for word in words:
+        assert word in demo.stderr
+
+
+def test_demonstration_beside_another_one(own: OwnCell) -> None:
+    with taken(own.ports[4008]):
+        demo = own.demo(own.folder / "run")
+        assert demo.end(60) == 1
+    demo.nobody_left()
+    assert "Traceback" not in demo.stderr
+    assert f"{own.ports[4008]}" in demo.stderr
+    assert "in use" in demo.stderr
+
+
+def test_demonstration_with_a_wrong_cell_file(own: OwnCell) -> None:
+    own.change("d1_mm = 1045.0", "d1_mm = -5.0")
+    demo = own.demo(own.folder / "run")
+    assert demo.end(60) == 1
+    demo.nobody_left()
+    assert "F102" in demo.stderr
+    assert "robots.main.d1_mm" in demo.stderr
+    assert "Traceback" not in demo.stderr
