@@ -32,8 +32,8 @@ _MAX_MOVE_PX = 2.5
 _BAND_INSIDE_PX, _THREAD_INSIDE_PX, _BAND_OUTSIDE_PX = 6.5, 3.0, 5.5
 _DENSE_PX = 3.0
 _WALL_DEPTHS_M = (0.5e-3, 1e-3, 2e-3, 4e-3, 9e-3)
-_HINT_GAIN, _CLEAR_GAIN = 12.0, 60.0
-"""Falls of the squares that make a wall worth a fit, and that leave no doubt of it."""
+_FAINT_GAIN, _HINT_GAIN, _CLEAR_GAIN = 2.0, 12.0, 60.0
+"""Falls of the squares: worth a closer look, worth a fit with a wall, beyond doubt."""
 _EVIDENCE = 15.0
 """Fall of the information criterion that a more complex model must bring."""
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
@@ -261,6 +261,8 @@ def _fit_alone(task: _Task) -> Fitted:
     if gain > _CLEAR_GAIN:
         return fit_rim(pixels, replace(settled, wall_ratio=ratio), light)
     plain = fit_rim(pixels, settled, light, settled=True)
+    if gain < _FAINT_GAIN:
+        return plain
     ratio, gain = likely_wall(plain, ratios)
     if gain < _HINT_GAIN:
         return plain

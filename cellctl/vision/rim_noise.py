@@ -30,12 +30,11 @@ def weights_of(residuals: Array, outside: Array) -> Array:
     """Weights of the pixels: one over the variance there, less for outliers, shape (n,).
 
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
-    them it goes with the square of the share that the bright side covers.
+    them its variance goes with the share that the bright side covers.
     """
     bright = _robust_sigma(residuals[outside > 0.95])
     dark = _robust_sigma(residuals[outside < 0.05])
-    sigma = np.sqrt(dark**2 * (1.0 - outside) ** 2 + bright**2 * outside**2)
-    sigma = np.maximum(sigma, 0.5 * (dark + bright) * 0.5)
+    sigma = np.sqrt(dark**2 + (bright**2 - dark**2) * outside)
     scaled = np.abs(residuals) / sigma
     return np.asarray(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2)
 
@@ -79,10 +78,12 @@ def texture_covariance(
     lags = np.minimum(np.arange(size), size - np.arange(size))
     near = (lags[:, None] <= _LAG) & (lags[None, :] <= _LAG) & (pairs > _FEWEST_PAIRS)
     texture = np.where(near, correlation(seen, seen) / np.maximum(pairs, 1.0), 0.0)
-    spectra = [spectrum(row * outside) for row in influence]
-    found = np.array(
-        [[float((correlation(one, two) * texture).sum()) for two in spectra] for one in spectra]
+    spread = rfft2(texture)
+    shares = influence * outside
+    passed = np.stack(
+        [irfft2(spectrum(row) * spread, s=(size, size))[rows, columns] for row in shares]
     )
+    found = shares @ passed.T
     return np.asarray(0.5 * (found + found.T))
 
 
