@@ -11,7 +11,7 @@ import pytest
 from cellctl.records.store import RunStore
 from tests.cell.own_cell import OwnCell, cellctl
 
-pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(300)]
+pytestmark = pytest.mark.timeout(300)
 
 
 def test_a_good_part_with_its_record(own: OwnCell) -> None:

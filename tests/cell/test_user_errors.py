@@ -14,7 +14,7 @@ import pytest
 from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
 from tests.cell.own_cell import ROOT, OwnCell, Program, cellctl
 
-pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(120)]
+pytestmark = pytest.mark.timeout(120)
 
 
 def refuses(program: Program, *words: str, code: int = 1, timeout_s: float = 40) -> str:
@@ -184,8 +184,7 @@ def test_head_that_sees_no_hole(visited: OwnCell) -> None:
 
 
 def test_frame_server_that_never_answers(visited: OwnCell) -> None:
-    port = visited.ports[7102]
-    visited.change(f"port = {port} }}", f"port = {port}, reply_timeout_s = 3.0 }}")
+    visited.change("reply_timeout_s = 60.0", "reply_timeout_s = 3.0")
     daemon = visited.daemon()
     daemon.ready()
     with visited.control() as control:

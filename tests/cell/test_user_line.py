@@ -7,7 +7,7 @@ import pytest
 from tests.cell.outside_plc import HOLDING, INPUT, OutsidePlc
 from tests.cell.own_cell import OwnCell, cellctl
 
-pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(180)]
+pytestmark = pytest.mark.timeout(180)
 
 PRODUCTION, MAINTENANCE, MANUAL = 1, 2, 3
 

@@ -10,7 +10,7 @@ from cellctl.records.store import RunStore
 from tests.cell.outside_plc import OutsidePlc
 from tests.cell.own_cell import OwnCell, cellctl
 
-pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(180)]
+pytestmark = pytest.mark.timeout(180)
 
 QUIET_S = 3.0
 """Long enough for a robot that would move by itself."""

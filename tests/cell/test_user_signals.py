@@ -13,7 +13,7 @@ from cellctl.records.store import RunStore
 from fakes.demo.control import Control
 from tests.cell.own_cell import OwnCell, Program, free_port
 
-pytestmark = [pytest.mark.xdist_group("cell"), pytest.mark.timeout(300)]
+pytestmark = pytest.mark.timeout(300)
 
 STANDSTILL_S = 0.5
 """More than the stop latency and the ramp of every robot of the scenario."""
@@ -88,8 +88,8 @@ def test_idle_and_hung_up(visited: OwnCell) -> None:
 
 
 def test_while_heads_move(visited: OwnCell) -> None:
-    visited.change("speed_percent = 40", "speed_percent = 5")
-    visited.change("[-4.60244, -69.16114", "[-8.60244, -75.16114")  # far from where heads stand
+    slow, far = "speed_percent = 5", "measuring_joints_deg = [-1"  # ten degrees from where it is
+    visited.change("measuring_joints_deg = [-", f"{slow}\n{far}")
     daemon = visited.daemon()
     daemon.ready()
     plc = visited.plc()
