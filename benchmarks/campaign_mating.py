@@ -21,6 +21,7 @@ from benchmarks.campaign_mating_trial import Trial, draw_trial, run_trial
 
 LIMIT_N = 50.0
 WORKERS = 2
+SAVE_EACH = 10
 RESULT = Path("runs") / "campaign-mating.json"
 STIFFNESS_BINS = (1e5, 3e5, 1e6, 3e6, 1e7)
 LATENCY_BINS_MS = (10.0, 50.0, 250.0)
@@ -37,20 +38,25 @@ def main() -> int:
         trials = []
         for trial in pool.map(_seeded, seeds, chunksize=2):
             trials.append(trial)
-            if len(trials) % 20 == 0:
+            if len(trials) % SAVE_EACH == 0:
+                _save(trials, [])  # an interrupted campaign keeps what it has
                 console.print(f"{len(trials)} of {arguments.n} trials")
         failures = list(pool.map(run_failure, range(len(FAILURES))))
     console.print(_trial_table(trials))
     _print_odd(console, trials)
     console.print(_failure_table(failures))
-    RESULT.parent.mkdir(exist_ok=True)
-    rows = {"trials": [t.row() for t in trials], "failures": [t.row() for t in failures]}
-    RESULT.write_text(json.dumps(rows, indent=1), encoding="utf-8")
+    _save(trials, failures)
     missed = _missed(trials, failures)
     for line in missed:
         console.print(f"MISSED: {line}", style="bold red")
     console.print(f"{len(trials)} trials, {len(failures)} failures, written to {RESULT}")
     return 1 if missed else 0
+
+
+def _save(trials: list[Trial], failures: list[Trial]) -> None:
+    RESULT.parent.mkdir(exist_ok=True)
+    rows = {"trials": [t.row() for t in trials], "failures": [t.row() for t in failures]}
+    RESULT.write_text(json.dumps(rows, indent=1), encoding="utf-8")
 
 
 def _seeded(seed: int) -> Trial:
