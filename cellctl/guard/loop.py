@@ -115,6 +115,7 @@ class GuardLoop:
         if line_is != self._line_was:
             self._line_was = line_is
             up, fault = line_is
+            self._publish_status(now_s())  # who hears the news must not find the old status
             self.event("channel", up=up, fault=None if fault is None else fault_to_json(fault))
             if not up:
                 self._monitor.stop(TripReason.STOP_CHANNEL_LOST, now_s(), str(fault))

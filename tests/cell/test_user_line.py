@@ -94,7 +94,7 @@ def _refused_in_idle(plc: OutsidePlc) -> None:
 def _started_held_and_stopped(plc: OutsidePlc) -> None:
     assert plc.command("Start", mode=PRODUCTION, recipe=1, serial="OUTSIDE.1") == 0
     plc.until("Execute", lambda: plc.state == "Execute")
-    assert plc.value("step") == 10
+    plc.until("first step", lambda: plc.value("step") == 10)
     assert plc.value("run_result") == 0
     assert plc.command(0, mode=MAINTENANCE) == 0x83
     assert plc.command("Hold") == 0
