@@ -98,7 +98,11 @@ def _feature_problems(cell: CellConfig, folder: Path) -> list[Problem]:
 
 def _from_pydantic(prefix: str, error: ValidationError) -> list[Problem]:
     found = []
-    for item in error.errors(include_url=False):
+    items = error.errors(include_url=False)
+    parents = {item["loc"][:depth] for item in items for depth in range(1, len(item["loc"]))}
+    for item in items:
+        if item["type"] == "too_short" and item["loc"] in parents:
+            continue  # it has entries; what is wrong with them is reported by itself
         key = prefix + ".".join(str(part) for part in item["loc"])
         missing = item["type"] == "missing"
         value = "(missing)" if missing else _shorten(repr(item["input"]))
