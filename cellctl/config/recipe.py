@@ -33,7 +33,7 @@ class Mating(Section):
     limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
     """Never to be exceeded."""
     touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
-    release_force_n: Annotated[float, Field(ge=0, le=100)] = 15.0
+    release_force_n: Annotated[float, Field(ge=6, le=100)] = 15.0
     """Left on the joint for fastening after the hold."""
     max_lateral_force_n: Annotated[float, Field(gt=0, le=500)] = 25.0
     max_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 25.0

@@ -6,6 +6,7 @@ from cellctl import log
 from cellctl.cell.measuring import require_unmoved
 from cellctl.cell.step import Step
 from cellctl.errors import CellError
+from cellctl.force.detectors import Cusum
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.steps.compensate import compensate
 from cellctl.steps.mate import mate_until_seated
@@ -15,6 +16,10 @@ from cellctl.steps.mating.settings import MatingSettings
 from cellctl.steps.run import AssemblyRun
 
 _log = log.get(__name__)
+
+ABORT_MARGIN_N = 5.0
+"""The guard stops the robot this much below the limit: for its filter and the arm's way to stop."""
+RELEASE_BAND_N = 5.0
 
 
 async def mate_deck(run: AssemblyRun) -> None:
@@ -89,6 +94,10 @@ def _settings(run: AssemblyRun) -> MatingSettings:
         stiffness_n_m=mating.stiffness_n_per_mm / MM,
         target_force_n=mating.target_force_n,
         limit_force_n=mating.limit_force_n,
+        abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
+        release_low_n=mating.release_force_n - RELEASE_BAND_N,
+        release_high_n=mating.release_force_n + RELEASE_BAND_N,
+        touch=Cusum(drift_n=mating.touch_force_n / 2),
         stale_s=run.cell.config.force.stale_ms / 1e3,
         flange_age_s=run.cell.config.force.flange_age_ms / 1e3,
         fast_speed_m_s=mating.fast_speed_mm_s * MM,
