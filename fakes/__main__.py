@@ -14,7 +14,12 @@ from fakes.taught import taught as taught_poses
 DEFAULT_SCENARIO = Path("config/fake-cell.toml")
 ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
+app = typer.Typer(
+    help="The fake cell, a line PLC, and the demonstration of both.",
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+)
 
 
 @app.command()

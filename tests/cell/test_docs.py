@@ -1,0 +1,186 @@
+"""The documents as a reader uses them: every command exists, every link leads somewhere."""
+
+import re
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from cellctl.cli.app import app as cellctl_app
+from cellctl.cli.faults import fault_catalogue
+from cellctl.packml.document import state_machine_document
+from cellctl.plc.document import register_map_document
+from fakes.__main__ import app as fakes_app
+from fakes.demo.app import app as demo_app
+from fakes.wire.line_plc import app as plc_app
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted(
+    path
+    for path in (
+        *ROOT.glob("*.md"),
+        *(ROOT / "docs").rglob("*.md"),
+        *(ROOT / "fakes").rglob("*.md"),
+        *(ROOT / "drivers").rglob("*.md"),
+    )
+)
+_LINK = re.compile(r"(?<!!)\[[^\]]+\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
+_FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
+_INLINE = re.compile(r"`([^`\n]+)`")
+_PROGRAMS = ("make ", "cellctl ", "python -m ", ".venv/bin/")
+_SETTING = re.compile(r"[A-Z]+=\S+")
+
+
+@dataclass(frozen=True)
+class Written:
+    """A command in a document."""
+
+    page: Path
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.page.relative_to(ROOT)}: {self.text}"
+
+
+def name(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def commands() -> Iterator[Written]:
+    """Lines of code blocks and inline code that begin with one of our programs."""
+    for page in PAGES:
+        text = re.sub(r"\\\n *", "", page.read_text(encoding="utf-8"))
+        fenced = [line for block in _FENCE.findall(text) for line in block.splitlines()]
+        indented = [line[4:] for line in text.splitlines() if line.startswith("    ")]
+        for line in (*fenced, *indented, *_INLINE.findall(_FENCE.sub("", text))):
+            command = line.strip().removeprefix("$ ").split("  #")[0].split(" # ")[0].strip()
+            if command.startswith(_PROGRAMS) and "─" not in command:
+                yield Written(page, command.removeprefix(".venv/bin/"))
+
+
+COMMANDS = sorted({str(c): c for c in commands()}.values(), key=str)
+
+
+def targets() -> set[str]:
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    return set(re.findall(r"^([a-z-]+):(?!=)", makefile, re.MULTILINE))
+
+
+def options_exist(app: typer.Typer | click.Command, words: list[str]) -> None:
+    """Walks down to the sub-command; every option written is one of its options."""
+    command = typer.main.get_command(app) if isinstance(app, typer.Typer) else app
+    subcommands = getattr(command, "commands", None)
+    if subcommands is not None:
+        if not words or words[0].isupper() or words[0].startswith(("-", "…", "[")):
+            return
+        assert words[0] in subcommands, f"no sub-command {words[0]!r}"
+        options_exist(subcommands[words[0]], words[1:])
+        return
+    known = {option for parameter in command.params for option in parameter.opts}
+    for word in words:
+        option = word.strip("[]").split("=")[0]
+        if option.startswith("--"):
+            assert option in known | {"--help"}, f"no option {option!r} in {sorted(known)}"
+
+
+@pytest.mark.parametrize("written", COMMANDS, ids=str)
+def test_command_exists(written: Written) -> None:
+    words = shlex.split(written.text.replace("…", ""))
+    if words[0] == "make":
+        assert words[1] in targets()
+        assert all(_SETTING.fullmatch(word) for word in words[2:])
+    elif words[0] == "cellctl":
+        app = demo_app if words[1:2] == ["demo"] else cellctl_app
+        options_exist(app, words[2:] if app is demo_app else words[1:])
+    elif words[:3] == ["python", "-m", "fakes"]:
+        inner = {"demo": demo_app, "plc": plc_app}.get(words[3] if len(words) > 3 else "")
+        options_exist(inner or fakes_app, words[4:] if inner else words[3:])
+    elif words[:2] == ["python", "-m"]:
+        module = ROOT.joinpath(*words[2].split("."))
+        assert module.with_suffix(".py").is_file() or (module / "__main__.py").is_file()
+
+
+def test_there_are_commands_to_test() -> None:
+    pages = {command.page.name for command in COMMANDS}
+    assert {"README.md", "operating.md", "commissioning.md"} <= pages
+    assert len(COMMANDS) > 20
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = _FENCE.sub("", page.read_text(encoding="utf-8"))
+    for match in _LINK.finditer(text):
+        target = match[1] or match[2]
+        if target.startswith(("http://", "https://", "mailto:")):
+            continue
+        path, _, heading = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        assert file.exists(), f"{name(page)} links to {target}"
+        assert ROOT in file.parents, f"{name(page)} links out of the repository: {target}"
+        if heading:
+            assert heading in headings(file), f"{name(page)} links to {target}"
+
+
+def headings(page: Path) -> set[str]:
+    """Anchors as hosting sites make them."""
+    lines = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", line.lower()).replace(" ", "-") for line in lines}
+
+
+def test_every_page_can_be_found() -> None:
+    """From the README, by links to pages or to the folders that hold them."""
+    reached: set[Path] = set()
+    waiting = [ROOT / "README.md"]
+    while waiting:
+        page = waiting.pop()
+        if page in reached:
+            continue
+        reached.add(page)
+        if page.is_dir():
+            waiting += page.glob("*.md")
+            continue
+        for match in _LINK.finditer(page.read_text(encoding="utf-8")):
+            target = (page.parent / (match[1] or match[2]).split("#")[0]).resolve()
+            if target.is_dir() or target.suffix == ".md":
+                waiting.append(target)
+    docs = set((ROOT / "docs").rglob("*.md"))
+    assert {name(page) for page in docs - reached} == set()
+
+
+def test_generated_pages_are_new() -> None:
+    docs = ROOT / "docs"
+    assert (docs / "faults.md").read_text(encoding="utf-8") == fault_catalogue()
+    assert (docs / "register-map.md").read_text(encoding="utf-8") == register_map_document()
+    assert (docs / "state-machine.md").read_text(encoding="utf-8") == state_machine_document()
+
+
+def test_cheap_commands_run() -> None:
+    runner = CliRunner()
+    for arguments in (
+        ["check", str(ROOT / "config" / "cell.fake.toml")],
+        ["check", str(ROOT / "config" / "cell.toml")],
+        ["faults"],
+    ):
+        done = runner.invoke(cellctl_app, arguments)
+        assert done.exit_code == 0, (arguments, done.output)
+
+
+@pytest.mark.parametrize(
+    "app", [cellctl_app, fakes_app, demo_app, plc_app], ids=["cellctl", "fakes", "demo", "plc"]
+)
+def test_every_command_explains_itself(app: typer.Typer) -> None:
+    def explain(command: click.Command, path: list[str]) -> None:
+        for child, inner in getattr(command, "commands", {}).items():
+            explain(inner, [*path, child])
+        if "--help" in command.get_help_option_names(click.Context(command)):
+            done = runner.invoke(app, [*path, "--help"])
+            assert done.exit_code == 0, done.output
+            assert command.help, f"{path} has no words of help"
+
+    runner = CliRunner()
+    explain(typer.main.get_command(app), [])
