@@ -45,12 +45,7 @@ def list_runs(
     if not runs:
         typer.echo("no runs")
         return
-    table = Table(
-        "run", "serial", "recipe", "mode", "started (UTC)", "duration", "result", box=None
-    )
-    for head in runs:
-        table.add_row(*_row(head))
-    Console().print(table)
+    Console().print(_table(runs))
 
 
 @app.command()
@@ -128,7 +123,7 @@ def _damaged(store: RunStore, record: RunRecord) -> list[str]:
 def _table(runs: Sequence[RunHead]) -> Table:
     table = Table(box=None)
     for name in ("run", "serial", "recipe", "mode", "started (UTC)", "duration", "result"):
-        table.add_column(name, no_wrap=name != "recipe")
+        table.add_column(name, no_wrap=name in {"run", "mode", "duration", "result"})
     for head in runs:
         table.add_row(*_row(head))
     return table

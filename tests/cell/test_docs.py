@@ -86,6 +86,9 @@ def options_exist(app: typer.Typer | click.Command, words: list[str]) -> None:
         option = word.strip("[]").split("=")[0]
         if option.startswith("--"):
             assert option in known | {"--help"}, f"no option {option!r} in {sorted(known)}"
+    if len(words) > 1:  # not only mentioned
+        missing = [p.opts[-1] for p in command.params if p.required and p.opts[-1] not in words]
+        assert not [option for option in missing if option.startswith("--")]
 
 
 @pytest.mark.parametrize("written", COMMANDS, ids=str)
