@@ -32,8 +32,7 @@ class UncertainPose:
         from_self[:3, 3:] = -skew(arm)
         from_other = np.kron(np.eye(2), rotation)
         covariance = (
-            from_self @ self.covariance @ from_self.T
-            + from_other @ other.covariance @ from_other.T
+            from_self @ self.covariance @ from_self.T + from_other @ other.covariance @ from_other.T
         )
         return UncertainPose(self.pose * other.pose, covariance)
 
