@@ -40,12 +40,12 @@ class CellError(Exception):
 
 
 def catalogue(root: type[CellError] = CellError) -> list[type[CellError]]:
-    """Every numbered fault, by number. Needs the modules that define them to be imported."""
+    """Every numbered fault of the core, by number, from the modules that are imported."""
     found: list[type[CellError]] = []
     pending = [root]
     while pending:
         cls = pending.pop()
         pending.extend(cls.__subclasses__())
-        if cls.number:
+        if cls.number and cls.__module__.startswith("cellctl."):
             found.append(cls)
     return sorted(found, key=lambda cls: cls.number)
