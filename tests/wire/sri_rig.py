@@ -2,6 +2,7 @@
 
 import asyncio
 import random
+import time
 from collections.abc import Callable
 from typing import Any, TypeVar
 
@@ -29,12 +30,16 @@ async def blocking(call: Callable[[], T]) -> T:
     return await asyncio.wait_for(asyncio.to_thread(call), 8)
 
 
+READ_UNTIL_S = 15.0
+
+
 async def read_until(sensor: SriSensor, condition: Callable[[], bool]) -> list[Any]:
-    """Read until a condition holds, at most five seconds; the samples of that time."""
+    """Read until a condition holds, at most so many seconds; the samples of that time."""
 
     def run() -> list[Any]:
         found: list[Any] = []
-        for _ in range(500):
+        end_s = time.monotonic() + READ_UNTIL_S
+        while time.monotonic() < end_s:
             found += sensor.read(0.01)
             if condition():
                 return found
