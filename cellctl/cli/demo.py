@@ -1,18 +1,16 @@
 """`cellctl demo`: the main job on the fake cell, which is a program of its own."""
 
-import subprocess
+import os
 import sys
 
 import typer
 
-PASS_THROUGH = {"allow_extra_args": True, "ignore_unknown_options": True}
+PASS_THROUGH = {"allow_extra_args": True, "ignore_unknown_options": True, "help_option_names": []}
 
 
 def demo(context: typer.Context) -> None:
-    """Start fake cell, daemon and line PLC and assemble one deck (`--help` for its options)."""
-    command = [sys.executable, "-m", "fakes", "demo", *context.args]
-    try:
-        code = subprocess.run(command, check=False).returncode
-    except KeyboardInterrupt:
-        code = 130
-    raise typer.Exit(code)
+    """Start fake cell, daemon and line PLC and assemble one deck (`--help` for its options).
+
+    That program takes the place of this one: a signal must reach it and nobody else.
+    """
+    os.execv(sys.executable, [sys.executable, "-m", "fakes", "demo", *context.args])

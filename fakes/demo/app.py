@@ -39,7 +39,10 @@ def demo(
         list[str] | None, typer.Option(help="Inject before the start: device:name.")
     ] = None,
 ) -> None:
-    """Assemble one deck on the fake cell; exit code 0 only for a good part."""
+    """Assemble one deck on the fake cell; exit code 0 only for a good part.
+
+    With --stay the cell waits for an outside PLC, and Ctrl-C is its ordinary end.
+    """
     console = Console(highlight=False, quiet=quiet, soft_wrap=True)
     complaint = Console(stderr=True, highlight=False, soft_wrap=True, style="red")
     folder = out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}"
@@ -57,6 +60,7 @@ def demo(
                 console.print("\nstopping the cell …")
         if code == INTERRUPTED:
             console.print(session.how_it_ended())
+            code = GOOD if stay else INTERRUPTED
     except (ChildFailed, Refused, OSError) as error:
         complaint.print(str(error), markup=False)
         code = NOT_STARTED
@@ -138,6 +142,7 @@ class Session:
         result = self._line("--serial", f"SAT-{self._seed:04d}")
         faults = self._faults()
         truth = self._control.request("truth")["truth"]
+        self._console.print("writing record and report …")
         outcome = collect(self._folder, result, truth, time.monotonic() - self._begun_s)
         self._console.print(result_table(outcome))
         if outcome["report"]:

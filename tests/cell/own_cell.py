@@ -108,7 +108,7 @@ class OwnCell:
 
     def demo(self, out: Path, *options: str) -> "Program":
         files = ["--scenario", str(self.scenario), "--cell", str(self.cell), "--out", str(out)]
-        return self._start("fakes", "demo", *files, *options)
+        return self._start("cellctl", "demo", *files, *options)
 
     def plc(self, *options: str) -> "Program":
         return self._start("fakes", "plc", "--port", str(self.modbus_port), *options)

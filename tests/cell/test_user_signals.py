@@ -19,12 +19,12 @@ STANDSTILL_S = 0.5
 """More than the stop latency and the ramp of every robot of the scenario."""
 
 
-def send(daemon: Program, number: signal.Signals) -> None:
+def send(program: Program, number: signal.Signals) -> None:
     """SIGTERM as a service manager does, SIGINT and SIGHUP as a terminal: to the whole group."""
     if number is signal.SIGTERM:
-        daemon.process.send_signal(number)
+        program.process.send_signal(number)
     else:
-        os.killpg(daemon.process.pid, number)
+        os.killpg(program.process.pid, number)
 
 
 def ends_in_order(daemon: Program) -> None:
@@ -138,8 +138,8 @@ def test_demonstration(own: OwnCell, moment: str) -> None:
     demo = own.demo(out)
     wanted = {"starting": "starting fake cell", "measuring": "measure frame"}[moment]
     demo.until(wanted, lambda: wanted in demo.stdout)
-    number = signal.SIGTERM if moment == "starting" else signal.SIGINT
-    assert demo.interrupt(number, 40) == 130
+    send(demo, signal.SIGTERM if moment == "starting" else signal.SIGINT)
+    assert demo.end(40) == 130
     demo.nobody_left()
     assert demo.stderr == ""
     assert "stopped: " in demo.stdout
@@ -154,7 +154,8 @@ def test_cell_that_stays_up(own: OwnCell) -> None:
     demo = own.demo(own.folder / "run", "--stay")
     demo.until("an address for the PLC", lambda: "Ctrl-C ends both" in demo.stdout)
     assert f"127.0.0.1:{own.modbus_port}" in demo.stdout
-    assert demo.interrupt(signal.SIGINT, 40) == 130
+    send(demo, signal.SIGINT)
+    assert demo.end(40) == 0
     demo.nobody_left()
 
 
