@@ -19,6 +19,7 @@ from cellctl.calibration.files import (
     write_stored,
 )
 from cellctl.calibration.stereo_result import StereoResult
+from cellctl.cell.commissioned import Commissioned, read_commissioned
 from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.calibration import (
@@ -85,6 +86,10 @@ class CalibrationFolder:
         ids = {**geometry.ids, PAYLOAD: payload.id}
         return Calibrations(geometry, compensation, ids, serial_numbers)
 
+    def commissioned(self, recipe_id: int, planned: timedelta) -> Commissioned:
+        """What commissioning has measured and stays valid for longer than ``planned``."""
+        return read_commissioned(self.path, recipe_id, utc_now() + planned)
+
     def head(self, name: str) -> StereoHead:
         """One stereo head, for procedures that need it before the set is complete."""
         return StereoResult.from_record(read_calibration(self.path, name).record).head
@@ -130,7 +135,7 @@ class CalibrationFolder:
         return folder
 
     def stored(self) -> list[StoredCalibration]:
-        """Every record in its envelope; raises when one is missing or damaged."""
+        """Every record that production demands; raises when one is missing or damaged."""
         return [read_calibration(self.path, kind) for kind in ALL_KINDS]
 
     def fault(self, planned: timedelta) -> CellError | None:

@@ -29,7 +29,13 @@ class Job(ABC):
     number: int
     """Recipe or procedure, for the line."""
     serial: str
-    run_number: int = 0
+    assembles: bool = False
+    """Its good end is one more part."""
+
+    @property
+    def run_number(self) -> int:
+        """Of its record; 0 while there is none."""
+        return 0
 
     @property
     def outcome(self) -> RunResult:

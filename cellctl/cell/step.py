@@ -20,6 +20,7 @@ class Step(IntEnum):
     CALIBRATE_BOARD_2 = 105
     IDENTIFY_PAYLOAD = 106
     MEASURE_STOP_LATENCY = 107
+    MEASURE_CONTACT_STIFFNESS = 108
 
     @property
     def label(self) -> str:

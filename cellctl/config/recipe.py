@@ -43,9 +43,12 @@ class Mating(Section):
     fast_speed_mm_s: Annotated[float, Field(gt=0, le=20)] = 5.0
     acceleration_mm_s2: Annotated[float, Field(gt=0, le=200)] = 20.0
     stop_latency_ms: Annotated[float, Field(ge=1, le=2000)]
-    """Measured on this cell by the stop-latency procedure."""
+    """Upper bound, used while procedure 107 has no valid result; 107 does not pass beyond it."""
     stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
-    """Robot and joint in series, measured on this cell."""
+    """Robot and joint in series: upper bound, used while procedure 108 has no valid result for
+    this recipe; 108 does not pass beyond it. The robot's own stiffness is a safe choice."""
+    part_spread_ratio: Annotated[float, Field(ge=1, le=10)] = 1.5
+    """Other parts of this recipe may be so much stiffer than those of procedure 108."""
     max_tries: Annotated[int, Field(ge=1, le=5)] = 3
 
 

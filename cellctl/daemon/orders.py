@@ -15,7 +15,8 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.plc.commands import LineCommand
 from cellctl.procedures.maintenance import Maintenance, is_procedure
-from cellctl.steps.assembly import PLANNED, Assembly
+from cellctl.steps.assembly import Assembly
+from cellctl.steps.preparation import PLANNED
 
 _log = log.get(__name__)
 

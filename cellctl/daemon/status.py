@@ -12,7 +12,7 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.state import State
 from cellctl.plc.result import Result
 from cellctl.plc.status import NO_VALUE, CellStatus
-from cellctl.steps.assembly import PLANNED
+from cellctl.steps.preparation import PLANNED
 
 
 class StatusView:

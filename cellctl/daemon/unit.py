@@ -20,7 +20,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.records.entries import RunResult
+from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
 from cellctl.steps.positions import lift_off
 
@@ -29,6 +29,7 @@ _log = log.get(__name__)
 ABORT_TIMEOUT_S = 20.0
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
+_IN_CONTACT = frozenset({Step.MATE, Step.MEASURE_CONTACT_STIFFNESS})
 _AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 
 
@@ -70,7 +71,9 @@ class Unit:
             _log.warning("an earlier process left runs open", runs=interrupted)
         await self.alarms.open()
         heads = await self._archive.do(RunStore.runs, limit=1_000_000)
-        self.parts = sum(head.result == RunResult.GOOD for head in heads)
+        self.parts = sum(
+            head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
+        )
 
     @property
     def work(self) -> Work:
@@ -80,7 +83,7 @@ class Unit:
     @property
     def expects_trips(self) -> bool:
         """True while a step deals with the trips of the guard itself."""
-        return self.board.current.step is Step.MATE
+        return self.board.current.step in _IN_CONTACT
 
     def line_lost(self) -> None:
         """The line's heartbeat stopped: hold at the next safe point."""
@@ -125,7 +128,7 @@ class Unit:
         if outcome is None:
             await self._halt(RunResult.BAD)
             return
-        assembled = self._work.run_number is not None and outcome is RunResult.GOOD
+        assembled = self._work.assembles and outcome is RunResult.GOOD
         await self._work.close(outcome, None)
         self.parts += assembled
 

@@ -47,6 +47,11 @@ class Work:
         return (self._job.run_number or None) if self._job else None
 
     @property
+    def assembles(self) -> bool:
+        """True while the present job makes a part."""
+        return self._job is not None and self._job.assembles
+
+    @property
     def outcome(self) -> RunResult | None:
         """How a job that did all it had to do ends; None for one that was cut short."""
         return self._job.outcome if self._job and self._finished else None

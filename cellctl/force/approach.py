@@ -71,6 +71,19 @@ def series(first_n_m: float, second_n_m: float) -> float:
     return first_n_m * second_n_m / (first_n_m + second_n_m)
 
 
+def planned_stiffness(
+    bound_n_m: float, measured_upper_n_m: float | None, part_spread_ratio: float
+) -> float:
+    """Stiffness to plan with, arm and contact in series, as an upper bound.
+
+    What one pair of parts has shown counts for the next one ``part_spread_ratio`` times stiffer,
+    and never above the bound that holds without any measurement.
+    """
+    if measured_upper_n_m is None:
+        return bound_n_m
+    return min(bound_n_m, part_spread_ratio * measured_upper_n_m)
+
+
 def peak_at(speed_m_s: float, figures: ApproachFigures) -> ApproachSpeed:
     """Predicted worst peak of the contact force when touched at a speed."""
     stiffness = figures.stiffness_n_m

@@ -1,5 +1,6 @@
 """Stop latency and contact stiffness from what a robot did: straight-line fits with honest σ."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,6 +79,18 @@ def estimate_stiffness(
     if slope <= 0.0:
         raise CommissioningFailed(f"force does not grow with travel: {slope:.3g} N/m")
     return StiffnessEstimate(slope, slope_sigma, -offset / slope, rms)
+
+
+def joint_stiffness(estimates: Sequence[StiffnessEstimate]) -> StiffnessEstimate:
+    """One figure from n ≥ 2 contacts; their scatter is part of its sigma."""
+    slopes = np.array([estimate.stiffness_n_m for estimate in estimates])
+    inner = np.mean([estimate.sigma_n_m**2 for estimate in estimates])
+    return StiffnessEstimate(
+        stiffness_n_m=float(slopes.mean()),
+        sigma_n_m=float(np.sqrt(inner + slopes.var(ddof=1))),
+        contact_m=float(np.mean([estimate.contact_m for estimate in estimates])),
+        residual_n=float(np.sqrt(np.mean([estimate.residual_n**2 for estimate in estimates]))),
+    )
 
 
 def _line(x: Array, y: Array) -> tuple[float, float, float, float]:

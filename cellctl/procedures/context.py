@@ -7,6 +7,7 @@ from typing import Any
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import HeldMeanwhile, SafePoint
+from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import ProgressBoard
 
 
@@ -18,6 +19,8 @@ class ProcedureContext:
     calibrations: CalibrationFolder
     board: ProgressBoard
     safe_point: SafePoint
+    record: JobRecord
+    """To be opened by a procedure with contact, before it moves."""
 
     async def progress(self, done: int, total: int, message: str) -> None:
         """Tell how far it is, and obey a pending Hold.

@@ -9,12 +9,14 @@ from cellctl.cell.archive import Archive
 from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import HeldMeanwhile, Job, SafePoint
+from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.step import Step
 from cellctl.errors import CellError
 from cellctl.errors.calibration import ResultOutOfLimits
 from cellctl.plc.commands import LineCommand
 from cellctl.procedures.base_frame import calibrate_base
+from cellctl.procedures.contact_stiffness import measure_contact_stiffness_on_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
@@ -35,6 +37,7 @@ PROCEDURES: dict[int, Procedure] = {
     Step.CALIBRATE_BOARD_2: lambda context: measure_board(context, context.cell.head_2),
     Step.IDENTIFY_PAYLOAD: identify_payload_on_cell,
     Step.MEASURE_STOP_LATENCY: measure_stop_latency_on_cell,
+    Step.MEASURE_CONTACT_STIFFNESS: measure_contact_stiffness_on_cell,
 }
 
 
@@ -61,6 +64,12 @@ class Maintenance(Job):
         self._board = board
         self._calibrations = calibrations
         self._command = command
+        self._record = JobRecord(cell, archive, command)
+
+    @property
+    def run_number(self) -> int:
+        """Of its record; only procedures with contact have one."""
+        return self._record.number
 
     async def start(self) -> None:
         """Nothing to bring anywhere: each procedure begins where it needs to."""
@@ -71,7 +80,9 @@ class Maintenance(Job):
 
         Raises ``ResultOutOfLimits`` when the verdict is bad.
         """
-        context = ProcedureContext(self._cell, self._calibrations, self._board, safe_point)
+        context = ProcedureContext(
+            self._cell, self._calibrations, self._board, safe_point, self._record
+        )
         while True:
             try:
                 outcome = await PROCEDURES[self.number](context)
@@ -84,9 +95,10 @@ class Maintenance(Job):
         await self._keep(outcome)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
-        """Procedures keep no run row: their record is the calibration and the audit log."""
+        """The record is the calibration and the audit log; after contact also a run."""
         step = Step(self.number)
         self._board.update(step=Step.NONE)
+        await self._record.close(outcome, fault)
         ended = {"procedure": step.label, "outcome": outcome.value, "fault": str(fault or "")}
         await self._archive.do(RunStore.audit, self._who, "procedure ended", ended)
         return outcome

@@ -9,6 +9,9 @@ from typing import Any
 Six = tuple[float | None, ...]
 """x, y, z in mm, rx, ry, rz (or A, B, C of a pose) in degrees; None is unknown."""
 
+PRODUCTION = "production"
+"""Mode of the runs that make parts."""
+
 
 class RunResult(StrEnum):
     """How a run ended."""

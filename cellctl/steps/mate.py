@@ -86,8 +86,7 @@ async def _run(attempt: Attempt) -> MatingResult:
     await take_over(attempt)
     readings = await creep_to(attempt, plan.creep, MatingPhase.CREEP)
     held, verdict = await hold(attempt, readings)
-    leaving = await _leave(attempt, held, verdict, stiffness_of(readings))
-    released = leaving[-1] if leaving else None
+    relaxing = await _leave(attempt, held, verdict, stiffness_of(readings))
     curve = attempt.recorder.curve()
     return MatingResult(
         outcome=MatingOutcome.SEATED if verdict.seated else MatingOutcome.FALSE_SEAT,
@@ -98,10 +97,10 @@ async def _run(attempt: Attempt) -> MatingResult:
         touch_travel_m=touch_travel_m,
         touch_force_n=readings[0].force_n,
         creep=readings,
-        stiffness=stiffness_of((*readings, *leaving)),
+        stiffness=stiffness_of((*readings, *relaxing)),
         hold=held,
         verdict=verdict,
-        released=released,
+        relaxing=relaxing,
         curve=curve,
         statistics=curve_statistics(curve.time_s, curve.wrench),
         duration_s=loop_time_s() - begin_s,

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.calibrations import Calibrations
+from cellctl.cell.commissioned import Commissioned
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import HeldMeanwhile, SafePoint
 from cellctl.cell.measuring import PartMeasurement, PartMeasurer
@@ -31,6 +32,7 @@ class AssemblyRun:
     cell: Cell
     recipe: Recipe
     calibrations: Calibrations
+    commissioned: Commissioned
     frame_features: FeatureFile
     deck_features: FeatureFile
     board: ProgressBoard

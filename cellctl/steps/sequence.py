@@ -35,11 +35,12 @@ class Sequence:
     and gets one step further."""
     until_mating: bool = False
     """A dry run: everything without contact."""
+    steps: tuple[tuple[Step, StepFunction], ...] = STEPS
     _held_before: set[Step] = field(default_factory=set)
 
     async def run(self, run: AssemblyRun, run_number: int) -> None:
         """All steps from the first one; ``HeldMeanwhile`` when they must begin again."""
-        for step, function in STEPS:
+        for step, function in self.steps:
             if self.until_mating and step >= Step.MATE:
                 _log.info("dry run: ends before the mating")
                 return

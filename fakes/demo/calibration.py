@@ -43,6 +43,11 @@ def _deck_only(control: Control) -> None:
     control.request("present", frame=False, deck=True)
 
 
+def _both(control: Control) -> None:
+    control.request("remove_boards")
+    control.request("present", frame=True, deck=True)
+
+
 PROCEDURES = (
     Procedure(101, "stereo head I", _chessboard("head_1")),
     Procedure(102, "stereo head II", _chessboard("head_2")),
@@ -51,4 +56,5 @@ PROCEDURES = (
     Procedure(105, "target board before head II", _target_board("head_2")),
     Procedure(106, "payload", _deck_only),
     Procedure(107, "stop latency", _deck_only),
+    Procedure(108, "contact stiffness", _both),
 )

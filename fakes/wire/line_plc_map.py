@@ -61,6 +61,7 @@ STEPS = {
     105: "calibrate board 2",
     106: "identify payload",
     107: "measure stop latency",
+    108: "measure contact stiffness",
 }
 
 

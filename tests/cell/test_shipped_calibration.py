@@ -85,6 +85,19 @@ def test_the_payload_weighs_what_it_weighs(calibrations: Calibrations):
     assert np.linalg.norm(down) == pytest.approx(weight_n, rel=0.02)
 
 
+def test_latency_and_stiffness_are_true_and_on_the_safe_side(world: World):
+    """The latency is that of the fake robot; other parts may be stiffer, within the recipe's."""
+    found = CalibrationFolder(CONFIG / "demo-calibration").commissioned(1, timedelta(0))
+    assert found.stop_latency_s is not None
+    assert found.stiffness_n_m is not None
+    true_s = world.scenario.robots["main"].stop_latency_ms / 1e3
+    assert true_s < found.stop_latency_s < true_s + 0.03
+    arm = world.scenario.payload.stiffness_n_m[2]
+    stiffest = world.scenario.contact.stiffness_n_m[1]
+    assert 1.5 * found.stiffness_n_m > arm * stiffest / (arm + stiffest)
+    assert found.stiffness_n_m < arm
+
+
 def assert_within(measured: UncertainPose, truth: RigidTransform) -> None:
     delta = np.concatenate(pose_error(truth, measured.pose))
     distance = float(np.sqrt(delta @ np.linalg.solve(measured.covariance, delta)))

@@ -87,8 +87,13 @@ class MatingResult:
     """From all readings in contact, where there were enough."""
     hold: Reading
     verdict: SeatVerdict
-    released: Reading | None
-    """After relaxing; None for a false seat."""
+    relaxing: tuple[Reading, ...]
+    """Readings while relaxing, oldest first; empty for a false seat."""
     curve: ForceCurve
     statistics: CurveStatistics
     duration_s: float
+
+    @property
+    def released(self) -> Reading | None:
+        """After relaxing; None for a false seat."""
+        return self.relaxing[-1] if self.relaxing else None

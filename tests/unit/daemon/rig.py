@@ -19,7 +19,7 @@ from cellctl.plc.result import Result
 from cellctl.plc.status import CellStatus
 from cellctl.records.entries import RunHead, RunRecord
 from cellctl.records.store import RunStore
-from cellctl.steps import assembly, mate_deck
+from cellctl.steps import mate_deck, preparation
 from cellctl.steps.mating.result import MatingPhase, MatingProgress, MatingResult
 from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.steps.rig import curve, seated
@@ -78,7 +78,7 @@ class DaemonRig:
         self.contact = Contact()
         self.measurers: list[TruthMeasurer] = []
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"
-        monkeypatch.setattr(assembly, "PartMeasurer", self._measurer)
+        monkeypatch.setattr(preparation, "PartMeasurer", self._measurer)
         monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
         self._store = store
         self._seq = 0

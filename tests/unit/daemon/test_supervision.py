@@ -73,9 +73,10 @@ async def test_a_trip_nobody_waits_for_is_a_fault(rig: DaemonRig) -> None:
     assert await alarms(rig) == [512, 512]
 
 
-async def test_the_mating_deals_with_its_trips_itself(rig: DaemonRig) -> None:
+@pytest.mark.parametrize("step", [Step.MATE, Step.MEASURE_CONTACT_STIFFNESS])
+async def test_contact_deals_with_its_trips_itself(rig: DaemonRig, step: Step) -> None:
     await rig.idle()
-    rig.unit.board.update(step=Step.MATE)
+    rig.unit.board.update(step=step)
     rig.bench.cell.guard.trip = TRIP
     links = watch(rig)
     await links.look()

@@ -6,6 +6,7 @@ from typing import Any
 from sqlalchemy import select
 
 from cellctl.cell.archive import Archive
+from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import Progress, ProgressBoard
 from cellctl.procedures.context import ProcedureContext
 from cellctl.procedures.maintenance import Maintenance
@@ -28,8 +29,9 @@ class ProcedureRig:
 
     @property
     def context(self) -> ProcedureContext:
+        record = JobRecord(self.bench.as_cell, self.archive, start_command(unit_mode=2))
         return ProcedureContext(
-            self.bench.as_cell, self.bench.calibrations, self.board, self.pauses
+            self.bench.as_cell, self.bench.calibrations, self.board, self.pauses, record
         )
 
     def answer(self, **answers: Any) -> None:

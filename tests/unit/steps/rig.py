@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.archive import Archive
+from cellctl.cell.commissioned import Commissioned
 from cellctl.cell.measuring import HeadGeometry, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
 from cellctl.force.curve import ForceCurve, curve_statistics
@@ -58,6 +59,7 @@ class RunRig:
             "cell": self.bench.as_cell,
             "recipe": self.bench.cell.config.recipes[0],
             "calibrations": self.calibrations,
+            "commissioned": Commissioned(),
             "frame_features": frame,
             "deck_features": deck,
             "board": self.board,
@@ -99,7 +101,7 @@ def seated(plan: MatingPlan) -> MatingResult:
         stiffness=None,
         hold=reading,
         verdict=SeatVerdict(36.0, 1e-5, 1.0, 0.5, ()),
-        released=None,
+        relaxing=(),
         curve=felt,
         statistics=curve_statistics(felt.time_s, felt.wrench),
         duration_s=20.0,

@@ -165,5 +165,7 @@ def test_contact_stiffness_is_measured_by_touching() -> None:
         )
 
     found = run_simulated(cell.start_s, cell.advance, measure)
-    assert 3e5 < found.stiffness_n_m < 9e5
-    assert found.upper_n_m > 1e6 * 2e6 / 3e6 * 0.8
+    assert 3e5 < found.estimate.stiffness_n_m < 9e5
+    assert found.estimate.upper_n_m > 1e6 * 2e6 / 3e6 * 0.8
+    assert len(found.contacts) == len(found.single) == 2
+    assert plan.travel_of(cell.robot.reported) < 1e-4, "back at the stand-off"

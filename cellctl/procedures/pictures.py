@@ -1,0 +1,59 @@
+"""Pictures of what commissioning measured: force against travel, overrun against speed."""
+
+import io
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from cellctl.calibration.checks import Checks, all_passed
+from cellctl.calibration.drawing import list_checks, new_figure, title
+from cellctl.force.commissioning import LatencyEstimate
+from cellctl.geometry.pose import MM, Array
+from cellctl.procedures.contact_stiffness_result import readings_of
+from cellctl.steps.mating.commissioning import ContactStiffness
+
+
+def stiffness_picture(measured: ContactStiffness, checks: Checks) -> bytes:
+    """PNG: standstill readings of every contact with their line, and the checks."""
+    figure = new_figure(11.0, 5.0)
+    left, right = figure.subplots(1, 2, width_ratios=(3, 2))
+    for number, (single, contact) in enumerate(
+        zip(measured.single, measured.contacts, strict=True), start=1
+    ):
+        travel_m = np.array([reading.travel_m for reading in readings_of(contact)])
+        force_n = np.array([reading.force_n for reading in readings_of(contact)])
+        text = f"contact {number}: {single.stiffness_n_m * MM:.0f} N/mm"
+        (dots,) = left.plot(travel_m / MM, force_n, "o", markersize=4, label=text)
+        ends_m = np.array([single.contact_m, travel_m.max()])
+        line_n = single.stiffness_n_m * (ends_m - single.contact_m)
+        left.plot(ends_m / MM, line_n, "-", color=dots.get_color(), linewidth=1.0)
+    left.set_xlabel("travel from the stand-off / mm")
+    left.set_ylabel("force along the approach / N")
+    left.grid(visible=True, alpha=0.3)
+    left.legend(fontsize="small")
+    list_checks(right, checks, ())
+    title(figure, "Contact stiffness, arm and contact in series", passed=all_passed(checks))
+    return _png(figure)
+
+
+def latency_picture(
+    estimate: LatencyEstimate, speeds_m_s: Array, overruns_m: Array, checks: Checks
+) -> bytes:
+    """PNG: overrun of every stop, the line whose slope is the latency, and the checks."""
+    figure = new_figure(11.0, 5.0)
+    left, right = figure.subplots(1, 2, width_ratios=(3, 2))
+    left.plot(speeds_m_s / MM, overruns_m / MM, "o", markersize=4)
+    line_m_s = np.array([0.0, float(speeds_m_s.max())])
+    left.plot(line_m_s / MM, (estimate.latency_s * line_m_s + estimate.offset_m) / MM, "-")
+    left.set_xlabel("speed / mm/s")
+    left.set_ylabel("way from request to standstill / mm")
+    left.grid(visible=True, alpha=0.3)
+    list_checks(right, checks, ())
+    title(figure, f"Stop latency {estimate.latency_s * 1e3:.0f} ms", passed=all_passed(checks))
+    return _png(figure)
+
+
+def _png(figure: Figure) -> bytes:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100)
+    return buffer.getvalue()

@@ -1,0 +1,64 @@
+"""The plan of one contact from recipe, commissioning and what was measured."""
+
+from cellctl.cell.commissioned import Commissioned
+from cellctl.cell.measuring import require_unmoved
+from cellctl.config.cell import CellConfig
+from cellctl.config.recipe import Mating
+from cellctl.force.approach import planned_stiffness
+from cellctl.force.detectors import Cusum
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.steps.mating.plan import MatingPlan, plan_mating
+from cellctl.steps.mating.settings import MatingSettings
+from cellctl.steps.run import AssemblyRun
+
+ABORT_MARGIN_N = 5.0
+"""The guard stops the robot this much below the limit: for its filter and the arm's way to stop."""
+RELEASE_BAND_N = 5.0
+
+
+def contact_plan(run: AssemblyRun, commissioned: Commissioned) -> MatingPlan:
+    """From the pose that was measured, which must still be the present one.
+
+    Raises ``HeadMoved`` when it is not, ``MatingPlanInvalid`` when no plan is safe.
+    """
+    assert run.flange_T_deck is not None
+    assert run.M_T_D is not None
+    assert run.measured_at is not None
+    require_unmoved("the main robot", run.cell.main, run.measured_at)
+    recipe, config = run.recipe, run.cell.config
+    return plan_mating(
+        base_T_flange=run.cell.main.state().base_T_flange,
+        flange_T_deck=run.flange_T_deck,
+        flange_T_sensor=pose_from_xyzabc(config.robots.main.flange_T_sensor),
+        M_T_D=run.M_T_D,
+        deck_thickness_m=recipe.deck_thickness_mm * MM,
+        over_travel_m=recipe.over_travel_mm * MM,
+        settings=mating_settings(config, recipe.mating, commissioned),
+    )
+
+
+def mating_settings(
+    config: CellConfig, mating: Mating, commissioned: Commissioned
+) -> MatingSettings:
+    """The recipe's figures in SI; its bounds where nothing was commissioned."""
+    latency_s, stiffness_n_m = commissioned.stop_latency_s, mating.stiffness_n_per_mm / MM
+    return MatingSettings(
+        stop_latency_s=mating.stop_latency_ms / 1e3 if latency_s is None else latency_s,
+        stiffness_n_m=planned_stiffness(
+            stiffness_n_m, commissioned.stiffness_n_m, mating.part_spread_ratio
+        ),
+        target_force_n=mating.target_force_n,
+        limit_force_n=mating.limit_force_n,
+        abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
+        release_low_n=mating.release_force_n - RELEASE_BAND_N,
+        release_high_n=mating.release_force_n + RELEASE_BAND_N,
+        touch=Cusum(drift_n=mating.touch_force_n / 2),
+        stale_s=config.force.stale_ms / 1e3,
+        flange_age_s=config.force.flange_age_ms / 1e3,
+        fast_speed_m_s=mating.fast_speed_mm_s * MM,
+        acceleration_m_s2=mating.acceleration_mm_s2 * MM,
+        greatest_past_m=mating.max_past_contact_mm * MM,
+        window_m=mating.contact_window_mm * MM,
+        max_lateral_n=mating.max_lateral_force_n,
+        max_moment_n_m=mating.max_moment_n_m,
+    )

@@ -1,0 +1,109 @@
+"""What every run over the station begins with: read and check, go to the beginning."""
+
+import asyncio
+from dataclasses import dataclass
+from datetime import timedelta
+
+from cellctl import log
+from cellctl.calibration.files import StoredCalibration
+from cellctl.cell.calibrations import PAYLOAD, CalibrationFolder, Calibrations
+from cellctl.cell.commissioned import Commissioned
+from cellctl.cell.devices import Cell
+from cellctl.cell.job import HeldMeanwhile, SafePoint
+from cellctl.cell.measuring import HeadGeometry, PartMeasurer
+from cellctl.cell.progress import ProgressBoard
+from cellctl.cell.step import Step
+from cellctl.config.recipe import Recipe
+from cellctl.steps.journal import Journal
+from cellctl.steps.positions import heads_to_measuring_poses, main_to_home
+from cellctl.steps.run import AssemblyRun
+from cellctl.steps.sequence import Sequence
+from cellctl.vision.features import FeatureFile, read_features
+
+_log = log.get(__name__)
+
+PLANNED = timedelta(minutes=30)
+"""Calibrations must stay valid for this long after Start."""
+
+
+@dataclass(frozen=True, slots=True)
+class Preparation:
+    """Everything that is read before a run."""
+
+    recipe: Recipe
+    calibrations: Calibrations
+    stored: list[StoredCalibration]
+    commissioned: Commissioned
+    frame_features: FeatureFile
+    deck_features: FeatureFile
+
+    @property
+    def ids(self) -> dict[str, str]:
+        """Identity of every record that counts in the run, by kind."""
+        return {**self.calibrations.ids, **self.commissioned.ids}
+
+
+async def prepare(cell: Cell, folder: CalibrationFolder, recipe: Recipe) -> Preparation:
+    """Read and check everything; raises the faults of calibrations and feature files."""
+    calibrations = await asyncio.to_thread(folder.read, PLANNED)
+    frame = read_features(cell.folder / recipe.frame_features)
+    deck = read_features(cell.folder / recipe.deck_features)
+    for head in cell.heads:
+        calibrations.require_instrument(head.name, await head.camera.serial_number())
+    calibrations.require_instrument(PAYLOAD, cell.guard.health().sensor_serial)
+    stored = await asyncio.to_thread(folder.stored)
+    commissioned = await asyncio.to_thread(folder.commissioned, recipe.id, PLANNED)
+    stored += commissioned.records
+    return Preparation(recipe, calibrations, stored, commissioned, frame, deck)
+
+
+async def to_the_beginning(cell: Cell, board: ProgressBoard) -> None:
+    """The deck clear of the station, the heads over it."""
+    board.update(step=Step.NONE, iteration=0, message="to the beginning")
+    await main_to_home(cell)
+    await heads_to_measuring_poses(cell)
+
+
+async def repeat_until_unheld(
+    sequence: Sequence,
+    *,
+    cell: Cell,
+    prepared: Preparation,
+    board: ProgressBoard,
+    journal: Journal,
+    pause: SafePoint,
+) -> None:
+    """All steps in their order; from the beginning again when the cell was held on the way."""
+    while True:
+        run = _new_run(cell, prepared, board, journal, pause)
+        try:
+            await sequence.run(run, journal.run)
+        except HeldMeanwhile:
+            _log.info("held meanwhile: everything is measured again")
+            await to_the_beginning(cell, board)
+        else:
+            return
+
+
+def _new_run(
+    cell: Cell,
+    prepared: Preparation,
+    board: ProgressBoard,
+    journal: Journal,
+    pause: SafePoint,
+) -> AssemblyRun:
+    """Nothing measured yet. Heads count as unmoved from here on."""
+    geometry = prepared.calibrations.geometry
+    heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+    return AssemblyRun(
+        cell=cell,
+        recipe=prepared.recipe,
+        calibrations=prepared.calibrations,
+        commissioned=prepared.commissioned,
+        frame_features=prepared.frame_features,
+        deck_features=prepared.deck_features,
+        board=board,
+        journal=journal,
+        pause=pause,
+        measurer=PartMeasurer(cell, heads, prepared.recipe.compensation.method),
+    )
