@@ -23,6 +23,8 @@ MASS_KG = 200.0
 DT_S = 1e-4
 GAP_M = 5e-5
 RADIUS_M = 0.005
+PEAK, CURVE = 0.03, 0.03
+"""Allowed difference of peaks, and rms difference of the whole curves relative to the peak."""
 SLOPE_M_S2 = 0.5
 """Deceleration of the stop."""
 
@@ -127,8 +129,7 @@ class Oracle:
         forces = []
         each = round(STEP_S / DT_S)
         for step in range(round(seconds / DT_S)):
-            data.qpos[0] = -travel.way_at(step * DT_S)
-            data.qvel[0] = -travel.speed_at(step * DT_S)
+            _carry(data, -travel.way_at(step * DT_S), -travel.speed_at(step * DT_S))
             mujoco.mj_step(model, data)
             if step % each == each - 1:
                 forces.append(self._normal_force(model, data))
@@ -192,6 +193,17 @@ class Oracle:
         return total
 
 
+def _carry(data, place_m: float, speed_m_s: float) -> None:  # type: ignore[no-untyped-def]
+    """Prescribe the carriage and leave the payload its own speed.
+
+    Joints hold relative speeds: without the second line the payload would start and brake with the
+    carriage as if it had no inertia.
+    """
+    data.qvel[_HANGING_Z] -= speed_m_s - data.qvel[0]
+    data.qpos[0], data.qvel[0] = place_m, speed_m_s
+
+
+_HANGING_Z = 3
 _AXES = (
     ("slide", "1 0 0"),
     ("slide", "0 1 0"),
@@ -208,27 +220,29 @@ def test_press_calibration(contact_n_m: float) -> None:
     assert oracle.pressed_n_m == pytest.approx(contact_n_m, rel=0.02)
 
 
-@pytest.mark.parametrize("contact_n_m", [1e5, 1e6, 3e6])
-def test_peaks_agree_within_a_tenth(contact_n_m: float) -> None:
-    """Slow pushes as in mating, and impacts far beyond it."""
+@pytest.mark.parametrize("contact_n_m", [1e5, 3e5, 1e6, 3e6, 1e7])
+def test_forces_agree_at_every_moment(contact_n_m: float) -> None:
+    """Slow pushes as in mating, and impacts far beyond it; peaks are what matters most."""
     here = rig(contact_n_m)
     oracle = Oracle(here)
     series = 1.0 / (1.0 / contact_n_m + 1e-6)
     for speed_m_s, force_n in ((1e-4, 38.0), (3e-4, 45.0), (1e-3, 60.0), (2e-3, 90.0)):
         travel = Travel(speed_m_s, force_n / series)
-        seconds = travel.end_s + 0.25
+        seconds = round(travel.end_s + 0.25, 3)
         fake, independent = here.fake_force(travel, seconds), oracle.force(travel, seconds)
-        assert fake.max() == pytest.approx(independent.max(), rel=0.10), (speed_m_s, force_n)
+        assert fake.max() == pytest.approx(independent.max(), rel=PEAK), (speed_m_s, force_n)
         assert fake.max() > 0.9 * force_n
-        assert fake[-1] == pytest.approx(independent[-1], rel=0.10)
+        assert fake[-1] == pytest.approx(independent[-1], rel=PEAK)
+        apart_n = float(np.sqrt(np.mean((fake - independent) ** 2)))
+        assert apart_n < CURVE * fake.max(), (speed_m_s, force_n)
 
 
 def test_a_tilted_deck_touches_pad_by_pad_in_both() -> None:
     here = rig(3e6, tilt_deg=(0.004, 0.005))
     oracle = Oracle(here)
     travel = Travel(2e-4, 8e-5)
-    seconds = travel.end_s + 0.25
+    seconds = round(travel.end_s + 0.25, 3)
     fake, independent = here.fake_force(travel, seconds), oracle.force(travel, seconds)
-    assert fake[-1] == pytest.approx(independent[-1], rel=0.10)
-    assert fake.max() == pytest.approx(independent.max(), rel=0.10)
+    assert fake[-1] == pytest.approx(independent[-1], rel=PEAK)
+    assert fake.max() == pytest.approx(independent.max(), rel=PEAK)
     assert fake[-1] < 0.8 * 8e-5 * 7.5e5, "an edge is softer than the whole face"
