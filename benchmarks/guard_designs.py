@@ -17,7 +17,8 @@ from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.protocol import Frame, StreamDecoder, command
 from drivers.ftsensor.sri.sampler import Sampler
 from drivers.robot.siasun import protocol as sjl
-from drivers.robot.siasun.stop_channel import _flange_state
+from drivers.robot.siasun.records import Status
+from drivers.robot.siasun.stop_channel import flange_state
 
 RATE_HZ = 1000
 SESSION = 1
@@ -175,7 +176,9 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
 
 async def _reports(reader: asyncio.StreamReader, monitor: Monitor) -> None:
     while line := await reader.readline():
-        monitor.flange(_flange_state(sjl.decode(line.rstrip(b"\n")), now_s()))  # type: ignore[arg-type]
+        record = sjl.decode(line.rstrip(b"\n"))
+        if isinstance(record, Status):
+            monitor.flange(flange_state(record, now_s()))
 
 
 async def _sense(port: int, monitor: Monitor, robot: asyncio.StreamWriter) -> None:

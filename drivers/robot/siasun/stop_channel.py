@@ -92,7 +92,7 @@ class SiasunStopChannel(StopChannel):
                 raise self._lost("closed by the robot")
             self._reader.feed(data)
             newest = self._read() or newest
-        return None if newest is None else _flange_state(newest, now_s())
+        return None if newest is None else flange_state(newest, now_s())
 
     def _read(self) -> Status | None:
         """The newest report among the complete records; repeated ones are not news."""
@@ -178,7 +178,8 @@ def _is_news(record: Record, last: Status | None) -> TypeGuard[Status]:
     return last is None or (record.count > last.count and record.robot_ms != last.robot_ms)
 
 
-def _flange_state(status: Status, time_s: float) -> FlangeState:
+def flange_state(status: Status, time_s: float) -> FlangeState:
+    """A report of the controller that came at ``time_s``, in SI."""
     x_mm, y_mm, z_mm, a_deg, b_deg, c_deg = status.flange_xyzabc
     return FlangeState(
         time_s,
