@@ -121,6 +121,21 @@ class Payload(Section):
     damping_ratio: float
 
 
+class Pins(Section):
+    """Dowels in the frame for the pin holes of the deck."""
+
+    length_mm: float
+    """Above the mating face, chamfer included."""
+    radius_mm: float
+    clearance_mm: float
+    """Radial."""
+    chamfer_mm: float
+    """Length along the axis, pin and hole together."""
+    chamfer_deg: float
+    """Against the axis."""
+    stiffness_n_m: float
+
+
 class Contact(Section):
     """Rim of the deck on the frame."""
 
@@ -130,6 +145,8 @@ class Contact(Section):
     friction: float
     pads: int
     rim_inset_mm: float
+    pins: Pins | None = None
+    """None as in the paper: no pins while mating, the holes are gauged afterwards."""
 
 
 class ForceSensor(Section):

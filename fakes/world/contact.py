@@ -1,4 +1,4 @@
-"""Where the deck can touch the frame: pads round its rim, foreign bodies, chamfers that catch."""
+"""Where the deck can touch the frame: pads round its rim, pins, foreign bodies, chamfers."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,8 @@ from scipy.spatial.transform import RigidTransform
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
 from fakes.world.frames import MM, Array
-from fakes.world.suspension import Contacts
+from fakes.world.pins import pin_faces
+from fakes.world.suspension import Contacts, Rows
 from fakes.world.truth import PartsTruth
 
 OUT_OF_REACH_M = 1.0
@@ -25,6 +26,10 @@ class Rim:
     anchors_m: Array
     stiffness_n_m: Array
     half_size_m: Array
+    wedges: Rows
+    """Shape (m, 3): rows that together bound one convex obstacle, its top last."""
+    ahead: "np.ndarray[tuple[int], np.dtype[np.bool_]]"
+    """Shape (n,): rows that are met along the approach. Beside a pin its wall is always near."""
 
     def gaps(self, frame_T_deck: Array) -> Array:
         """Distance of each point to what it can touch, shape (n,); ``frame_T_deck`` is 4x4."""
@@ -34,14 +39,22 @@ class Rim:
             return np.full(len(places), OUT_OF_REACH_M)
         return np.asarray(((places - self.anchors_m) * self.directions).sum(axis=1))
 
+    def distance(self, gaps: Array) -> float:
+        """Height above whatever is met first."""
+        return float(gaps[self.ahead].min())
+
     def contacts(self, com_T_deck: RigidTransform, damping_ratio: float, mass: float) -> Contacts:
         """The same points as seen from the centre of mass, in tool axes."""
         places = com_T_deck.apply(self.points_m)
         directions = com_T_deck.rotation.apply(self.directions)
         jacobian = np.hstack([directions, np.cross(places, directions)])
-        total = self.stiffness_n_m.sum()
-        damping = 2 * damping_ratio * np.sqrt(total * mass) * self.stiffness_n_m / total
-        return Contacts(jacobian, self.stiffness_n_m, damping)
+        stiffness = self.stiffness_n_m
+        together = stiffness.copy()
+        carrying = np.ones(len(stiffness), dtype=bool)
+        carrying[self.wedges] = False
+        together[carrying] = stiffness[carrying].sum()
+        damping = 2 * damping_ratio * np.sqrt(mass / together) * stiffness
+        return Contacts(jacobian, stiffness, damping, self.wedges)
 
 
 def rim(scenario: Scenario, parts: PartsTruth, faults: FaultBoard) -> Rim:
@@ -64,8 +77,19 @@ def rim(scenario: Scenario, parts: PartsTruth, faults: FaultBoard) -> Rim:
         directions = np.vstack([directions, [np.sin(slope), 0.0, np.cos(slope)]])
         anchors = np.vstack([anchors, [x, y, height]])
         stiffness = np.append(stiffness, _BODY_SHARE * parts.contact_stiffness_n_m)
+    wedges = Contacts.none().wedges
+    if scenario.contact.pins is not None:
+        faces = pin_faces(scenario.contact.pins, parts)
+        wedges = np.arange(len(faces.points_m)).reshape(-1, 3) + len(points)
+        points = np.vstack([points, faces.points_m])
+        directions = np.vstack([directions, faces.directions])
+        anchors = np.vstack([anchors, faces.anchors_m])
+        pin_stiffness = np.full(len(faces.points_m), scenario.contact.pins.stiffness_n_m)
+        stiffness = np.append(stiffness, pin_stiffness)
     half_size = np.array(scenario.parts.size_mm) / 2 * MM
-    return Rim(points, directions, anchors, stiffness, half_size)
+    ahead = np.ones(len(points), dtype=bool)
+    ahead[wedges[:, :2]] = False
+    return Rim(points, directions, anchors, stiffness, half_size, wedges, ahead)
 
 
 def _pads(scenario: Scenario) -> Array:

@@ -80,7 +80,7 @@ class Payload:
         rates = (gaps - self._gaps) / STEP_S
         tool_R_cell = _TOOL_R_FLANGE @ flange[:3, :3].T
         inertia, slide = self._inertia(flange, tool_R_cell)
-        if self._rim is not None and min(self._gaps.min(), gaps.min()) < _NEAR_M:
+        if self._near(gaps):
             self._touch(rates, inertia, slide)
         else:
             self.suspension.free(STEP_S, inertia)
@@ -98,16 +98,28 @@ class Payload:
     def _touch(self, rates: Array, inertia: Array, slide: Array) -> None:
         suspension, step_s = self.suspension, STEP_S / _SUBSTEPS
         for index in range(_SUBSTEPS):
-            speed = slide + suspension.rate[:2]
-            pressed = float(suspension.normal_forces.sum())
-            drag = -self._friction * pressed * speed / (np.hypot(*speed) + _SLIP_M_S)
+            drag = self._drag(slide + suspension.rate[:3])
             wrench = inertia.copy()
-            wrench[:2] += drag
+            wrench[:3] += drag
             suspension.touch(step_s, self._gaps + index * step_s * rates, rates, wrench)
             force = suspension.normal_forces @ suspension.contacts.jacobian[:, :3]
-            force[:2] += drag
-            self.contact_force_n = float(np.linalg.norm(force))
+            self.contact_force_n = float(np.linalg.norm(force + drag))
             self.peak_contact_force_n = max(self.peak_contact_force_n, self.contact_force_n)
+
+    def _drag(self, speed: Array) -> Array:
+        """Friction: across the approach of what carries, along it of what guides (pins)."""
+        suspension = self.suspension
+        directions = suspension.contacts.jacobian[:, :3]
+        carrying = float(suspension.normal_forces @ directions[:, 2])
+        guiding = float(suspension.normal_forces @ np.hypot(directions[:, 0], directions[:, 1]))
+        drag = np.empty(3)
+        drag[:2] = -carrying * speed[:2] / (np.hypot(*speed[:2]) + _SLIP_M_S)
+        drag[2] = -guiding * speed[2] / (abs(speed[2]) + _SLIP_M_S)
+        return self._friction * drag
+
+    def _near(self, gaps: Array) -> bool:
+        rim = self._rim
+        return rim is not None and min(rim.distance(self._gaps), rim.distance(gaps)) < _NEAR_M
 
     def _gaps_at(self, flange: Array) -> Array:
         if self._rim is None:
@@ -128,7 +140,7 @@ class Payload:
         force = -mass[:3] * (tool_R_cell @ (speed - self._com_speed)) / STEP_S
         torque = -mass[3:] * (tool_R_cell @ (turn_speed - self._turn_speed)) / STEP_S
         self._com_speed, self._turn_speed = speed, turn_speed
-        return np.concatenate([force, torque]), (tool_R_cell @ speed)[:2]
+        return np.concatenate([force, torque]), tool_R_cell @ speed
 
     def _sensed(self, flange: Array) -> Array:
         """True load in sensor axes: springs and gravity."""

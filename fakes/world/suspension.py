@@ -6,13 +6,15 @@ given directions. With the set of closed contacts constant over a substep the mo
 each set has its own exact propagator: stable at any stiffness, and no energy is made.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.linalg import expm
 
 from fakes.scenario import Payload
 from fakes.world.frames import Array
+
+Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +24,8 @@ class Contacts:
     jacobian: Array
     stiffness_n_m: Array
     damping_n_s_m: Array
+    wedges: Rows = field(default_factory=lambda: np.zeros((0, 3), dtype=np.intp))
+    """Shape (m, 3): rows that bound one convex obstacle; inside, only the nearest face pushes."""
 
     @classmethod
     def none(cls) -> "Contacts":
@@ -65,7 +69,7 @@ class Suspension:
 
     def energy(self, gaps: Array) -> float:
         """Kinetic and elastic energy with the flange at rest (J)."""
-        reach = np.minimum(gaps + self.contacts.jacobian @ self.deflection, 0.0)
+        reach = np.maximum(self._depths(gaps), 0.0)
         elastic = self.stiffness @ self.deflection**2 + self.contacts.stiffness_n_m @ reach**2
         return float(0.5 * (elastic + self.mass @ self.rate**2))
 
@@ -90,10 +94,24 @@ class Suspension:
     def _forces(self, gaps: Array, gap_rates: Array) -> Array:
         """Normal forces: closed contacts push, and never pull."""
         contacts = self.contacts
-        depth = -(gaps + contacts.jacobian @ self.deflection)
+        depth = self._depths(gaps)
         approach = -(gap_rates + contacts.jacobian @ self.rate)
         force = contacts.stiffness_n_m * depth + contacts.damping_n_s_m * approach
         return np.where(depth > 0, np.maximum(force, 0.0), 0.0)
+
+    def _depths(self, gaps: Array) -> Array:
+        """How deep each row is closed; negative for an open one."""
+        depths = -(gaps + self.contacts.jacobian @ self.deflection)
+        wedges = self.contacts.wedges
+        if not len(wedges):
+            return np.asarray(depths)
+        inside = depths[wedges]
+        hit = (inside > 0).all(axis=1)
+        nearest = wedges[hit, inside[hit].argmin(axis=1)]
+        closed = depths[nearest]
+        depths[wedges] = -1.0
+        depths[nearest] = closed
+        return np.asarray(depths)
 
     def _propagator(
         self, closed: "np.ndarray[tuple[int], np.dtype[np.bool_]] | None", step_s: float
