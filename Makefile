@@ -29,6 +29,7 @@ campaign: venv
 
 campaign-mating: venv
 	$(BIN)/python -m benchmarks.campaign_mating
+	$(BIN)/python -m benchmarks.campaign_mating_pins
 
 bench: bench-metrology bench-guard
 

@@ -53,9 +53,19 @@ class SensorFault:
 class MatingCell:
     """Drawn from a seed; the deck at the stand-off within the loop's thresholds."""
 
-    def __init__(self, seed: int, *, stiffness_n_m: float, stop_latency_s: float) -> None:
+    def __init__(
+        self,
+        seed: int,
+        *,
+        stiffness_n_m: float,
+        stop_latency_s: float,
+        pins: scenarios.Pins | None = None,
+        left: Array | None = None,
+    ) -> None:
+        """``left``: what the loop before leaves (m, rad), shape (6,); drawn when None."""
         self.rng = np.random.default_rng([seed, 77])
-        self.world = World(_scenario(stiffness_n_m, stop_latency_s), seed)
+        self._left = left
+        self.world = World(_scenario(stiffness_n_m, stop_latency_s, pins), seed)
         self.faults = FaultBoard("main")
         self.arm = self.world.arms["main"]
         self.start_s = self._approach_stand_off()
@@ -119,7 +129,8 @@ class MatingCell:
         self._wait()
         parts = world.placed.parts
         assert parts is not None
-        left = _displacement(self.rng.uniform(-THRESHOLD, THRESHOLD))
+        drawn = self.rng.uniform(-THRESHOLD, THRESHOLD)
+        left = _displacement(drawn if self._left is None else self._left)
         wanted = parts.cell_T_frame * pose_from_xyzabc([0, 0, 25, 0, 0, 0]) * left
         for _ in range(4):
             deck = world.snapshot().cell_T_deck
@@ -157,9 +168,12 @@ def _displacement(vector: Array) -> RigidTransform:
     return RigidTransform.from_components(vector[:3], Rotation.from_rotvec(vector[3:]))
 
 
-def _scenario(stiffness_n_m: float, stop_latency_s: float) -> scenarios.Scenario:
+def _scenario(
+    stiffness_n_m: float, stop_latency_s: float, pins: scenarios.Pins | None
+) -> scenarios.Scenario:
     scenario = scenarios.load(SCENARIO)
-    contact = scenario.contact.model_copy(update={"stiffness_n_m": (stiffness_n_m,) * 2})
+    changes = {"stiffness_n_m": (stiffness_n_m,) * 2, "pins": pins}
+    contact = scenario.contact.model_copy(update=changes)
     main = scenario.robots["main"].model_copy(update={"stop_latency_ms": stop_latency_s * 1e3})
     robots = {**scenario.robots, "main": main}
     return scenario.model_copy(update={"contact": contact, "robots": robots})

@@ -1,8 +1,9 @@
 """One trial of the campaign: a drawn cell, one mating, what came of it against truth."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, replace
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from cellctl.errors.base import CellError
 from cellctl.force.approach import series
+from cellctl.force.curve import moving_average
 from cellctl.steps.mate import mate
 from cellctl.steps.mating.plan import MatingPlan, plan_mating
 from cellctl.steps.mating.result import MatingPhase, MatingProgress, MatingResult
@@ -22,6 +24,8 @@ STIFFNESS_RANGE = (1e5, 1e7)
 LATENCY_RANGE_S = (0.010, 0.250)
 DECK_THICKNESS_M = 0.015
 SEAT_TOLERANCE_M = 1e-4
+FILTER_SAMPLES = 20
+"""A lateral peak is that of the mean over 20 ms: two noisy components only add up."""
 
 Hook = Callable[[MatingCell, MatingProgress], None]
 
@@ -50,6 +54,10 @@ class Trial:
     steps: int = 0
     end_travel_mm: float = float("nan")
     reached_mm: float = 0.0
+    peak_lateral_n: float = 0.0
+    final_lateral_n: float = float("nan")
+    gave_way_mm: float = 0.0
+    """Across the approach, because of pins."""
     standing: bool = False
     """The arm stands still at the end."""
 
@@ -88,6 +96,8 @@ class _Watcher:
             self._hold()
         if progress.curve is not None and len(progress.curve.wrench):
             self.trial.sensed_peak_n = float(progress.curve.wrench[:, 2].max())
+            lateral_n = np.hypot(*progress.curve.wrench[:, :2].T)
+            self.trial.peak_lateral_n = float(moving_average(lateral_n, FILTER_SAMPLES).max())
             self.trial.reached_mm = float(np.nanmax(progress.curve.travel_m)) * 1e3
         if self.hook is not None:
             self.hook(self.cell, progress)
@@ -114,11 +124,17 @@ def run_trial(
     trial: Trial,
     hook: Hook | None = None,
     prepare: Callable[[MatingCell], None] | None = None,
+    special: Mapping[str, Any] = MappingProxyType({}),
     **settings: Any,
 ) -> Trial:
-    """Run it; ``hook`` sees every progress and may inject, ``prepare`` changes the cell before."""
+    """Run it; ``hook`` sees every progress and may inject, ``prepare`` changes the cell before.
+
+    ``special``: further arguments of the cell; ``settings``: of the mating.
+    """
     latency_s = trial.stop_latency_ms / 1e3
-    cell = MatingCell(trial.seed, stiffness_n_m=trial.stiffness_n_m, stop_latency_s=latency_s)
+    cell = MatingCell(
+        trial.seed, stiffness_n_m=trial.stiffness_n_m, stop_latency_s=latency_s, **special
+    )
     if prepare is not None:
         prepare(cell)
     watcher = _Watcher(cell, trial, hook)
@@ -171,4 +187,7 @@ def _take_result(trial: Trial, result: MatingResult) -> None:
     trial.final_sensed_n = result.verdict.force_n
     trial.sensed_filtered_peak_n = result.statistics.peak_filtered_fz_n
     trial.steps = len(result.creep) - 1
+    trial.final_lateral_n = result.verdict.lateral_n
+    if result.gave_way:
+        trial.gave_way_mm = result.gave_way[-1].total.distance_m * 1e3
     trial.text = ", ".join(finding.value for finding in result.verdict.findings)

@@ -25,6 +25,21 @@ class Compensation(Section):
     """Hole measurement: the default, or the paper's image steps for comparison."""
 
 
+class Pins(Section):
+    """Pins that enter the deck's holes before it sits (our extension of the paper)."""
+
+    engagement_mm: Annotated[float, Field(gt=0, le=50)]
+    """The deck meets them so far above its seat: fast travel ends before."""
+    compliance: bool = True
+    """Give way to them across the approach; else any contact above the seat is a fault."""
+    max_travel_mm: Annotated[float, Field(gt=0, le=2)] = 0.2
+    """How far it may give way altogether, and how far it may turn."""
+    max_yaw_deg: Annotated[float, Field(gt=0, le=1)] = 0.03
+    lateral_stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)] = 1000.0
+    """Upper bounds of what is felt across the approach: the robot's own are a safe choice."""
+    yaw_stiffness_n_m_per_deg: Annotated[float, Field(ge=10, le=200_000)] = 5300.0
+
+
 class Mating(Section):
     """Force-limited mating (paper 2.4.2, mission A4)."""
 
@@ -50,6 +65,8 @@ class Mating(Section):
     part_spread_ratio: Annotated[float, Field(ge=1, le=10)] = 1.5
     """Other parts of this recipe may be so much stiffer than those of procedure 108."""
     max_tries: Annotated[int, Field(ge=1, le=5)] = 3
+    pins: Pins | None = None
+    """None: no pins are met while mating."""
 
 
 class Recipe(Section):

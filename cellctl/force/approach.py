@@ -155,12 +155,14 @@ def contact_window(
     greatest_half_m: float,
     tilt_m: float,
     margin_m: float,
+    engaged_m: float = 0.0,
 ) -> ContactWindow:
     """Window of ±coverage·sigma around the expected contact of the middle of the face.
 
     ``sigma_m`` joins all sources (see ``contact_sigma``); ``tilt_m`` is how much earlier the
-    leading edge touches; ``margin_m`` is kept between fast travel and window. Raises
-    ``MatingPlanInvalid`` when contact is known too badly or too near.
+    leading edge touches; ``margin_m`` is kept between fast travel and window; pins are met
+    ``engaged_m`` before the seat, and fast travel ends above them. Raises ``MatingPlanInvalid``
+    when contact is known too badly or too near.
     """
     half_m = max(coverage * sigma_m, least_half_m)
     if half_m > greatest_half_m:
@@ -169,7 +171,7 @@ def contact_window(
             f"may be ±{greatest_half_m * 1e3:.3f} mm wide at most"
         )
     earliest_m = expected_m - half_m - tilt_m
-    clear_m = earliest_m - margin_m
+    clear_m = earliest_m - engaged_m - margin_m
     if clear_m <= 0.0:
         raise MatingPlanInvalid(
             f"expected contact after {expected_m * 1e3:.3f} mm leaves no clear travel before its "

@@ -1,14 +1,16 @@
 """The plan of one contact from recipe, commissioning and what was measured."""
 
+import math
+
 from cellctl.cell.commissioned import Commissioned
 from cellctl.cell.measuring import require_unmoved
 from cellctl.config.cell import CellConfig
-from cellctl.config.recipe import Mating
+from cellctl.config.recipe import Mating, Pins
 from cellctl.force.approach import planned_stiffness
 from cellctl.force.detectors import Cusum
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.steps.mating.plan import MatingPlan, plan_mating
-from cellctl.steps.mating.settings import MatingSettings
+from cellctl.steps.mating.settings import MatingSettings, PinSettings
 from cellctl.steps.run import AssemblyRun
 
 ABORT_MARGIN_N = 5.0
@@ -61,4 +63,16 @@ def mating_settings(
         window_m=mating.contact_window_mm * MM,
         max_lateral_n=mating.max_lateral_force_n,
         max_moment_n_m=mating.max_moment_n_m,
+        pins=_pin_settings(mating.pins) if mating.pins else None,
+    )
+
+
+def _pin_settings(pins: Pins) -> PinSettings:
+    return PinSettings(
+        engagement_m=pins.engagement_mm * MM,
+        compliant=pins.compliance,
+        greatest_travel_m=pins.max_travel_mm * MM,
+        greatest_yaw_rad=math.radians(pins.max_yaw_deg),
+        lateral_stiffness_n_m=pins.lateral_stiffness_n_per_mm / MM,
+        yaw_stiffness_n_m_rad=pins.yaw_stiffness_n_m_per_deg / math.radians(1.0),
     )

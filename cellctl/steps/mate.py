@@ -101,6 +101,7 @@ async def _run(attempt: Attempt) -> MatingResult:
         hold=held,
         verdict=verdict,
         relaxing=relaxing,
+        gave_way=tuple(attempt.gave_way),
         curve=curve,
         statistics=curve_statistics(curve.time_s, curve.wrench),
         duration_s=loop_time_s() - begin_s,

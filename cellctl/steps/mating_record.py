@@ -2,6 +2,8 @@
 
 from typing import Any
 
+import numpy as np
+
 from cellctl.geometry.pose import MM
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.result import MatingResult
@@ -55,4 +57,29 @@ def result_record(result: MatingResult) -> dict[str, Any]:
         "peak_lateral_n": statistics.peak_lateral_n,
         "peak_moment_n_m": statistics.peak_moment_n_m,
         "duration_s": result.duration_s,
+        **_compliance_record(result),
+    }
+
+
+def _compliance_record(result: MatingResult) -> dict[str, Any]:
+    """Every move that gave way to pins, with the force that asked for it."""
+    if not result.gave_way:
+        return {}
+    last = result.gave_way[-1].total
+    return {
+        "gave_way": {
+            "x_mm": last.x_m / MM,
+            "y_mm": last.y_m / MM,
+            "yaw_deg": float(np.degrees(last.yaw_rad)),
+            "moves": [
+                {
+                    "travel_mm": each.reading.travel_m / MM,
+                    "wrench": each.reading.wrench.tolist(),
+                    "x_mm": each.move.x_m / MM,
+                    "y_mm": each.move.y_m / MM,
+                    "yaw_deg": float(np.degrees(each.move.yaw_rad)),
+                }
+                for each in result.gave_way
+            ],
+        }
     }

@@ -5,6 +5,8 @@ Gravity is left out of the deflection, as a controller that knows its load corre
 sensor feels it all the same.
 """
 
+import math
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
@@ -58,6 +60,10 @@ class Payload:
                 com_T_deck = self._flange_T_com.inv() * parts.flange_T_deck
                 contacts = self._rim.contacts(com_T_deck, scenario.contact.damping_ratio, mass)
         self.suspension = Suspension(settings, mass, contacts)
+        normals = contacts.jacobian[:, :3]
+        self._guides_carries = np.column_stack(
+            [np.hypot(normals[:, 0], normals[:, 1]), normals[:, 2]]
+        )
         self._pose: Array | None = None
         self._com_speed = np.zeros(3)
         self._turn_speed = np.zeros(3)
@@ -108,14 +114,11 @@ class Payload:
 
     def _drag(self, speed: Array) -> Array:
         """Friction: across the approach of what carries, along it of what guides (pins)."""
-        suspension = self.suspension
-        directions = suspension.contacts.jacobian[:, :3]
-        carrying = float(suspension.normal_forces @ directions[:, 2])
-        guiding = float(suspension.normal_forces @ np.hypot(directions[:, 0], directions[:, 1]))
-        drag = np.empty(3)
-        drag[:2] = -carrying * speed[:2] / (np.hypot(*speed[:2]) + _SLIP_M_S)
-        drag[2] = -guiding * speed[2] / (abs(speed[2]) + _SLIP_M_S)
-        return self._friction * drag
+        guiding, carrying = self.suspension.normal_forces @ self._guides_carries
+        x, y, z = speed.tolist()
+        across = -self._friction * carrying / (math.hypot(x, y) + _SLIP_M_S)
+        along = -self._friction * guiding / (abs(z) + _SLIP_M_S)
+        return np.array([across * x, across * y, along * z])
 
     def _near(self, gaps: Array) -> bool:
         rim = self._rim

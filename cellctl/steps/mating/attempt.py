@@ -6,14 +6,16 @@ this platform are the same monotonic clock that stamps samples and poses.
 
 import asyncio
 from collections.abc import Callable, Coroutine
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.errors.force import SensorFrozen, SensorSilent
 from cellctl.errors.robot import MotionAborted, NotRearmed
+from cellctl.force.compliance import Sideways, deck_moved
 from cellctl.geometry.pose import Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotState
@@ -21,7 +23,7 @@ from cellctl.steps.mating.limits import fault_of
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.ports import GuardPort
 from cellctl.steps.mating.recorder import Recorder
-from cellctl.steps.mating.result import MatingPhase, MatingProgress, Reading
+from cellctl.steps.mating.result import GivingWay, MatingPhase, MatingProgress, Reading
 
 POLL_S = 0.01
 REPORT_WAIT_S = 0.5
@@ -40,6 +42,14 @@ class Attempt:
     plan: MatingPlan
     recorder: Recorder
     report: Report
+    sideways: Sideways = field(default_factory=Sideways)
+    """How far the deck has given way to pins."""
+    gave_way: list[GivingWay] = field(default_factory=list)
+
+    def pose_at(self, travel_m: float) -> RigidTransform:
+        """Flange after so much travel along −Z_D, beside it where the deck gave way."""
+        plan = self.plan
+        return deck_moved(plan.base_T_flange, plan.flange_T_deck, travel_m, self.sideways)
 
     def tell(self, phase: MatingPhase, reading: Reading | None = None, message: str = "") -> None:
         """Report progress."""

@@ -14,6 +14,7 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
 from cellctl.steps.mating.attempt import Attempt, loop_time_s
+from cellctl.steps.mating.compliant import glance, relieve
 from cellctl.steps.mating.limits import contact_limits, fault_of, touch_limits, travel_limits
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.result import MatingPhase, Reading, Tare
@@ -57,7 +58,7 @@ async def travel_clear(attempt: Attempt) -> None:
     await attempt.guard.arm(travel_limits(settings))
     trip = await attempt.move(
         attempt.robot.move_linear(
-            plan.pose_at(plan.window.clear_m),
+            attempt.pose_at(plan.window.clear_m),
             speed_m_s=settings.fast_speed_m_s,
             acceleration_m_s2=settings.acceleration_m_s2,
         )
@@ -83,11 +84,16 @@ async def travel_to_touch(attempt: Attempt) -> float:
         attempt.tell(MatingPhase.SLOW)
         begin_s = loop_time_s()
         commanded_m = min(commanded_m + plan.segment_m, plan.window.latest_m)
-        pose = plan.pose_at(commanded_m)
+        pose = attempt.pose_at(commanded_m)
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=plan.speed.speed_m_s))
-        if trip is not None:
+        if trip is None:
+            attempt.require_alive(attempt.guard.samples(begin_s).raw)
+            await glance(attempt)
+        elif _at_pins(attempt, trip):
+            await take_over(attempt)
+            commanded_m = await relieve(attempt)
+        else:
             return _touched(attempt, trip)
-        attempt.require_alive(attempt.guard.samples(begin_s).raw)
     return await _touch_at_standstill(attempt)
 
 
@@ -96,6 +102,12 @@ async def take_over(attempt: Attempt) -> None:
     await attempt.guard.acknowledge()
     await attempt.guard.arm(contact_limits(attempt.plan.settings))
     await attempt.robot.rearm()
+
+
+def _at_pins(attempt: Attempt, trip: GuardTrip) -> bool:
+    """True for a touch above the window where pins are expected and may be given way to."""
+    early = attempt.recorder.travel_at(trip.time_s) < attempt.plan.window.earliest_m
+    return attempt.plan.compliance is not None and (trip.touch or trip.force) and early
 
 
 async def _touch_at_standstill(attempt: Attempt) -> float:

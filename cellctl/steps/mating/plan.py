@@ -16,6 +16,7 @@ from cellctl.force.approach import (
     contact_window,
     segment_length,
 )
+from cellctl.force.compliance import ComplianceLaw
 from cellctl.force.creep import CreepLaw
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.steps.mating.settings import MatingSettings
@@ -41,6 +42,8 @@ class MatingPlan:
     """Longest single move of the slow travel: bounded force even if a stop is never obeyed."""
     creep: CreepLaw
     release: CreepLaw
+    compliance: ComplianceLaw | None
+    """How the deck gives way to pins; None where it does not."""
 
     def pose_at(self, travel_m: float) -> RigidTransform:
         """Flange after so much travel along −Z_D (eq. 18 for a pure translation)."""
@@ -105,6 +108,7 @@ def plan_mating(
         segment_m=min(segment_m, settings.greatest_segment_m),
         creep=_creep(settings),
         release=_release(settings),
+        compliance=_compliance(settings),
     )
 
 
@@ -129,6 +133,7 @@ def _window(
         greatest_half_m=min(settings.window_m, settings.greatest_past_m),
         tilt_m=float(half_x * ry + half_y * rx),
         margin_m=settings.clear_margin_m,
+        engaged_m=settings.pins.engagement_m if settings.pins else 0.0,
     )
 
 
@@ -146,6 +151,24 @@ def _creep(settings: MatingSettings) -> CreepLaw:
 def _release(settings: MatingSettings) -> CreepLaw:
     band = min(NOISE_BAND_N, (settings.release_high_n - settings.release_low_n) / 4.0)
     return _law(settings, settings.release_low_n + band, settings.release_high_n - band)
+
+
+def _compliance(settings: MatingSettings) -> ComplianceLaw | None:
+    pins = settings.pins
+    if pins is None or not pins.compliant:
+        return None
+    return ComplianceLaw(
+        stiffness_n_m=pins.lateral_stiffness_n_m,
+        yaw_stiffness_n_m_rad=pins.yaw_stiffness_n_m_rad,
+        damping_n_s_m=settings.creep_damping_n_s_m,
+        period_s=settings.step_period_s,
+        dead_band_n=pins.dead_band_n,
+        dead_band_n_m=pins.dead_band_n_m,
+        greatest_step_m=pins.greatest_step_m,
+        greatest_step_rad=pins.greatest_step_rad,
+        greatest_travel_m=pins.greatest_travel_m,
+        greatest_yaw_rad=pins.greatest_yaw_rad,
+    )
 
 
 def _law(settings: MatingSettings, low_n: float, high_n: float) -> CreepLaw:

@@ -5,6 +5,7 @@ from enum import Enum
 
 from cellctl.force.approach import ApproachSpeed, ContactWindow
 from cellctl.force.commissioning import StiffnessEstimate
+from cellctl.force.compliance import Sideways
 from cellctl.force.curve import CurveStatistics, ForceCurve
 from cellctl.force.seat import SeatVerdict
 from cellctl.geometry.pose import Array
@@ -17,6 +18,7 @@ class MatingPhase(Enum):
     FAST = "fast travel"
     SLOW = "guarded travel"
     CREEP = "creep to force"
+    GIVE_WAY = "give way to pins"
     HOLD = "hold"
     RELEASE = "relax"
     BACK_OFF = "back off"
@@ -51,6 +53,17 @@ class Reading:
     def force_n(self) -> float:
         """Along the approach; positive when the frame pushes back."""
         return float(self.wrench[2])
+
+
+@dataclass(frozen=True, slots=True)
+class GivingWay:
+    """One move across the approach."""
+
+    reading: Reading
+    """Before it."""
+    move: Sideways
+    total: Sideways
+    """After it, from the stand-off."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +102,8 @@ class MatingResult:
     verdict: SeatVerdict
     relaxing: tuple[Reading, ...]
     """Readings while relaxing, oldest first; empty for a false seat."""
+    gave_way: tuple[GivingWay, ...]
+    """Moves across the approach, oldest first."""
     curve: ForceCurve
     statistics: CurveStatistics
     duration_s: float

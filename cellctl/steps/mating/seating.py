@@ -9,6 +9,7 @@ from cellctl.force.creep import CreepLaw, after_step, begin, done, next_step
 from cellctl.force.seat import SeatFinding, SeatVerdict, judge_seat
 from cellctl.geometry.pose import MM
 from cellctl.steps.mating.attempt import Attempt
+from cellctl.steps.mating.compliant import give_way
 from cellctl.steps.mating.limits import fault_of
 from cellctl.steps.mating.result import MatingPhase, Reading
 
@@ -29,6 +30,7 @@ async def creep_to(
     """
     plan, settings = attempt.plan, attempt.plan.settings
     reading = first or await attempt.read(settings.reading_s, settings.step_settle_s)
+    reading = await give_way(attempt, reading)
     readings, state = [reading], begin(law, reading.force_n, reading.travel_m, shown_n_m)
     while not done(law, state):
         attempt.tell(phase, reading)
@@ -39,11 +41,12 @@ async def creep_to(
                 f"wanted {law.reference_n:.1f} N before {plan.end_of_travel_m / MM:.3f} mm"
             )
         trip = await attempt.move(
-            attempt.robot.step(plan.pose_at(target_m), speed_m_s=settings.step_speed_m_s)
+            attempt.robot.step(attempt.pose_at(target_m), speed_m_s=settings.step_speed_m_s)
         )
         if trip is not None:
             raise fault_of(trip, settings)
         reading = await attempt.read(settings.reading_s, settings.step_settle_s)
+        reading = await give_way(attempt, reading)
         state = after_step(law, state, reading.force_n, reading.travel_m)
         readings.append(reading)
     attempt.tell(phase, reading)

@@ -9,6 +9,25 @@ from cellctl.force.seat import SeatLimits
 
 
 @dataclass(frozen=True, slots=True)
+class PinSettings:
+    """Pins that enter the deck before it sits, and how far it may give way to them."""
+
+    engagement_m: float
+    """They are met so far above the seat."""
+    compliant: bool = True
+    """Give way to them; else they are only approached slowly."""
+    greatest_travel_m: float = 2e-4
+    greatest_yaw_rad: float = float(np.deg2rad(0.03))
+    lateral_stiffness_n_m: float = 1e6
+    """Upper bound of what is felt across the approach: the arm's own."""
+    yaw_stiffness_n_m_rad: float = 3e5
+    dead_band_n: float = 3.0
+    dead_band_n_m: float = 1.5
+    greatest_step_m: float = 5e-5
+    greatest_step_rad: float = float(np.deg2rad(0.005))
+
+
+@dataclass(frozen=True, slots=True)
 class MatingSettings:
     """Constants of a mating. Measured figures have no default."""
 
@@ -87,6 +106,7 @@ class MatingSettings:
     release_low_n: float = 10.0
     release_high_n: float = 20.0
 
+    pins: PinSettings | None = None
     seat: SeatLimits = field(default_factory=SeatLimits)
     max_lateral_n: float = 25.0
     max_moment_n_m: float = 25.0

@@ -102,6 +102,7 @@ def seated(plan: MatingPlan) -> MatingResult:
         hold=reading,
         verdict=SeatVerdict(36.0, 1e-5, 1.0, 0.5, ()),
         relaxing=(),
+        gave_way=(),
         curve=felt,
         statistics=curve_statistics(felt.time_s, felt.wrench),
         duration_s=20.0,
