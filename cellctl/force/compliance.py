@@ -37,6 +37,9 @@ class Sideways:
         return Sideways(self.x_m + step.x_m, self.y_m + step.y_m, self.yaw_rad + step.yaw_rad)
 
 
+STRAIGHT = Sideways()
+
+
 @dataclass(frozen=True, slots=True)
 class ComplianceLaw:
     """Constants of the lateral and yaw compliance."""

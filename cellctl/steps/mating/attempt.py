@@ -15,7 +15,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.base import CellError
 from cellctl.errors.force import SensorFrozen, SensorSilent
 from cellctl.errors.robot import MotionAborted, NotRearmed
-from cellctl.force.compliance import Sideways, deck_moved
+from cellctl.force.compliance import STRAIGHT, Sideways
 from cellctl.geometry.pose import Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotState
@@ -42,14 +42,15 @@ class Attempt:
     plan: MatingPlan
     recorder: Recorder
     report: Report
-    sideways: Sideways = field(default_factory=Sideways)
+    sideways: Sideways = STRAIGHT
     """How far the deck has given way to pins."""
     gave_way: list[GivingWay] = field(default_factory=list)
+    touches_above: int = 0
+    """Touches above the window that giving way has ended."""
 
     def pose_at(self, travel_m: float) -> RigidTransform:
         """Flange after so much travel along −Z_D, beside it where the deck gave way."""
-        plan = self.plan
-        return deck_moved(plan.base_T_flange, plan.flange_T_deck, travel_m, self.sideways)
+        return self.plan.pose_at(travel_m, self.sideways)
 
     def tell(self, phase: MatingPhase, reading: Reading | None = None, message: str = "") -> None:
         """Report progress."""

@@ -53,16 +53,20 @@ async def glance(attempt: Attempt) -> None:
 async def relieve(attempt: Attempt) -> float:
     """After a touch above the seat, taken over: give way and go on; the travel reached.
 
-    Raises ``ContactEarly`` when the force along the approach stays: that is no pin.
+    Raises ``ContactEarly`` when the force along the approach stays: that is no pin. Touches that
+    never end are one too.
     """
     settings, window = attempt.plan.settings, attempt.plan.window
     reading = await attempt.read(settings.reading_s, settings.step_settle_s)
     reading = await give_way(attempt, reading)
-    if reading.force_n > settings.touch.drift_n:
+    attempt.touches_above += 1
+    stays = reading.force_n > settings.touch.drift_n
+    if stays or attempt.touches_above > settings.max_creep_steps:
         raise ContactEarly(
             f"contact after {reading.travel_m / MM:.3f} mm, expected at "
             f"{window.expected_m / MM:.3f} mm; giving way by "
-            f"{attempt.sideways.distance_m / MM:.3f} mm leaves {reading.force_n:.1f} N"
+            f"{attempt.sideways.distance_m / MM:.3f} mm leaves {reading.force_n:.1f} N "
+            f"({attempt.touches_above} touches)"
         )
     await attempt.guard.arm(touch_limits(settings))
     return reading.travel_m
