@@ -15,12 +15,14 @@ from cellctl.vision.rim_fit import (
     Fitted,
     RimFit,
     RingPrior,
+    finished,
     fit_rim,
     fit_rim_pair,
     likely_wall,
     rated,
     rough_rim,
 )
+from cellctl.vision.rim_lay import lay_across
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape
 from cellctl.vision.stereo_head import CameraModel
@@ -30,13 +32,14 @@ _MIN_SUPPORT = 0.55
 _MIN_CONTRAST_GREY = 8.0
 _MAX_MOVE_PX = 2.5
 _BAND_INSIDE_PX, _THREAD_INSIDE_PX, _BAND_OUTSIDE_PX = 6.5, 3.0, 5.5
-_DENSE_PX = 3.0
+_DENSE_PX, _THREAD_DENSE_PX = 3.0, 5.0
 _WALL_DEPTHS_M = (0.5e-3, 1e-3, 2e-3, 4e-3, 9e-3)
 _FAINT_GAIN, _HINT_GAIN, _CLEAR_GAIN = 2.0, 12.0, 60.0
 """Falls of the squares: worth a closer look, worth a fit with a wall, beyond doubt."""
 _EVIDENCE = 15.0
 """Fall of the information criterion that a more complex model must bring."""
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
+_CHAMFER_CLEAR, _RIM_CLEAR = 1.15, 1.0
 _DIAMETER_SIGMA = 0.01
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 _FLOOR_PX = 1e-3
@@ -161,6 +164,7 @@ def measure_thread(
         (starts[0], starts[1]),
         Light(thread=True),
         RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
+        left.across_lay,
     )
     fit = rated(fitted)
     for task, shape in zip(tasks, fit.shapes, strict=True):
@@ -192,6 +196,8 @@ class _Task:
     """Start in plane units."""
     nominal: float
     """Nominal radius in plane units."""
+    across_lay: Array | None
+    """Across the lay of the face beside the rim, shape (2,); None without one."""
 
 
 def _patch(sight: Sight, hole: Hole, reach_px: float) -> PlanePatch | None:
@@ -215,7 +221,12 @@ def _task(sight: Sight, hole: Hole, located: Located) -> _Task | Rejection:
     centre = to_plane(sight.camera, located.point_px[None], patch.normal, patch.basis)[0]
     radius = nominal * located.size_ratio
     pixels = _band(sight, hole, patch, located.point_px, radius)
-    return _Task(sight, hole, patch, pixels, centre, radius, nominal)
+    across = None
+    if hole.countersink_m is None:
+        clear = _CHAMFER_CLEAR if hole.kind == "thread" else _RIM_CLEAR
+        clear_px = clear * radius / patch.unit_px + 3.0
+        across = lay_across(sight.image, patch, located.point_px, clear_px)
+    return _Task(sight, hole, patch, pixels, centre, radius, nominal, across)
 
 
 def _band(
@@ -223,9 +234,9 @@ def _band(
 ) -> RimPixels:
     """The pixels near the rim: all where it lies, one in three where only levels are needed."""
     radius_px = radius / patch.unit_px
-    inside, outside = min(_BAND_INSIDE_PX, 0.5 * radius_px), _BAND_OUTSIDE_PX
+    inside, outside, dense = min(_BAND_INSIDE_PX, 0.5 * radius_px), _BAND_OUTSIDE_PX, _DENSE_PX
     if hole.kind == "thread":
-        inside = _THREAD_INSIDE_PX
+        inside, dense = _THREAD_INSIDE_PX, _THREAD_DENSE_PX
     elif hole.countersink_m is not None:
         ring_px = radius_px * (hole.countersink_m / hole.diameter_m - 1.0)
         outside = min(outside, max(2.0, 0.7 * ring_px))
@@ -241,7 +252,7 @@ def _band(
     along, across = (jacobian[i, 0, 0] * dx + jacobian[i, 1, 0] * dy for i in (0, 1))
     distance = np.hypot(along, across) / patch.unit_px - radius_px
     wanted = (distance > -inside) & (distance < outside)
-    wanted &= (np.abs(distance) < _DENSE_PX) | ((columns + rows) % 3 == 0)
+    wanted &= (np.abs(distance) < dense) | ((columns + rows) % 3 == 0)
     columns, rows = columns[wanted], rows[wanted]
     points, jacobians = patch.from_px(columns.astype(float), rows.astype(float))
     grey = sight.image[rows, columns].astype(float)
@@ -250,23 +261,23 @@ def _band(
 
 def _fit_alone(task: _Task) -> Fitted:
     """The simplest model of the rim that the grey values do not contradict."""
-    pixels, light = task.pixels, Light(cone=task.hole.countersink_m is not None)
+    pixels, lay = task.pixels, task.across_lay
+    light = Light(cone=task.hole.countersink_m is not None)
     bare = RimShape(task.centre, task.radius, _BLUR_PX)
     if task.hole.kind == "disc":
-        return fit_rim(pixels, bare, light)
+        return fit_rim(pixels, bare, light, lay)
     ratios = [depth_m / task.sight.distance_m for depth_m in _WALL_DEPTHS_M]
-    rough = rough_rim(pixels, bare, light)
-    settled = rough.shapes[0]
+    rough = rough_rim(pixels, bare, light, lay)
     ratio, gain = likely_wall(rough, ratios)
     if gain > _CLEAR_GAIN:
-        return fit_rim(pixels, replace(settled, wall_ratio=ratio), light)
-    plain = fit_rim(pixels, settled, light, settled=True)
+        return fit_rim(pixels, replace(rough.shapes[0], wall_ratio=ratio), light, lay)
+    plain = finished(rough)
     if gain < _FAINT_GAIN:
         return plain
     ratio, gain = likely_wall(plain, ratios)
     if gain < _HINT_GAIN:
         return plain
-    walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light)
+    walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light, lay)
     return walled if walled.bic() < plain.bic() - _EVIDENCE else plain
 
 

@@ -9,11 +9,14 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim_light import Light
 from cellctl.vision.rim_model import RimPixels, RimShape, borders
 from cellctl.vision.rim_noise import arc_covariance, texture_covariance, widened
-from cellctl.vision.rim_problem import Problem, RimView, Solution
+from cellctl.vision.rim_problem import Problem, RimView, Solution, first, refreshed
 from cellctl.vision.rim_solve import minimise
 
-_WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.045, 0.022, 0.12
+_WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
+
+
+_ROUGH_PX = 0.03
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,18 +56,24 @@ class Fitted:
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
-def fit_rim(pixels: RimPixels, start: RimShape, light: Light, *, settled: bool = False) -> Fitted:
-    """Fit one image from a start within 1–2 px, or from one that already fits."""
-    problem = _alone(pixels, start, light)
-    solution, converged = minimise(problem, start.vector, weighing_rounds=1 if settled else 2)
+def fit_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
+    """Fit one image from a start within 1–2 px."""
+    problem = _alone(pixels, start, light, across_lay)
+    return _fitted(problem, first(problem, start.vector))
+
+
+def rough_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
+    """A quick fit to a few hundredths of a pixel, to be ``finished``."""
+    problem = _alone(pixels, start, light, across_lay)
+    solution, converged = minimise(
+        problem, first(problem, start.vector), tolerance_px=_ROUGH_PX, weighing_rounds=1
+    )
     return Fitted(problem, solution, converged)
 
 
-def rough_rim(pixels: RimPixels, start: RimShape, light: Light) -> Fitted:
-    """A quick fit to a few hundredths of a pixel, on few of the pixels."""
-    problem = _alone(pixels.every(3), start, light)
-    solution, converged = minimise(problem, start.vector, tolerance_px=0.03, weighing_rounds=1)
-    return Fitted(problem, solution, converged)
+def finished(rough: Fitted) -> Fitted:
+    """A rough fit brought to its end."""
+    return _fitted(rough.problem, refreshed(rough.problem, rough.solution), weighing_rounds=0)
 
 
 def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
@@ -74,18 +83,16 @@ def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
     seen, with shape and light free to follow to first order.
     """
     solution, shape = bare.solution, bare.shapes[0]
-    weighted = solution.design * solution.weights
+    pixels = bare.problem.views[0].pixels
+    walls = [borders(pixels, replace(shape, wall_ratio=ratio))[1].outside for ratio in ratios]
+    seen = np.array(walls) - solution.outside
+    weighted = solution.noise.weigh(seen)
+    shared = weighted @ solution.design.T
     normal = np.linalg.inv(solution.normal() + 1e-9 * np.eye(len(solution.design)))
-    gains = []
-    for ratio in ratios:
-        low = borders(bare.problem.views[0].pixels, replace(shape, wall_ratio=ratio))[1]
-        seen = low.outside - solution.outside
-        shared = weighted @ seen
-        slope = float((seen * solution.weights) @ solution.residuals)
-        size = float((seen * solution.weights) @ seen - shared @ normal @ shared)
-        gains.append(slope**2 / size if size > 1e-6 else 0.0)
+    size = (weighted * seen).sum(axis=1) - ((shared @ normal) * shared).sum(axis=1)
+    gains = np.where(size > 1e-6, (weighted @ solution.residuals) ** 2 / np.maximum(size, 1e-6), 0)
     best = int(np.argmax(gains))
-    return ratios[best], gains[best]
+    return ratios[best], float(gains[best])
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +111,7 @@ def fit_rim_pair(
     starts: tuple[RimShape, RimShape],
     light: Light,
     prior: RingPrior,
+    across_lay: Array | None,
 ) -> Fitted:
     """Fit a rim with a ring in both images at once.
 
@@ -127,12 +135,16 @@ def fit_rim_pair(
         RimView(part, shape, selection, grey / outer[0])
         for part, shape, selection, grey in zip(pixels, starts, selections, outer, strict=True)
     )
-    problem = Problem(views, light, mean, sigma)
-    solution, converged = minimise(problem, mean)
+    problem = Problem(views, light, mean, sigma, across_lay)
+    return _fitted(problem, first(problem, mean))
+
+
+def _fitted(problem: Problem, start: Solution, *, weighing_rounds: int = 2) -> Fitted:
+    solution, converged = minimise(problem, start, weighing_rounds=weighing_rounds)
     return Fitted(problem, solution, converged)
 
 
-def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
+def _alone(pixels: RimPixels, shape: RimShape, light: Light, across_lay: Array | None) -> Problem:
     size = len(shape.vector)
     view = RimView(pixels, shape, np.eye(size))
     sigma = np.full(size, np.inf)
@@ -140,7 +152,7 @@ def _alone(pixels: RimPixels, shape: RimShape, light: Light) -> Problem:
         sigma[4] = (
             4.0 * shape.wall_ratio
         )  # Where the lower edge is out of sight, nothing else holds it.
-    return Problem((view,), light, shape.vector, sigma)
+    return Problem((view,), light, shape.vector, sigma, across_lay)
 
 
 def rated(fitted: Fitted) -> RimFit:
@@ -150,7 +162,9 @@ def rated(fitted: Fitted) -> RimFit:
     rows = [solution.lights + index for index in geometry]
     everything = solution.covariance()
     covariance = everything[np.ix_(rows, rows)]
-    influence = (everything[rows] @ solution.design) * solution.weights
+    influence = everything[rows] @ solution.noise.weigh(solution.design)
+    unexplained = solution.noise.own(solution.residuals)
+    scores = everything[rows] @ solution.design * solution.noise.weights * unexplained
     seen, start = np.zeros_like(covariance), 0
     offsets = []
     for view in problem.views:
@@ -159,12 +173,12 @@ def rated(fitted: Fitted) -> RimFit:
         offsets.append(view.pixels.points - view.shape(solution.vector).centre[:, None])
         seen += texture_covariance(
             view.pixels.place,
-            solution.residuals[part],
+            unexplained[part],
             solution.outside[part],
             influence[:, part],
         )
     x, y = np.concatenate(offsets, axis=1)
-    arcs = arc_covariance(influence * solution.residuals, np.arctan2(y, x))
+    arcs = arc_covariance(scores, np.arctan2(y, x))
     covariance = widened(widened(covariance, arcs), seen)
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
@@ -175,7 +189,7 @@ def rated(fitted: Fitted) -> RimFit:
     return RimFit(
         shapes=fitted.shapes,
         covariance=covariance,
-        residual_grey=float(np.sqrt(np.mean(solution.residuals**2))),
+        residual_grey=float(np.sqrt(np.mean(unexplained**2))),
         contrast_grey=contrast,
     )
 

@@ -15,7 +15,7 @@ from cellctl.vision.rim_model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 4.0, 30.0
+_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 4.0, 15.0
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
@@ -147,5 +147,6 @@ def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]
         sin * double_cos + cos * double_sin,
     )
     level = np.stack([np.ones_like(cos), cos, sin, double_cos, double_sin, triple_cos, triple_sin])
-    terms = np.concatenate([level, level * ((radius - 1.0) / _THREAD_BAND)])
+    band = (radius - 1.0) / _THREAD_BAND
+    terms = np.concatenate([level, level * band, level[:5] * band**2])
     return terms, np.array([np.inf, *[_THREAD_GREY] * (len(terms) - 1)])

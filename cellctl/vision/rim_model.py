@@ -34,16 +34,6 @@ class RimPixels:
     unit_px: float
     """Plane units in a pixel."""
 
-    def every(self, nth: int) -> "RimPixels":
-        """One in ``nth`` of the pixels, for a first look."""
-        return RimPixels(
-            np.ascontiguousarray(self.points[:, ::nth]),
-            np.ascontiguousarray(self.jacobian[:, :, ::nth]),
-            self.grey[::nth],
-            self.place[:, ::nth],
-            self.unit_px,
-        )
-
 
 @dataclass(frozen=True, slots=True)
 class RimShape:

@@ -1,8 +1,10 @@
 """How noisy the pixels at a rim are, and how far their errors hang together."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft2, rfft2
+from scipy.fft import irfft2, next_fast_len, rfft2
 
 from cellctl.geometry.pose import Array
 
@@ -16,27 +18,89 @@ _BINS, _REACH = 36, 6
 _LOST = 1.4
 """What the fit takes out of these sums by bringing their total to zero."""
 _SHRINK = 0.3
+_CHANCE = 1.8
+"""Sums over a few arcs reach this share of what independent errors give by chance alone."""
 _LAG = 24
 """Distance in px over which texture is followed."""
 _FEWEST_PAIRS = 40
 _CLIP_GREY = 30.0
+_CLIP_SIGMAS = 4.0
+_LEAST_STROKE_GREY = 0.3
+"""Lower strokes are not worth the work."""
+_FEWEST_IN_STROKE, _FEWEST_STROKES = 4, 8
 
 
 _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
 
 
-def weights_of(residuals: Array, outside: Array) -> Array:
-    """Weights of the pixels: one over the variance there, less for outliers, shape (n,).
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Errors of the pixels: independent ones, and strokes of the face that many pixels share."""
+
+    weights: Array
+    """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
+    strokes: Array
+    """What each stroke adds to each pixel at one standard deviation, shape (k, n)."""
+    posterior: Array
+    """Covariance of the strokes' heights given the pixels, shape (k, k)."""
+
+    @classmethod
+    def of(cls, weights: Array, strokes: Array) -> "Noise":
+        """With the strokes' heights still unknown."""
+        normal = (strokes * weights) @ strokes.T + np.eye(len(strokes))
+        return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
+
+    def weigh(self, rows: Array) -> Array:
+        """Rows (…, n) times the inverse of the errors' covariance."""
+        weighted = rows * self.weights
+        if len(self.strokes) == 0:
+            return np.asarray(weighted)
+        heights = (weighted @ self.strokes.T) @ self.posterior
+        return np.asarray(weighted - (heights @ self.strokes) * self.weights)
+
+    def own(self, residuals: Array) -> Array:
+        """Residuals (n,) less the strokes in them."""
+        heights = self.posterior @ (self.strokes @ (self.weights * residuals))
+        return np.asarray(residuals - heights @ self.strokes)
+
+
+def noise_of(residuals: Array, outside: Array, strokes: Array) -> Noise:
+    """The noise that the residuals (n,) show; ``strokes`` (k, n) of unit height, k may be 0.
 
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
     them its variance goes with the share that the bright side covers.
     """
-    bright = _robust_sigma(residuals[outside > 0.95])
-    dark = _robust_sigma(residuals[outside < 0.05])
-    sigma = np.sqrt(dark**2 + (bright**2 - dark**2) * outside)
-    scaled = np.abs(residuals) / sigma
-    return np.asarray(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2)
+    bright, dark = outside > 0.95, _robust_sigma(residuals[outside < 0.05])
+    own, height = _robust_sigma(residuals[bright]), 0.0
+    if len(strokes):
+        own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
+    sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
+    seen = strokes * height if height > _LEAST_STROKE_GREY else strokes[:0]
+    noise = Noise.of(sigma**-2.0, seen)
+    scaled = np.abs(noise.own(residuals)) / sigma
+    return Noise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
+
+
+def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
+    """Standard deviations of the pixels' own errors and of the strokes' heights.
+
+    Analysis of variance: each pixel belongs to the stroke nearest to it.
+    """
+    limit = _CLIP_SIGMAS * _robust_sigma(residuals)
+    clipped = np.clip(residuals, -limit, limit)
+    level = strokes[: len(strokes) // 2]
+    nearest = np.argmax(level, axis=0)
+    count = np.bincount(nearest, minlength=len(level))
+    mean = np.bincount(nearest, clipped, minlength=len(level)) / np.maximum(count, 1)
+    within = clipped - mean[nearest]
+    freedom = max(len(clipped) - np.count_nonzero(count), 1)
+    own = max(float(np.sqrt(within @ within / freedom)), _LEAST_GREY)
+    full = count >= _FEWEST_IN_STROKE
+    if np.count_nonzero(full) < _FEWEST_STROKES:
+        return own, 0.0
+    between = float(np.mean(mean[full] ** 2 - own**2 / count[full]))
+    return own, float(np.sqrt(max(between, 0.0)))
 
 
 def arc_covariance(scores: Array, azimuth: Array) -> Array:
@@ -61,43 +125,31 @@ def texture_covariance(
     derivative of the centre by each pixel.
     """
     columns, rows = place - place.min(axis=1, keepdims=True)
-    size = 2 * (int(max(columns.max(), rows.max())) // 2) + _LAG
+    size = next_fast_len(int(max(columns.max(), rows.max())) + _LAG, real=True)
     bright = outside > 0.95
     clipped = np.clip(residuals, -_CLIP_GREY, _CLIP_GREY)
-
-    def spectrum(values: Array) -> NDArray[np.complex128]:
-        image = np.zeros((size, size))
-        image[rows, columns] = values
-        return np.asarray(rfft2(image))
-
-    def correlation(first: NDArray[np.complex128], second: NDArray[np.complex128]) -> Array:
-        return np.asarray(irfft2(np.conj(first) * second, s=(size, size)))
-
-    seen, mask = spectrum(clipped * bright), spectrum(bright.astype(float))
-    pairs = correlation(mask, mask)
+    shares = influence * outside
+    images = np.zeros((2 + len(shares), size, size))
+    images[:, rows, columns] = np.vstack([clipped * bright, bright, shares])
+    spectra = rfft2(images)
+    seen, pairs = irfft2(np.abs(spectra[:2]) ** 2, s=(size, size))
     lags = np.minimum(np.arange(size), size - np.arange(size))
     near = (lags[:, None] <= _LAG) & (lags[None, :] <= _LAG) & (pairs > _FEWEST_PAIRS)
-    texture = np.where(near, correlation(seen, seen) / np.maximum(pairs, 1.0), 0.0)
-    spread = rfft2(texture)
-    shares = influence * outside
-    passed = np.stack(
-        [irfft2(spectrum(row) * spread, s=(size, size))[rows, columns] for row in shares]
-    )
+    texture = np.where(near, seen / np.maximum(pairs, 1.0), 0.0)
+    passed = irfft2(spectra[2:] * rfft2(texture), s=(size, size))[:, rows, columns]
     found = shares @ passed.T
     return np.asarray(0.5 * (found + found.T))
 
 
 def widened(covariance: Array, seen: Array) -> Array:
-    """The covariance, enlarged where ``seen`` exceeds it; partly in all directions alike."""
+    """The covariance, enlarged where ``seen`` exceeds it by more than chance."""
     root = np.linalg.cholesky(covariance)
     inverse = np.linalg.inv(root)
     whitened = inverse @ seen @ inverse.T
-    whitened = (1.0 - _SHRINK) * whitened + _SHRINK * np.trace(whitened) / len(seen) * np.eye(
-        len(seen)
-    )
-    values, vectors = np.linalg.eigh(whitened)
+    even = np.trace(whitened) / len(seen) * np.eye(len(seen))
+    values, vectors = np.linalg.eigh((1.0 - _SHRINK) * whitened + _SHRINK * even)
     wide = root @ vectors
-    return np.asarray((wide * np.maximum(values, 1.0)) @ wide.T)
+    return np.asarray((wide * np.where(values > _CHANCE, values, 1.0)) @ wide.T)
 
 
 def _robust_sigma(residuals: Array) -> float:

@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim_lay import strokes
 from cellctl.vision.rim_light import Light, Surface, surfaces
 from cellctl.vision.rim_model import Border, RimPixels, RimShape, borders
-from cellctl.vision.rim_noise import weights_of
+from cellctl.vision.rim_noise import Noise, noise_of
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_WALL_RATIO = 0.2
@@ -54,8 +55,15 @@ class Problem:
     """Prior of the joint parameters, shape (m,)."""
     sigma: Array
     """Infinite where nothing is known."""
+    across_lay: Array | None = None
+    """Unit vector in the plane across the lay of the face, if it has one."""
     ring_difference_grey: float = 1.5
     """How much the ring's grey may differ between cameras, standard deviation of each term."""
+
+    @property
+    def unit_px(self) -> float:
+        """Plane units in a pixel of the first view."""
+        return self.views[0].pixels.unit_px
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +73,7 @@ class Solution:
     vector: Array
     parts: tuple[Sequence[Surface], ...]
     """Surfaces of each view."""
-    weights: Array
-    """One over the variance of each pixel, less for outliers."""
+    noise: Noise
     residuals: Array
     design: Array
     """Rows: light, then joint parameters, shape (lights + m, n)."""
@@ -76,6 +83,8 @@ class Solution:
     """Prior mean minus present value, shape (lights + m,)."""
     outside: Array
     """Share of each pixel outside the rim."""
+    face: Array
+    """Share of each pixel that the face covers, outside the ring, if there is one."""
 
     @property
     def lights(self) -> int:
@@ -85,11 +94,12 @@ class Solution:
     @property
     def cost(self) -> float:
         """Weighted squares of residuals and priors."""
-        return float(self.weights @ self.residuals**2 + self.precision @ self.pull**2)
+        squares = self.residuals @ self.noise.weigh(self.residuals)
+        return float(squares + self.precision @ self.pull**2)
 
     def normal(self) -> Array:
         """Normal matrix over light and joint parameters."""
-        return np.asarray((self.design * self.weights) @ self.design.T + np.diag(self.precision))
+        return np.asarray(self.noise.weigh(self.design) @ self.design.T + np.diag(self.precision))
 
     def covariance(self) -> Array:
         """Covariance of light and joint parameters for independent pixels."""
@@ -103,44 +113,61 @@ class Solution:
 
 def first(problem: Problem, vector: Array) -> Solution:
     """Solution at the start: equal weights, then weights from its own residuals."""
-    weights = np.full(sum(len(view.pixels.grey) for view in problem.views), _FLAT_WEIGHT)
-    return refreshed(problem, solved(problem, vector, lights_of(problem, vector), weights))
+    count = sum(len(view.pixels.grey) for view in problem.views)
+    noise = Noise.of(np.full(count, _FLAT_WEIGHT), np.empty((0, count)))
+    return refreshed(problem, solved(problem, vector, noise))
 
 
-def refreshed(problem: Problem, solution: Solution) -> Solution:
-    """The same shape with weights and light terms brought up to date."""
-    parts = lights_of(problem, solution.vector)
-    weights = weights_of(solution.residuals, solution.outside)
-    return solved(problem, solution.vector, parts, weights)
+def refreshed(problem: Problem, solution: Solution, *, weigh: bool = True) -> Solution:
+    """The same shape with the terms of the light brought up to date, and the noise on request."""
+    noise = solution.noise
+    if weigh:
+        noise = noise_of(solution.residuals, solution.outside, _strokes(problem, solution))
+    return solved(problem, solution.vector, noise)
 
 
-def lights_of(problem: Problem, vector: Array) -> tuple[Sequence[Surface], ...]:
-    """Terms of the light in every view, for the shape as it stands."""
-    found = []
+def _strokes(problem: Problem, solution: Solution) -> Array:
+    """Strokes of unit height, shape (k, n): all views see the same ones."""
+    if problem.across_lay is None:
+        return np.empty((0, len(solution.residuals)))
+    offsets, gains = [], []
     for view in problem.views:
-        shape = view.shape(vector)
-        found.append(surfaces(view.pixels, shape, borders(view.pixels, shape), problem.light))
-    return tuple(found)
+        centre = view.shape(solution.vector).centre
+        offsets.append((view.pixels.points - centre[:, None]) / problem.unit_px)
+        gains.append(np.full(len(view.pixels.grey), view.gain))
+    radius_px = problem.views[0].shape(solution.vector).radius / problem.unit_px
+    pattern = strokes(np.concatenate(offsets, axis=1), problem.across_lay, radius_px)
+    return np.asarray(pattern * (solution.face * np.concatenate(gains)))
 
 
 def solved(
-    problem: Problem, vector: Array, parts: tuple[Sequence[Surface], ...], weights: Array
+    problem: Problem,
+    vector: Array,
+    noise: Noise,
+    parts: tuple[Sequence[Surface], ...] | None = None,
 ) -> Solution:
     """Best light by linear least squares, and the derivatives of all pixels.
 
-    A pixel is the sum of its surfaces' greys times the shares that they cover.
+    A pixel is the sum of its surfaces' greys times the shares that they cover. The terms of the
+    light are those of ``parts``, or of the shape as it stands.
     """
-    edges = [borders(view.pixels, view.shape(vector)) for view in problem.views]
+    shapes = [view.shape(vector) for view in problem.views]
+    edges = [borders(view.pixels, shape) for view, shape in zip(problem.views, shapes, strict=True)]
+    if parts is None:
+        parts = tuple(
+            surfaces(view.pixels, shape, edge, problem.light)
+            for view, shape, edge in zip(problem.views, shapes, edges, strict=True)
+        )
     layout = _Layout.of(problem, parts)
-    terms = np.zeros((layout.lights, len(weights)))
+    terms = np.zeros((layout.lights, len(noise.weights)))
     for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
         terms[rows, columns] = part.terms * (gain * part.share(edge))
     grey = np.concatenate([view.pixels.grey for view in problem.views])
-    weighted = terms * weights
+    weighted = noise.weigh(terms)
     gram = weighted @ terms.T
     gram[np.diag_indices_from(gram)] += layout.precision + 1e-9 * np.diag(gram).max()
     levels = np.linalg.solve(gram, weighted @ grey)
-    by_vector = np.zeros((len(vector), len(weights)))
+    by_vector = np.zeros((len(vector), len(noise.weights)))
     for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
         view = problem.views[layout.view_of(columns)]
         by_vector[:, columns] += view.selection.T @ part.by_shape(edge, gain * levels[rows])
@@ -148,12 +175,13 @@ def solved(
     return Solution(
         vector,
         parts,
-        weights,
+        noise,
         grey - levels @ terms,
         np.concatenate([terms, by_vector]),
         np.concatenate([layout.precision, problem.sigma**-2.0]),
         np.concatenate([-levels, problem.mean - vector]),
         np.concatenate([edge[rim].outside for edge, rim in zip(edges, rims, strict=True)]),
+        np.concatenate([edge[0].outside for edge in edges]),
     )
 
 

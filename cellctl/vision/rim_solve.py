@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_problem import Problem, Solution, first, lights_of, refreshed, solved
+from cellctl.vision.rim_problem import Problem, Solution, refreshed, solved
 
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
 _SETTLED_PX = 0.01
@@ -17,15 +17,15 @@ _MAX_DAMPING = 1e4
 
 
 def minimise(
-    problem: Problem, start: Array, *, tolerance_px: float = 1.5e-3, weighing_rounds: int = 2
+    problem: Problem, start: Solution, *, tolerance_px: float = 1.5e-3, weighing_rounds: int = 2
 ) -> tuple[Solution, bool]:
     """The best solution, and whether it settled.
 
     The terms of the light depend weakly on the shape. They are held fixed for a few steps and then
     brought up to date; the series of these rounds converges linearly and is extrapolated. The
-    weights of the pixels are final after ``weighing_rounds``.
+    noise of the pixels is final after ``weighing_rounds``.
     """
-    best = first(problem, start)
+    best = start
     before: Array | None = None
     change_px = np.inf
     for number in range(_MAX_ROUNDS):
@@ -39,11 +39,7 @@ def minimise(
         if before is not None and change_px < _EXTRAPOLATE_PX:
             best = replace(best, vector=best.vector + change * _gain(problem, before, change))
         before = None if weighing else change
-        best = (
-            refreshed(problem, best)
-            if weighing
-            else solved(problem, best.vector, lights_of(problem, best.vector), best.weights)
-        )
+        best = refreshed(problem, best, weigh=weighing)
     return best, change_px < 4.0 * tolerance_px
 
 
@@ -51,7 +47,7 @@ def _settle(problem: Problem, best: Solution) -> Solution:
     """Damped Gauss-Newton steps with the terms of the light held fixed."""
     damping = 1e-6
     for _ in range(_MAX_STEPS):
-        trial = solved(problem, _moved(problem, best, damping), best.parts, best.weights)
+        trial = solved(problem, _moved(problem, best, damping), best.noise, best.parts)
         if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
             continue
@@ -78,7 +74,7 @@ def _moved(problem: Problem, solution: Solution, damping: float) -> Array:
     size = np.sqrt(np.diag(normal)) + 1e-12
     scaled = normal / np.outer(size, size)
     scaled[np.diag_indices_from(scaled)] += damping + 1e-10
-    gradient = solution.design @ (solution.residuals * solution.weights)
+    gradient = solution.design @ solution.noise.weigh(solution.residuals)
     gradient += solution.precision * solution.pull
     step = (np.linalg.solve(scaled, gradient / size) / size)[solution.lights :]
     longest = _step_px(problem, step)

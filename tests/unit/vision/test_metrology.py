@@ -27,6 +27,14 @@ def machined() -> Run:
     return run
 
 
+@pytest.fixture(scope="module")
+def machined_frame() -> Run:
+    run = Run()
+    for part in parts("frame", api.RenderOptions(), 2, 1, seed=7):
+        measure(run, part, "default", MACHINED_GREY)
+    return run
+
+
 def test_clean_holes_are_measured_near_the_physical_limit(clean: Run) -> None:
     assert not clean.failures
     for kind, errors in clean.holes.items():
@@ -54,3 +62,11 @@ def test_machined_holes_with_walls_and_countersinks(machined: Run) -> None:
         assert errors.worst_px() < 0.12
         assert np.median(errors.norms_px) < 0.035
         assert abs(errors.depth_bias_um()) < 25.0
+
+
+def test_a_brushed_face_hardly_disturbs_pins_and_threads(machined_frame: Run) -> None:
+    assert not machined_frame.failures
+    for kind, limit_px in (("pin", 0.025), ("thread", 0.07)):
+        errors = machined_frame.holes[kind]
+        assert np.median(errors.norms_px) < limit_px
+        assert statistics.fmean(errors.squared_2d) < 5.0
