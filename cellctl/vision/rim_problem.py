@@ -57,8 +57,10 @@ class Problem:
     """Infinite where nothing is known."""
     across_lay: Array | None = None
     """Unit vector in the plane across the lay of the face, if it has one."""
-    ring_difference_grey: float = 1.5
-    """How much the ring's grey may differ between cameras, standard deviation of each term."""
+    ring_level_grey: float = 3.0
+    """How much the ring's mean grey may differ between cameras, standard deviation."""
+    ring_variation_grey: float = 0.6
+    """The same for each term of its variation with the azimuth: one lamp lights it for both."""
 
     @property
     def unit_px(self) -> float:
@@ -206,7 +208,8 @@ class _Layout:
                 sigma = part.sigma_grey
                 if part.ring and ring is not None:
                     mine.append((index, 0, ring))
-                    sigma = np.full(count, problem.ring_difference_grey)
+                    sigma = np.full(count, problem.ring_variation_grey)
+                    sigma[0] = problem.ring_level_grey
                 block = slice(used, used + count)
                 if part.ring and ring is None:
                     ring = block
