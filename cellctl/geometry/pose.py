@@ -30,11 +30,6 @@ def pose_to_xyzabc(pose: RigidTransform) -> Array:
     return np.concatenate([pose.translation / MM, abc_deg])
 
 
-def pose_from_matrix(matrix: ArrayLike) -> RigidTransform:
-    """Pose from a 4x4 homogeneous matrix in metres; the rotation part is re-orthonormalised."""
-    return RigidTransform.from_matrix(np.asarray(matrix, dtype=float))
-
-
 def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Array, Array]:
     """Translation (m) and rotation vector (rad) from ``expected`` to ``measured``.
 

@@ -44,9 +44,3 @@ def distort_jacobian(camera: CameraModel, ray: Array) -> Array:
     offsets = np.array([[step, 0.0], [-step, 0.0], [0.0, step], [0.0, -step]])
     pixels = distort(camera, np.asarray(ray) + offsets)
     return np.column_stack([pixels[0] - pixels[1], pixels[2] - pixels[3]]) / (2.0 * step)
-
-
-def undistort_covariance(camera: CameraModel, ray: Array, covariance_px2: Array) -> Array:
-    """Covariance of a ray, shape (2, 2), from that of its raw pixel."""
-    inverse = np.linalg.inv(distort_jacobian(camera, ray))
-    return inverse @ covariance_px2 @ inverse.T

@@ -133,12 +133,6 @@ def judge(target: RigidTransform, measured: UncertainPose, thresholds: Threshold
     )
 
 
-def frames_needed(sigma: Array, thresholds: Thresholds, frames: int) -> int:
-    """Frames after which scatter that shrinks with their square root is small enough."""
-    allowed = thresholds.uncertainty_share * thresholds.vector
-    return max(1, int(np.ceil(frames * float(((sigma / allowed) ** 2).max()))))
-
-
 def check_uncertainty(judgement: Judgement, thresholds: Thresholds, frames: int) -> None:
     """Raise ``UncertaintyTooLarge`` when the frames taken did not suffice."""
     if judgement.certain:

@@ -20,7 +20,6 @@ from cellctl.vision.compensation import (
     check_uncertainty,
     deck_in_frame,
     flange_target,
-    frames_needed,
     judge,
     next_target,
     target_M_T_D,
@@ -99,13 +98,6 @@ def test_convergence_needs_both_a_small_error_and_a_small_uncertainty() -> None:
         check_uncertainty(doubtful, THRESHOLDS, 5)
     far = pose_from_xyzabc([0.03, -0.02, 25.04, 0.006, 0.003, -0.002])
     assert not judge(TARGET, UncertainPose(far, sure), THRESHOLDS).within
-
-
-def test_frames_follow_from_the_uncertainty() -> None:
-    sigma = THRESHOLDS.vector / 3.0
-    assert frames_needed(sigma, THRESHOLDS, 1) == 1
-    assert frames_needed(2.0 * sigma, THRESHOLDS, 1) == 4
-    assert frames_needed(1.1 * sigma, THRESHOLDS, 3) == 4
 
 
 def test_an_implausible_correction_is_refused() -> None:
