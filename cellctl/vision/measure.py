@@ -23,15 +23,10 @@ from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement,
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.plane_patch import X_AXIS
 from cellctl.vision.registration import kabsch, on_a_line
-from cellctl.vision.rim import (
-    Located,
-    Rejection,
-    Rim,
-    Sight,
-    locate_rim,
-    measure_rim,
-    measure_thread,
-)
+from cellctl.vision.rim.result import Rim
+from cellctl.vision.rim.sight import Located, Rejection, Sight, locate_rim
+from cellctl.vision.rim.single import measure_rim
+from cellctl.vision.rim.thread import measure_thread
 from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
 from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, midpoints, triangulate
 from cellctl.vision.stereo_head import StereoHead

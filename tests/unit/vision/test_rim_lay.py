@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.plane_patch import X_AXIS, PlanePatch, plane_basis, plane_patch
-from cellctl.vision.rim_lay import lay_across, strokes
-from cellctl.vision.rim_noise import Noise, noise_of
+from cellctl.vision.rim.lay import lay_across, strokes
+from cellctl.vision.rim.noise import Noise, noise_of
 from tests.unit.vision.plates import table_1_head
 
 MIDDLE_PX = np.array([1200.0, 1000.0])

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_model import Border, RimPixels, RimShape, wall_depth
+from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
 
 _LEAST_SHARE = 1e-5
 _FADE = 0.4

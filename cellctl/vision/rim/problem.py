@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_lay import strokes
-from cellctl.vision.rim_light import Light, Surface, surfaces
-from cellctl.vision.rim_model import Border, RimPixels, RimShape, borders
-from cellctl.vision.rim_noise import Noise, noise_of
+from cellctl.vision.rim.lay import strokes
+from cellctl.vision.rim.light import Light, Surface, surfaces
+from cellctl.vision.rim.model import Border, RimPixels, RimShape, borders
+from cellctl.vision.rim.noise import Noise, noise_of
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_WALL_RATIO = 0.2

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_problem import Problem, Solution, refreshed, solved
+from cellctl.vision.rim.problem import Problem, Solution, refreshed, solved
 
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
 _SETTLED_PX = 0.01

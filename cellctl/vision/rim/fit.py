@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim_light import Light
-from cellctl.vision.rim_model import RimPixels, RimShape, borders
-from cellctl.vision.rim_noise import arc_covariance, texture_covariance, widened
-from cellctl.vision.rim_problem import Problem, RimView, Solution, first, refreshed
-from cellctl.vision.rim_solve import minimise
+from cellctl.vision.rim.light import Light
+from cellctl.vision.rim.model import RimPixels, RimShape, borders
+from cellctl.vision.rim.noise import arc_covariance, texture_covariance, widened
+from cellctl.vision.rim.problem import Problem, RimView, Solution, first, refreshed
+from cellctl.vision.rim.solve import minimise
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""

@@ -1,0 +1,64 @@
+"""The rim of a thread and its chamfer, measured in both images at once."""
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.features import Hole
+from cellctl.vision.rim.fit import RingPrior, fit_rim_pair, rated
+from cellctl.vision.rim.light import Light
+from cellctl.vision.rim.model import RimShape
+from cellctl.vision.rim.result import FLOOR_PX, Rim, refusal, rim_of
+from cellctl.vision.rim.sight import Located, Rejection, Sight
+from cellctl.vision.rim.task import task_for
+
+_CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
+_DIAMETER_SIGMA = 0.01
+_BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
+
+
+def measure_thread(
+    sights: tuple[Sight, Sight],
+    hole: Hole,
+    located: tuple[Located, Located],
+    blur_px: tuple[float, float] | None,
+) -> tuple[Rim, Rim, Array] | Rejection:
+    """Measure the rim of a thread and its chamfer in both images at once.
+
+    ``blur_px`` is the blur of other rims in these images, where there are any. Third of the result
+    is the joint covariance of both points, shape (4, 4), px².
+    """
+    tasks = []
+    for sight, place in zip(sights, located, strict=True):
+        task = task_for(sight, hole, place)
+        if isinstance(task, Rejection):
+            return task
+        tasks.append(task)
+    left, right = tasks
+    blurs, blur_sigma = ((_BLUR_PX, _BLUR_PX), _BLUR_SIGMA_PX)
+    if blur_px is not None:
+        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
+    starts = [
+        RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO)
+        for task, blur in zip(tasks, blurs, strict=True)
+    ]
+    fitted = fit_rim_pair(
+        (left.pixels, right.pixels),
+        (starts[0], starts[1]),
+        Light(thread=True),
+        RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
+        left.across_lay,
+    )
+    fit = rated(fitted)
+    for task, shape in zip(tasks, fit.shapes, strict=True):
+        refused = refusal(task, fitted, fit, shape)
+        if refused is not None:
+            return refused
+    jacobian = np.zeros((4, 4))
+    jacobian[:2, :2] = left.patch.px_by_point(fit.shapes[0].centre)
+    jacobian[2:, 2:] = right.patch.px_by_point(fit.shapes[1].centre)
+    joint = jacobian @ fit.covariance[:4, :4] @ jacobian.T + np.eye(4) * FLOOR_PX**2
+    rims = [
+        rim_of(task, fit, fit.shapes[index], fit.covariance[part, part])
+        for index, (task, part) in enumerate(zip(tasks, (slice(2), slice(2, 4)), strict=True))
+    ]
+    return rims[0], rims[1], joint
