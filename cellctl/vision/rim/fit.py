@@ -65,10 +65,7 @@ def fit_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array 
 def rough_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
     """A quick fit to a few hundredths of a pixel, to be ``finished``."""
     problem = _alone(pixels, start, light, across_lay)
-    solution, converged = minimise(
-        problem, first(problem, start.vector), tolerance_px=_ROUGH_PX, weighing_rounds=1
-    )
-    return Fitted(problem, solution, converged)
+    return _rough(problem, start.vector)
 
 
 def finished(rough: Fitted) -> Fitted:
@@ -106,14 +103,14 @@ class RingPrior:
     blur_sigma_px: float
 
 
-def fit_rim_pair(
+def rough_rim_pair(
     pixels: tuple[RimPixels, RimPixels],
     starts: tuple[RimShape, RimShape],
     light: Light,
     prior: RingPrior,
     across_lay: Array | None,
 ) -> Fitted:
-    """Fit a rim with a ring in both images at once.
+    """A rough fit, to be ``finished``, of a rim with a ring in both images at once.
 
     A ring two pixels wide whose grey is not known is easily taken for a shift of the rim. Both
     cameras see the same ring in the same light: what they share is estimated once, so that the
@@ -136,7 +133,14 @@ def fit_rim_pair(
         for part, shape, selection, grey in zip(pixels, starts, selections, outer, strict=True)
     )
     problem = Problem(views, light, mean, sigma, across_lay)
-    return _fitted(problem, first(problem, mean))
+    return _rough(problem, mean)
+
+
+def _rough(problem: Problem, start: Array) -> Fitted:
+    solution, converged = minimise(
+        problem, first(problem, start), tolerance_px=_ROUGH_PX, weighing_rounds=1
+    )
+    return Fitted(problem, solution, converged)
 
 
 def _fitted(problem: Problem, start: Solution, *, weighing_rounds: int = 2) -> Fitted:

@@ -47,6 +47,8 @@ class RimShape:
     """Depth of the visible wall over the plane's distance; None when no wall is modelled."""
     ring_ratio: float | None = None
     """Outer radius of a ring round the rim over the rim's; None when no ring is modelled."""
+    ring_slope: float = 0.0
+    """Rise of the ring over its width: 0 in the plane of the rim, 1 for a chamfer of 90°."""
 
     @property
     def vector(self) -> Array:
@@ -59,7 +61,8 @@ class RimShape:
         rest = [float(value) for value in vector[4:]]
         wall = None if self.wall_ratio is None else rest.pop(0)
         ring = None if self.ring_ratio is None else rest.pop(0)
-        return RimShape(np.array(vector[:2]), float(vector[2]), float(vector[3]), wall, ring)
+        centre, radius, blur_px = np.array(vector[:2]), float(vector[2]), float(vector[3])
+        return RimShape(centre, radius, blur_px, wall, ring, self.ring_slope)
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,11 +98,7 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     bend_px = 0.5 * shape.blur_px**2 / (shape.radius * float(np.mean(rim.px)))
     found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
     if shape.ring_ratio is not None:
-        ring = _circle(pixels, shape.centre, shape.radius * shape.ring_ratio)
-        by_ring = _by_centre_and_radius(ring, shape)
-        by_ring[-1] = by_ring[2] * shape.radius
-        by_ring[2] *= shape.ring_ratio
-        found.insert(0, _blurred(ring, by_ring, shape.blur_px, bend_px))
+        found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
     if shape.wall_ratio is not None:
         shrink = 1.0 + shape.wall_ratio
         low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
@@ -136,6 +135,18 @@ def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:
     direction = pixels.jacobian[0] * unit[0] + pixels.jacobian[1] * unit[1]
     px = 1.0 / np.sqrt(direction[0] ** 2 + direction[1] ** 2)
     return _Circle((length - radius) * px, unit, direction * px, px)
+
+
+def _outer_circle(pixels: RimPixels, shape: RimShape) -> tuple[_Circle, Array]:
+    """Outer edge of the ring, nearer to the camera than the rim, and its derivatives."""
+    ratio, slope = float(shape.ring_ratio or 1.0), shape.ring_slope
+    grow = 1.0 - slope * shape.radius * (ratio - 1.0)
+    circle = _circle(pixels, shape.centre / grow, shape.radius * ratio / grow)
+    derivatives = _by_centre_and_radius(circle, shape) / grow
+    by_rise = -(shape.centre @ circle.unit + shape.radius * ratio) * circle.px / grow**2
+    derivatives[-1] = derivatives[2] * shape.radius + by_rise * slope * shape.radius
+    derivatives[2] = derivatives[2] * ratio + by_rise * slope * (ratio - 1.0)
+    return circle, derivatives
 
 
 def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:

@@ -96,7 +96,11 @@ class Solution:
     @property
     def cost(self) -> float:
         """Weighted squares of residuals and priors."""
-        squares = self.residuals @ self.noise.weigh(self.residuals)
+        return self.cost_under(self.noise)
+
+    def cost_under(self, noise: Noise) -> float:
+        """The same under another noise, to compare models of the same pixels."""
+        squares = self.residuals @ noise.weigh(self.residuals)
         return float(squares + self.precision @ self.pull**2)
 
     def normal(self) -> Array:

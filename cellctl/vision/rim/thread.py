@@ -4,14 +4,16 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.features import Hole
-from cellctl.vision.rim.fit import RingPrior, fit_rim_pair, rated
+from cellctl.vision.rim.fit import Fitted, RingPrior, finished, rated, rough_rim_pair
 from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimShape
 from cellctl.vision.rim.result import FLOOR_PX, Rim, refusal, rim_of
 from cellctl.vision.rim.sight import Located, Rejection, Sight
-from cellctl.vision.rim.task import task_for
+from cellctl.vision.rim.task import Task, task_for
 
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
+_CHAMFER_SLOPES = (0.0, 1.0)
+"""Flat, and a cone of 90°."""
 _DIAMETER_SIGMA = 0.01
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 
@@ -34,20 +36,7 @@ def measure_thread(
             return task
         tasks.append(task)
     left, right = tasks
-    blurs, blur_sigma = ((_BLUR_PX, _BLUR_PX), _BLUR_SIGMA_PX)
-    if blur_px is not None:
-        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
-    starts = [
-        RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO)
-        for task, blur in zip(tasks, blurs, strict=True)
-    ]
-    fitted = fit_rim_pair(
-        (left.pixels, right.pixels),
-        (starts[0], starts[1]),
-        Light(thread=True),
-        RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma),
-        left.across_lay,
-    )
+    fitted = _fit(left, right, blur_px)
     fit = rated(fitted)
     for task, shape in zip(tasks, fit.shapes, strict=True):
         refused = refusal(task, fitted, fit, shape)
@@ -62,3 +51,26 @@ def measure_thread(
         for index, (task, part) in enumerate(zip(tasks, (slice(2), slice(2, 4)), strict=True))
     ]
     return rims[0], rims[1], joint
+
+
+def _fit(left: Task, right: Task, blur_px: tuple[float, float] | None) -> Fitted:
+    """With the chamfer flat or as a cone, whichever the images show.
+
+    The outer edge of a cone lies nearer to the cameras than the rim and moves against it.
+    """
+    blurs, blur_sigma = ((_BLUR_PX, _BLUR_PX), _BLUR_SIGMA_PX)
+    if blur_px is not None:
+        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
+    prior = RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma)
+
+    def rough(slope: float) -> Fitted:
+        first, second = (
+            RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO, slope)
+            for task, blur in zip((left, right), blurs, strict=True)
+        )
+        pixels = (left.pixels, right.pixels)
+        return rough_rim_pair(pixels, (first, second), Light(thread=True), prior, left.across_lay)
+
+    models = [rough(slope) for slope in _CHAMFER_SLOPES]
+    noise = models[0].solution.noise
+    return finished(min(models, key=lambda model: model.solution.cost_under(noise)))
