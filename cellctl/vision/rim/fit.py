@@ -1,13 +1,13 @@
 """Maximum-likelihood fit of a rim to the grey values around it, in one image or in both."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.light import Light
-from cellctl.vision.rim.model import RimPixels, RimShape, borders
+from cellctl.vision.rim.model import RimPixels, RimShape, outside_walls
 from cellctl.vision.rim.noise import arc_covariance, texture_covariance, widened
 from cellctl.vision.rim.problem import Problem, RimView, Solution, first, refreshed
 from cellctl.vision.rim.solve import minimise
@@ -81,8 +81,7 @@ def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
     """
     solution, shape = bare.solution, bare.shapes[0]
     pixels = bare.problem.views[0].pixels
-    walls = [borders(pixels, replace(shape, wall_ratio=ratio))[1].outside for ratio in ratios]
-    seen = np.array(walls) - solution.outside
+    seen = outside_walls(pixels, shape, ratios) - solution.outside
     weighted = solution.noise.weigh(seen)
     shared = weighted @ solution.design.T
     normal = np.linalg.inv(solution.normal() + 1e-9 * np.eye(len(solution.design)))

@@ -8,6 +8,7 @@ therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaus
 Arrays hold one pixel a column: this is the inner loop of every measurement.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,8 +95,7 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     """Borders between neighbouring surfaces, from the outermost to the innermost."""
     rim = _circle(pixels, shape.centre, shape.radius)
     by_rim = _by_centre_and_radius(rim, shape)
-    # A blurred disc of radius r shows its half level nearer to its centre by blur²/(2 r).
-    bend_px = 0.5 * shape.blur_px**2 / (shape.radius * float(np.mean(rim.px)))
+    bend_px = _bend_px(shape, rim)
     found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
     if shape.ring_ratio is not None:
         found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
@@ -115,6 +115,16 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     return found
 
 
+def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -> Array:
+    """Share of each pixel outside the lower edge of a wall, for walls of several depths, (k, n)."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    shrink = 1.0 + np.array(ratios)[:, None]
+    x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
+    low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
+    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(shape, rim)
+    return np.asarray(ndtr(inner_px / shape.blur_px))
+
+
 def wall_depth(points: Array, shape: RimShape) -> Array:
     """Depth below the rim, in radii, at which the ray of a pixel meets the bore's wall.
 
@@ -126,6 +136,11 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     b = dx * x + dy * y
     c = np.minimum(dx * dx + dy * dy - shape.radius**2, 0.0)
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
+
+
+def _bend_px(shape: RimShape, rim: _Circle) -> float:
+    """A blurred disc of radius r shows its half level nearer to its centre by blur²/(2 r)."""
+    return 0.5 * shape.blur_px**2 / (shape.radius * float(np.mean(rim.px)))
 
 
 def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:

@@ -118,10 +118,10 @@ class Solution:
 
 
 def first(problem: Problem, vector: Array) -> Solution:
-    """Solution at the start: equal weights, then weights from its own residuals."""
+    """Solution at the start: equal weights."""
     count = sum(len(view.pixels.grey) for view in problem.views)
     noise = Noise.of(np.full(count, _FLAT_WEIGHT), np.empty((0, count)))
-    return refreshed(problem, solved(problem, vector, noise))
+    return solved(problem, vector, noise)
 
 
 def refreshed(problem: Problem, solution: Solution, *, weigh: bool = True) -> Solution:
