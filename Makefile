@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration cell test check lint types imports lock campaign campaign-mating bench bench-metrology bench-guard clean
+.PHONY: venv demo demo-calibration cell test test-long check lint types imports lock campaign campaign-mating bench bench-metrology bench-guard clean
 
 venv: $(VENV)/.installed
 
@@ -52,7 +52,10 @@ imports: venv
 check: lint types imports
 
 test: check
-	$(BIN)/pytest -n 2 --dist loadgroup
+	$(BIN)/pytest -n 2 --dist loadgroup -m "not long"
+
+test-long: venv
+	$(BIN)/pytest -n 2 --dist loadgroup -m long
 
 lock: venv
 	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url --universal -o requirements.lock

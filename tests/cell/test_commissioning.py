@@ -10,7 +10,7 @@ import pytest
 from cellctl.records.store import RunStore
 from tests.cell.own_cell import ROOT, OwnCell
 
-pytestmark = pytest.mark.timeout(600)
+pytestmark = [pytest.mark.timeout(600), pytest.mark.long]
 
 SHIPPED = ROOT / "config" / "demo-calibration"
 BY_PRODUCTION = ("head_1", "head_2", "base_frame", "board_transfer", "payload")

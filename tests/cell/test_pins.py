@@ -5,7 +5,7 @@ import pytest
 from cellctl.records.store import RunStore
 from tests.cell.own_cell import OwnCell
 
-pytestmark = pytest.mark.timeout(400)
+pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 
 PINS = (
     "pins = { length_mm = 1.2, radius_mm = 3.0, clearance_mm = 0.02, chamfer_mm = 0.8, "

@@ -37,6 +37,7 @@ def test_giving_way_seats_where_a_rigid_deck_is_caught() -> None:
     assert all(progress.travel_m < 0.0102 for progress in told)
 
 
+@pytest.mark.long
 def test_the_bound_of_the_way_is_kept_and_the_rest_is_a_fault() -> None:
     bound_m = 1e-5
     trial = mated(PinSettings(ENGAGED_M, greatest_travel_m=bound_m, greatest_yaw_rad=1e-5))
@@ -46,6 +47,7 @@ def test_the_bound_of_the_way_is_kept_and_the_rest_is_a_fault() -> None:
     assert trial.reached_mm - trial.end_travel_mm == pytest.approx(2.0, abs=0.1), "backed off"
 
 
+@pytest.mark.long
 def test_no_fast_travel_onto_pins_without_the_option() -> None:
     """What happens when the recipe does not know of them: a fault, and no seat."""
     trial = mated(None)
