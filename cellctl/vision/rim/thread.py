@@ -14,7 +14,7 @@ from cellctl.vision.rim.task import Task, task_for
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
 _CHAMFER_SLOPES = (0.0, 1.0)
 """Flat, and a cone of 90°."""
-_DIAMETER_SIGMA = 0.01
+_DIAMETER_SIGMA, _MAX_DIAMETER_SIGMAS = 0.01, 3.5
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 
 
@@ -38,6 +38,8 @@ def measure_thread(
     left, right = tasks
     fitted = _fit(left, right, blur_px)
     fit = rated(fitted)
+    if abs(fit.shapes[0].radius / left.nominal - 1.0) > _MAX_DIAMETER_SIGMAS * _DIAMETER_SIGMA:
+        return Rejection("fitted rim of the thread does not have the nominal size")
     for task, shape in zip(tasks, fit.shapes, strict=True):
         refused = refusal(task, fitted, fit, shape)
         if refused is not None:
