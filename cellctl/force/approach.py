@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.force import MatingPlanInvalid
+from cellctl.force.compliance import STRAIGHT, Sideways
 from cellctl.force.detectors import Cusum
 
 
@@ -208,12 +209,17 @@ def flange_for_deck(
 
 
 def advance(
-    base_T_flange: RigidTransform, flange_T_deck: RigidTransform, travel_m: float
+    base_T_flange: RigidTransform,
+    flange_T_deck: RigidTransform,
+    travel_m: float,
+    sideways: Sideways = STRAIGHT,
 ) -> RigidTransform:
-    """The flange after the deck has moved by ``travel_m`` along −Z_D, orientation unchanged.
+    """The flange after the deck has moved by ``travel_m`` along −Z_D, and sideways.
 
-    Eq. 18 for a pure translation from the present pose: needs no camera in the chain, so the
-    travel is as good as the arm's relative accuracy.
+    Eq. 18 from the present pose: needs no camera in the chain, so the travel is as good as the
+    arm's relative accuracy.
     """
-    along = (base_T_flange * flange_T_deck).rotation.apply([0.0, 0.0, -travel_m])
-    return RigidTransform.from_translation(along) * base_T_flange
+    moved = RigidTransform.from_components(
+        [sideways.x_m, sideways.y_m, -travel_m], Rotation.from_rotvec([0.0, 0.0, sideways.yaw_rad])
+    )
+    return base_T_flange * flange_T_deck * moved * flange_T_deck.inv()

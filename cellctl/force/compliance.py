@@ -14,7 +14,6 @@ tare and friction speak, not the pins.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
 
@@ -83,19 +82,6 @@ def next_move(law: ComplianceLaw, so_far: Sideways, wrench: Array) -> Sideways |
     if np.hypot(*shift_m) < law.smallest_step_m and abs(yaw_rad) < law.smallest_step_rad:
         return None
     return Sideways(float(shift_m[0]), float(shift_m[1]), yaw_rad)
-
-
-def deck_moved(
-    base_T_flange: RigidTransform,
-    flange_T_deck: RigidTransform,
-    travel_m: float,
-    sideways: Sideways,
-) -> RigidTransform:
-    """The flange after the deck has moved along −Z_D and sideways; equation 18 with a turn."""
-    moved = RigidTransform.from_components(
-        [sideways.x_m, sideways.y_m, -travel_m], Rotation.from_rotvec([0.0, 0.0, sideways.yaw_rad])
-    )
-    return base_T_flange * flange_T_deck * moved * flange_T_deck.inv()
 
 
 def _shift(law: ComplianceLaw, so_far: Sideways, across_n: Array) -> Array:

@@ -1,11 +1,9 @@
 """The residuals of a payload identification as a picture."""
 
-import io
-
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from cellctl.calibration.drawing import as_png, new_figure
 from cellctl.force.payload_result import PayloadResult
 from cellctl.geometry.pose import Array
 
@@ -13,7 +11,7 @@ from cellctl.geometry.pose import Array
 def residual_picture(result: PayloadResult) -> bytes:
     """PNG: forces above, torques below; bars of both models, dots for left-out predictions."""
     rigid, affine = result.identification.rigid, result.identification.affine
-    figure = Figure(figsize=(10.0, 6.0), layout="constrained")
+    figure = new_figure(10.0, 6.0)
     rows = figure.subplots(2, 3, sharex=True, sharey="row")
     for index, name in enumerate(("Fx", "Fy", "Fz", "Mx", "My", "Mz")):
         axes = rows[index // 3][index % 3]
@@ -27,9 +25,7 @@ def residual_picture(result: PayloadResult) -> bytes:
     rows[0][0].legend(fontsize="small")
     verdict = "accepted" if result.accepted else "NOT accepted"
     figure.suptitle(f"Payload {rigid.mass_kg:.2f} kg, {len(affine.residual)} poses, {verdict}")
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=110)
-    return buffer.getvalue()
+    return as_png(figure)
 
 
 def _bars(axes: Axes, rigid: Array, affine: Array) -> None:

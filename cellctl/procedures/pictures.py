@@ -1,12 +1,9 @@
 """Pictures of what commissioning measured: force against travel, overrun against speed."""
 
-import io
-
 import numpy as np
-from matplotlib.figure import Figure
 
 from cellctl.calibration.checks import Checks, all_passed
-from cellctl.calibration.drawing import list_checks, new_figure, title
+from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.force.commissioning import LatencyEstimate
 from cellctl.geometry.pose import MM, Array
 from cellctl.procedures.contact_stiffness_result import readings_of
@@ -33,7 +30,7 @@ def stiffness_picture(measured: ContactStiffness, checks: Checks) -> bytes:
     left.legend(fontsize="small")
     list_checks(right, checks, ())
     title(figure, "Contact stiffness, arm and contact in series", passed=all_passed(checks))
-    return _png(figure)
+    return as_png(figure)
 
 
 def latency_picture(
@@ -50,10 +47,4 @@ def latency_picture(
     left.grid(visible=True, alpha=0.3)
     list_checks(right, checks, ())
     title(figure, f"Stop latency {estimate.latency_s * 1e3:.0f} ms", passed=all_passed(checks))
-    return _png(figure)
-
-
-def _png(figure: Figure) -> bytes:
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100)
-    return buffer.getvalue()
+    return as_png(figure)

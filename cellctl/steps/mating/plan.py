@@ -10,12 +10,13 @@ from cellctl.force.approach import (
     ApproachFigures,
     ApproachSpeed,
     ContactWindow,
+    advance,
     approach_speed,
     contact_sigma,
     contact_window,
     segment_length,
 )
-from cellctl.force.compliance import STRAIGHT, ComplianceLaw, Sideways, deck_moved
+from cellctl.force.compliance import STRAIGHT, ComplianceLaw, Sideways
 from cellctl.force.creep import CreepLaw
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.steps.mating.settings import MatingSettings
@@ -46,7 +47,7 @@ class MatingPlan:
 
     def pose_at(self, travel_m: float, sideways: Sideways = STRAIGHT) -> RigidTransform:
         """Flange after so much travel along −Z_D (eq. 18), beside it where the deck gave way."""
-        return deck_moved(self.base_T_flange, self.flange_T_deck, travel_m, sideways)
+        return advance(self.base_T_flange, self.flange_T_deck, travel_m, sideways)
 
     def travel_of(self, base_T_flange: RigidTransform) -> float:
         """Travel along −Z_D (m) of a reported pose."""

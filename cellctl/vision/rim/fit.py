@@ -15,7 +15,6 @@ from cellctl.vision.rim.solve import minimise
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
 
-
 _ROUGH_PX = 0.03
 
 
@@ -59,7 +58,7 @@ class Fitted:
 def fit_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
     """Fit one image from a start within 1–2 px."""
     problem = _alone(pixels, start, light, across_lay)
-    return _fitted(problem, first(problem, start.vector))
+    return Fitted(problem, *minimise(problem, first(problem, start.vector)))
 
 
 def rough_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
@@ -70,7 +69,8 @@ def rough_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Arra
 
 def finished(rough: Fitted) -> Fitted:
     """A rough fit brought to its end."""
-    return _fitted(rough.problem, refreshed(rough.problem, rough.solution), weighing_rounds=0)
+    start = refreshed(rough.problem, rough.solution)
+    return Fitted(rough.problem, *minimise(rough.problem, start, weighing_rounds=0))
 
 
 def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
@@ -136,15 +136,8 @@ def rough_rim_pair(
 
 
 def _rough(problem: Problem, start: Array) -> Fitted:
-    solution, converged = minimise(
-        problem, first(problem, start), tolerance_px=_ROUGH_PX, weighing_rounds=1
-    )
-    return Fitted(problem, solution, converged)
-
-
-def _fitted(problem: Problem, start: Solution, *, weighing_rounds: int = 2) -> Fitted:
-    solution, converged = minimise(problem, start, weighing_rounds=weighing_rounds)
-    return Fitted(problem, solution, converged)
+    begun = first(problem, start)
+    return Fitted(problem, *minimise(problem, begun, tolerance_px=_ROUGH_PX, weighing_rounds=1))
 
 
 def _alone(pixels: RimPixels, shape: RimShape, light: Light, across_lay: Array | None) -> Problem:

@@ -35,14 +35,20 @@ class Rim:
     wall_depth_m: float | None
 
 
-def refusal(task: Task, fitted: Fitted, fit: RimFit, shape: RimShape) -> Rejection | None:
+def refusal(
+    task: Task,
+    fitted: Fitted,
+    fit: RimFit,
+    shape: RimShape,
+    size_tolerance: float = RADIUS_TOLERANCE,
+) -> Rejection | None:
     """Why a fit is no measurement of the rim in one image; None when it is."""
     moved_px = float(np.linalg.norm(shape.centre - task.centre)) / task.patch.unit_px
     if not fitted.converged:
         return Rejection("fit of the rim did not settle")
     if abs(fit.contrast_grey) < _MIN_CONTRAST_GREY:
         return Rejection("too little contrast at the rim")
-    if moved_px > _MAX_MOVE_PX or abs(shape.radius / task.nominal - 1.0) > RADIUS_TOLERANCE:
+    if moved_px > _MAX_MOVE_PX or abs(shape.radius / task.nominal - 1.0) > size_tolerance:
         return Rejection("fitted rim does not have the nominal size and place")
     return None
 

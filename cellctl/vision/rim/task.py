@@ -26,14 +26,22 @@ class Task:
     hole: Hole
     patch: PlanePatch
     pixels: RimPixels
+    middle_px: Array
+    """Where the rim was located, shape (2,)."""
     centre: Array
     """Start in plane units, shape (2,)."""
     radius: float
     """Start in plane units."""
     nominal: float
     """Nominal radius in plane units."""
-    across_lay: Array | None
-    """Across the lay of the face beside the rim, shape (2,); None without one."""
+
+    def across_lay(self) -> Array | None:
+        """Across the lay of the face beside the rim, shape (2,); None without one."""
+        if self.hole.countersink_m is not None:
+            return None
+        clear = _CHAMFER_CLEAR if self.hole.kind == "thread" else _RIM_CLEAR
+        clear_px = clear * self.radius / self.patch.unit_px + _CLEAR_PX
+        return lay_across(self.sight.image, self.patch, self.middle_px, clear_px)
 
 
 def task_for(sight: Sight, hole: Hole, located: Located) -> Task | Rejection:
@@ -45,12 +53,7 @@ def task_for(sight: Sight, hole: Hole, located: Located) -> Task | Rejection:
     centre = to_plane(sight.camera, located.point_px[None], patch.normal, patch.basis)[0]
     radius = nominal * located.size_ratio
     pixels = _band(sight, hole, patch, located.point_px, radius)
-    across = None
-    if hole.countersink_m is None:
-        clear = _CHAMFER_CLEAR if hole.kind == "thread" else _RIM_CLEAR
-        clear_px = clear * radius / patch.unit_px + _CLEAR_PX
-        across = lay_across(sight.image, patch, located.point_px, clear_px)
-    return Task(sight, hole, patch, pixels, centre, radius, nominal, across)
+    return Task(sight, hole, patch, pixels, located.point_px, centre, radius, nominal)
 
 
 def _band(

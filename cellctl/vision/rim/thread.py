@@ -14,7 +14,8 @@ from cellctl.vision.rim.task import Task, task_for
 _CHAMFER_RATIO, _CHAMFER_SIGMA = 1.1, 0.05
 _CHAMFER_SLOPES = (0.0, 1.0)
 """Flat, and a cone of 90°."""
-_DIAMETER_SIGMA, _MAX_DIAMETER_SIGMAS = 0.01, 3.5
+_DIAMETER_SIGMA = 0.01
+_SIZE_TOLERANCE = 3.5 * _DIAMETER_SIGMA
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 
 
@@ -38,10 +39,8 @@ def measure_thread(
     left, right = tasks
     fitted = _fit(left, right, blur_px)
     fit = rated(fitted)
-    if abs(fit.shapes[0].radius / left.nominal - 1.0) > _MAX_DIAMETER_SIGMAS * _DIAMETER_SIGMA:
-        return Rejection("fitted rim of the thread does not have the nominal size")
     for task, shape in zip(tasks, fit.shapes, strict=True):
-        refused = refusal(task, fitted, fit, shape)
+        refused = refusal(task, fitted, fit, shape, _SIZE_TOLERANCE)
         if refused is not None:
             return refused
     jacobian = np.zeros((4, 4))
@@ -65,13 +64,14 @@ def _fit(left: Task, right: Task, blur_px: tuple[float, float] | None) -> Fitted
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     prior = RingPrior(_DIAMETER_SIGMA, _CHAMFER_RATIO, _CHAMFER_SIGMA, blur_sigma)
 
+    pixels, across_lay = (left.pixels, right.pixels), left.across_lay()
+
     def rough(slope: float) -> Fitted:
         first, second = (
             RimShape(task.centre, task.nominal, blur, None, _CHAMFER_RATIO, slope)
             for task, blur in zip((left, right), blurs, strict=True)
         )
-        pixels = (left.pixels, right.pixels)
-        return rough_rim_pair(pixels, (first, second), Light(thread=True), prior, left.across_lay)
+        return rough_rim_pair(pixels, (first, second), Light(thread=True), prior, across_lay)
 
     models = [rough(slope) for slope in _CHAMFER_SLOPES]
     noise = models[0].solution.noise

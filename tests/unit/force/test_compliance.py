@@ -10,7 +10,6 @@ from cellctl.force.approach import advance
 from cellctl.force.compliance import (
     ComplianceLaw,
     Sideways,
-    deck_moved,
     next_move,
     pressed,
 )
@@ -103,7 +102,7 @@ def test_a_bound_that_is_too_low_still_converges_up_to_twice_the_stiffness() -> 
 def test_the_deck_moves_in_its_own_plane() -> None:
     start = STAND_OFF * FLANGE_T_DECK
     sideways = Sideways(1e-4, -5e-5, 2e-4)
-    end = deck_moved(STAND_OFF, FLANGE_T_DECK, 0.010, sideways) * FLANGE_T_DECK
+    end = advance(STAND_OFF, FLANGE_T_DECK, 0.010, sideways) * FLANGE_T_DECK
     moved: RigidTransform = start.inv() * end
     np.testing.assert_allclose(moved.translation, [1e-4, -5e-5, -0.010], atol=1e-12)
     np.testing.assert_allclose(moved.rotation.as_rotvec(), [0.0, 0.0, 2e-4], atol=1e-12)
@@ -111,5 +110,5 @@ def test_the_deck_moves_in_its_own_plane() -> None:
 
 def test_without_giving_way_it_is_equation_18() -> None:
     plain = advance(STAND_OFF, FLANGE_T_DECK, 0.0099)
-    same = deck_moved(STAND_OFF, FLANGE_T_DECK, 0.0099, Sideways())
+    same = advance(STAND_OFF, FLANGE_T_DECK, 0.0099, Sideways())
     np.testing.assert_allclose(same.as_matrix(), plain.as_matrix(), atol=1e-12)
