@@ -176,9 +176,10 @@ def _checked(nominal: Array, spots: Sequence[Spot], tolerance_m: float) -> Assig
     measured = np.array([spot.position_m for spot in spots])
     if on_a_line(nominal):
         return Assignment(tuple(spots), 0.0)
-    pose = kabsch(nominal, measured)
-    misfit = float(np.linalg.norm(measured - pose.apply(nominal), axis=1).max())
-    towards_camera = float(pose.rotation.apply([0.0, 0.0, 1.0]) @ measured.mean(axis=0)) < 0.0
+    rotation, translation_m = kabsch(nominal, measured)
+    rest = measured - nominal @ rotation.T - translation_m
+    misfit = float(np.linalg.norm(rest, axis=1).max())
+    towards_camera = float(rotation[:, 2] @ measured.mean(axis=0)) < 0.0
     if misfit > tolerance_m or not towards_camera:
         return None
     return Assignment(tuple(spots), misfit)

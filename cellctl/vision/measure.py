@@ -19,7 +19,7 @@ from cellctl.vision.diagnose import fault_without_layout
 from cellctl.vision.features import Hole
 from cellctl.vision.image_checks import check_pair
 from cellctl.vision.layout import Assignment, Expectation, Spot, assignments
-from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement, away_normal
+from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.plane_patch import X_AXIS
 from cellctl.vision.registration import kabsch, on_a_line
@@ -155,9 +155,10 @@ def _plane_normal(
     """Normal of the holes' plane away from the head, from the best source there is."""
     nominal = np.array([hole.position_m for hole in holes])
     if not on_a_line(nominal):
-        return away_normal(kabsch(nominal, positions_m))
+        rotation, _ = kabsch(nominal, positions_m)
+        return -rotation[:, 2]
     if expectation is not None:
-        return away_normal(expectation.camera_T_part)
+        return np.asarray(-expectation.camera_T_part.rotation.as_matrix()[:, 2])
     middle = positions_m.mean(axis=0)
     return np.asarray(middle / np.linalg.norm(middle))
 
@@ -250,8 +251,8 @@ def _check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float)
         have = np.linalg.norm(positions_m - positions_m[0], axis=1)
         misfits = np.abs(have - wanted)
     else:
-        pose = kabsch(nominal, positions_m)
-        misfits = np.linalg.norm(positions_m - pose.apply(nominal), axis=1)
+        rotation, translation_m = kabsch(nominal, positions_m)
+        misfits = np.linalg.norm(positions_m - nominal @ rotation.T - translation_m, axis=1)
     worst = int(np.argmax(misfits))
     if misfits[worst] > tolerance_m:
         raise ResidualsTooLarge(

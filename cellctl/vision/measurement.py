@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.ellipse import Ellipse
@@ -61,9 +60,3 @@ class PairMeasurement:
     def covariances_m2(self) -> Array:
         """Shape (n, 3, 3)."""
         return np.array([hole.covariance_m2 for hole in self.holes]).reshape(-1, 3, 3)
-
-
-def away_normal(camera_T_part: RigidTransform) -> Array:
-    """Unit normal of a part's face, pointing away from the camera that sees it."""
-    normal: Array = -camera_T_part.rotation.apply([0.0, 0.0, 1.0])
-    return normal

@@ -14,8 +14,31 @@ from cellctl.vision.stereo_head import CameraModel
 
 X_AXIS = np.array([1.0, 0.0, 0.0])
 
-_NODES = 7
 _POWERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
+_QUADRATIC = 6
+"""So many of them, the first ones, span the derivatives of all."""
+
+
+def _terms(u: Array, v: Array) -> Array:
+    """The powers at n places, shape (10, n)."""
+    uu, vv = u * u, v * v
+    return np.stack([np.ones_like(u), u, v, uu, u * v, vv, uu * u, uu * v, u * vv, vv * v])
+
+
+def _derivative(axis: int) -> Array:
+    """From the coefficients of a cubic to those of its derivative by u or v, shape (10, 6)."""
+    matrix = np.zeros((len(_POWERS), _QUADRATIC))
+    for row, powers in enumerate(_POWERS):
+        if powers[axis]:
+            lower = (powers[0] - (axis == 0), powers[1] - (axis == 1))
+            matrix[row, _POWERS.index(lower)] = powers[axis]
+    return matrix
+
+
+_BY_U, _BY_V = _derivative(0), _derivative(1)
+_LINE: Array = np.cos(np.linspace(0.0, np.pi, 7))
+_NODES: Array = np.stack([axis.ravel() for axis in np.meshgrid(_LINE, _LINE)])
+_FIT: Array = np.asarray(np.linalg.pinv(_terms(*_NODES).T), dtype=float)
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,11 +59,8 @@ class PlanePatch:
     coefficients: Array
     """Of the cubic polynomial from pixels to the plane, shape (10, 2)."""
 
-    @property
-    def unit_px(self) -> float:
-        """Plane units in a pixel, in the middle of the patch."""
-        linear = self.coefficients[1:3] / self.half_px
-        return float(np.sqrt(abs(np.linalg.det(linear))))
+    unit_px: float
+    """Plane units in a pixel, in the middle of the patch."""
 
     def to_px(self, points: Array) -> Array:
         """Raw pixels, shape (n, 2), of points of the plane, shape (n, 2)."""
@@ -51,13 +71,9 @@ class PlanePatch:
         """Points of the plane, shape (2, n), at raw pixels, and their derivatives (2, 2, n)."""
         u = (columns - self.middle_px[0]) / self.half_px
         v = (rows - self.middle_px[1]) / self.half_px
-        powers_u, powers_v = _powers(u), _powers(v)
-        terms = np.stack([powers_u[i] * powers_v[j] for i, j in _POWERS])
-        flat = np.zeros_like(u)
-        by_u = np.stack([i * powers_u[i - 1] * powers_v[j] if i else flat for i, j in _POWERS])
-        by_v = np.stack([j * powers_u[i] * powers_v[j - 1] if j else flat for i, j in _POWERS])
-        weights = self.coefficients.T
-        jacobian = np.stack([weights @ by_u, weights @ by_v], axis=1) / self.half_px
+        terms, weights = _terms(u, v), self.coefficients.T
+        slopes = np.stack([weights @ _BY_U, weights @ _BY_V], axis=1) / self.half_px
+        jacobian = (slopes.reshape(4, _QUADRATIC) @ terms[:_QUADRATIC]).reshape(2, 2, -1)
         return weights @ terms, jacobian
 
     def px_by_point(self, point: Array) -> Array:
@@ -89,15 +105,8 @@ def plane_patch(
     The map is smooth: it is computed on a few nodes and carried to the pixels by a cubic
     polynomial, which is exact to better than 1e-5 px over the size of a hole.
     """
-    nodes = np.cos(np.linspace(0.0, np.pi, _NODES))
-    u, v = (axis.ravel() for axis in np.meshgrid(nodes, nodes))
-    powers_u, powers_v = _powers(u), _powers(v)
-    terms = np.stack([powers_u[i] * powers_v[j] for i, j in _POWERS])
-    seen = to_plane(camera, np.column_stack([u, v]) * half_px + middle_px, normal, basis)
-    coefficients = np.asarray(np.linalg.lstsq(terms.T, seen, rcond=None)[0], dtype=float)
-    return PlanePatch(camera, normal, basis, middle_px, half_px, coefficients)
-
-
-def _powers(values: Array) -> tuple[Array, Array, Array, Array]:
-    square = values * values
-    return np.ones_like(values), values, square, square * values
+    seen = to_plane(camera, _NODES.T * half_px + middle_px, normal, basis)
+    coefficients = _FIT @ seen
+    across, down = coefficients[1:3] / half_px
+    unit_px = float(np.sqrt(abs(across[0] * down[1] - across[1] * down[0])))
+    return PlanePatch(camera, normal, basis, middle_px, half_px, coefficients, unit_px)

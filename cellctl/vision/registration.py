@@ -22,20 +22,20 @@ class Registration:
     """Weighted sum of squared residuals, for 3n - 6 degrees of freedom."""
 
 
-def kabsch(nominal_m: Array, measured_m: Array) -> RigidTransform:
-    """Unweighted least-squares pose for at least three points that are not on a line."""
+def kabsch(nominal_m: Array, measured_m: Array) -> tuple[Array, Array]:
+    """Unweighted least-squares rotation (3, 3) and translation (3,) that carry nominal points onto
+    measured ones; at least three that are not on a line."""
     nominal_mean, measured_mean = nominal_m.mean(axis=0), measured_m.mean(axis=0)
     u, _, vt = np.linalg.svd((measured_m - measured_mean).T @ (nominal_m - nominal_mean))
-    sign = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
-    rotation = u @ sign @ vt
-    return RigidTransform.from_components(
-        measured_mean - rotation @ nominal_mean, Rotation.from_matrix(rotation)
-    )
+    u[:, 2] *= np.sign(np.linalg.det(u @ vt))
+    rotation = u @ vt
+    return rotation, measured_mean - rotation @ nominal_mean
 
 
 def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Registration:
     """Generalised least squares; ``covariances_m2`` has shape (n, 3, 3)."""
-    pose = kabsch(nominal_m, measured_m)
+    rotation, translation_m = kabsch(nominal_m, measured_m)
+    pose = RigidTransform.from_components(translation_m, Rotation.from_matrix(rotation))
     weights = np.linalg.inv(covariances_m2)
     gain = np.zeros((6, 3 * len(nominal_m)))
     for _ in range(4):

@@ -9,6 +9,9 @@ from cellctl.geometry.uncertain import skew
 from cellctl.vision.camera import distort_jacobian, project, undistort
 from cellctl.vision.stereo_head import StereoHead
 
+_STEPS = 2
+"""From half-way between the rays, the first step leaves less than 1e-6 px."""
+
 
 @dataclass(frozen=True, slots=True)
 class StereoPoint:
@@ -67,12 +70,12 @@ def triangulate(
     """Maximum-likelihood point for two image points with their joint covariance, shape (4, 4)."""
     point = midpoints(head, left_px[None], right_px[None])[0]
     weight = np.linalg.inv(covariance_px2)
-    for _ in range(3):
+    for _ in range(_STEPS):
         residual, jacobian = _reprojection(head, point, left_px, right_px)
         normal = jacobian.T @ weight @ jacobian
-        point = point + np.linalg.solve(normal, jacobian.T @ weight @ residual)
-    residual, jacobian = _reprojection(head, point, left_px, right_px)
-    normal = jacobian.T @ weight @ jacobian
+        step = np.linalg.solve(normal, jacobian.T @ weight @ residual)
+        point = point + step
+    residual = residual - jacobian @ step
     misfit = float(np.sqrt(max(float(residual @ weight @ residual), 0.0)))
     return StereoPoint(point, np.asarray(np.linalg.inv(normal), dtype=float), misfit)
 

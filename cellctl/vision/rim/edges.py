@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.plane_patch import PlanePatch
+from cellctl.vision.rim.robust import median, robust_sigma
 
 _AZIMUTHS = 64
 _STEP_PX = 0.5
 _TRIALS = 70
 _FEWEST = 10
-_REFINEMENTS = 4
+_REFINEMENTS = 3
 _TOLERANCE_PX = 0.8
 _WEAKEST = 0.2
 """Edges below this share of the typical strength do not count."""
@@ -78,7 +79,7 @@ def _radial_edges(
     profile = _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
     slope = sign * np.asarray(np.gradient(profile, axis=1))
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
-    typical = float(np.median(slope.max(axis=1)))
+    typical = median(slope.max(axis=1))
     peak = (middle >= before) & (middle > after) & (middle > max(_WEAKEST * typical, 0.4))
     which, index = np.nonzero(peak)
     value, low, high = (part[which, index] for part in (middle, before, after))
@@ -158,7 +159,7 @@ def _refined(edges: _Edges, start: tuple[Array, float], patch: PlanePatch) -> Ed
         weighted = design * weight[:, None]
         step = np.linalg.solve(weighted.T @ design, weighted.T @ residual)
         centre, radius = centre + step[:2], radius + float(step[2])
-        spread = 1.4826 * float(np.median(np.abs(residual[weight > 0])))
+        spread = robust_sigma(residual[weight > 0])
         tolerance = min(tolerance, max(4.0 * spread, 0.25 * px))
     close = np.abs(np.linalg.norm(edges.points - centre, axis=1) - radius) < _TOLERANCE_PX * px
     support = len(np.unique(edges.azimuth[close])) / _AZIMUTHS

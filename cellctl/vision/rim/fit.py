@@ -10,6 +10,7 @@ from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimPixels, RimShape, outside_walls
 from cellctl.vision.rim.noise import arc_covariance, texture_covariance, widened
 from cellctl.vision.rim.problem import Problem, RimView, Solution, first, refreshed
+from cellctl.vision.rim.robust import median
 from cellctl.vision.rim.solve import minimise
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
@@ -49,7 +50,7 @@ class Fitted:
         """Bayesian information criterion, to compare models on the same pixels."""
         residuals = np.abs(self.solution.residuals)
         count = len(residuals)
-        limit = 4.0 * max(float(np.median(residuals)), 0.2)
+        limit = 4.0 * max(median(residuals), 0.2)
         mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
         free = int(np.count_nonzero(self.solution.precision == 0.0))
         return count * float(np.log(mean_square)) + free * float(np.log(count))

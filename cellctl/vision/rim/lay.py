@@ -11,6 +11,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.plane_patch import PlanePatch
+from cellctl.vision.rim.robust import median
 
 _REACH_PX = 14.0
 """How far beyond the rim the face is looked at."""
@@ -39,7 +40,7 @@ def lay_across(image: Image, patch: PlanePatch, middle_px: Array, clear_px: floa
     ).astype(float)
     gradient -= gradient.mean(axis=1, keepdims=True)
     size = np.hypot(*gradient)
-    limit = _CLIP * max(float(np.median(size)), 1e-3)
+    limit = _CLIP * max(median(size), 1e-3)
     gradient *= np.minimum(1.0, limit / np.maximum(size, 1e-9))
     _, jacobian = patch.from_px(middle_px[:1], middle_px[1:])
     in_plane = np.linalg.solve(jacobian[:, :, 0].T * (1.0 / patch.unit_px), gradient)

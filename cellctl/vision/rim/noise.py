@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.robust import robust_sigma
 
 IntArray = NDArray[np.intp]
 
@@ -71,8 +72,8 @@ def noise_of(residuals: Array, outside: Array, strokes: Array) -> Noise:
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
     them its variance goes with the share that the bright side covers.
     """
-    bright, dark = outside > 0.95, _robust_sigma(residuals[outside < 0.05])
-    own, height = _robust_sigma(residuals[bright]), 0.0
+    bright, dark = outside > 0.95, _sigma_grey(residuals[outside < 0.05])
+    own, height = _sigma_grey(residuals[bright]), 0.0
     if len(strokes):
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
     sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
@@ -87,7 +88,7 @@ def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
 
     Analysis of variance: each pixel belongs to the stroke nearest to it.
     """
-    limit = _CLIP_SIGMAS * _robust_sigma(residuals)
+    limit = _CLIP_SIGMAS * _sigma_grey(residuals)
     clipped = np.clip(residuals, -limit, limit)
     level = strokes[: len(strokes) // 2]
     nearest = np.argmax(level, axis=0)
@@ -129,16 +130,21 @@ def texture_covariance(
     bright = outside > 0.95
     clipped = np.clip(residuals, -_CLIP_GREY, _CLIP_GREY)
     shares = influence * outside
-    images = np.zeros((2 + len(shares), size, size))
+    images = np.zeros((2 + len(shares), size, size), dtype=np.float32)
     images[:, rows, columns] = np.vstack([clipped * bright, bright, shares])
     spectra = rfft2(images)
     seen, pairs = irfft2(np.abs(spectra[:2]) ** 2, s=(size, size))
     lags = np.minimum(np.arange(size), size - np.arange(size))
     near = (lags[:, None] <= _LAG) & (lags[None, :] <= _LAG) & (pairs > _FEWEST_PAIRS)
     texture = np.where(near, seen / np.maximum(pairs, 1.0), 0.0)
-    passed = irfft2(spectra[2:] * rfft2(texture), s=(size, size))[:, rows, columns]
-    found = shares @ passed.T
-    return np.asarray(0.5 * (found + found.T))
+    # By Parseval's theorem; the spectrum of a real image holds half of the frequencies.
+    counted = np.full(spectra.shape[2], 2.0)
+    counted[0] = 1.0
+    counted[-1] = 2.0 - (size + 1) % 2
+    passed = spectra[2:] * (rfft2(texture).real * counted)
+    rows_of = (len(shares), -1)
+    found = (passed.reshape(rows_of) @ spectra[2:].reshape(rows_of).conj().T).real
+    return np.asarray(found / size**2)
 
 
 def widened(covariance: Array, seen: Array) -> Array:
@@ -152,7 +158,7 @@ def widened(covariance: Array, seen: Array) -> Array:
     return np.asarray((wide * np.where(values > _CHANCE, values, 1.0)) @ wide.T)
 
 
-def _robust_sigma(residuals: Array) -> float:
+def _sigma_grey(residuals: Array) -> float:
     if len(residuals) < 8:
         return _LEAST_GREY
-    return max(1.4826 * float(np.median(np.abs(residuals))), _LEAST_GREY)
+    return max(robust_sigma(residuals), _LEAST_GREY)

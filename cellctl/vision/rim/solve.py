@@ -8,7 +8,8 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim.problem import Problem, Solution, refreshed, solved
 
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
-_SETTLED_PX = 0.01
+_ROUGH_PX, _SETTLED_PX = 0.15, 0.01
+"""Steps at which a round ends: before the noise is known, and after."""
 _LOWER_EDGE = 0.03
 """How much of a movement of the lower edge reaches the rim, at most."""
 _EXTRAPOLATE_PX = 0.01
@@ -30,7 +31,7 @@ def minimise(
     change_px = np.inf
     for number in range(_MAX_ROUNDS):
         anchor = best.vector
-        best = _settle(problem, best)
+        best = _settle(problem, best, _SETTLED_PX if number else _ROUGH_PX)
         change = best.vector - anchor
         change_px = _step_px(problem, change)
         weighing = number < weighing_rounds
@@ -43,7 +44,7 @@ def minimise(
     return best, change_px < 4.0 * tolerance_px
 
 
-def _settle(problem: Problem, best: Solution) -> Solution:
+def _settle(problem: Problem, best: Solution, settled_px: float) -> Solution:
     """Damped Gauss-Newton steps with the terms of the light held fixed."""
     damping = 1e-6
     for _ in range(_MAX_STEPS):
@@ -54,7 +55,7 @@ def _settle(problem: Problem, best: Solution) -> Solution:
         change = trial.vector - best.vector
         step_px = _step_px(problem, change)
         best, damping = trial, damping * 0.2
-        if max(step_px, _LOWER_EDGE * _lower_edge_px(problem, change)) < _SETTLED_PX:
+        if max(step_px, _LOWER_EDGE * _lower_edge_px(problem, change)) < settled_px:
             break
     return best
 
