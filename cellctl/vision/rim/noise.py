@@ -19,7 +19,7 @@ _BINS, _REACH = 36, 6
 _LOST = 1.4
 """What the fit takes out of these sums by bringing their total to zero."""
 _SHRINK = 0.3
-_CHANCE = 1.8
+_CHANCE = 2.1
 """Sums over a few arcs reach this share of what independent errors give by chance alone."""
 _LAG = 24
 """Distance in px over which texture is followed."""

@@ -11,7 +11,7 @@ from cellctl.vision.rim.model import RimShape
 from cellctl.vision.rim.sight import RADIUS_TOLERANCE, Rejection
 from cellctl.vision.rim.task import Task
 
-FLOOR_PX = 1e-3
+FLOOR_PX = 5e-4
 """Lens model and pixel response limit every centre to about this."""
 
 _MIN_CONTRAST_GREY = 8.0

@@ -32,7 +32,7 @@ def measure_rim(sight: Sight, hole: Hole, located: Located) -> Rim | Rejection:
 def _fit_alone(task: Task) -> Fitted:
     """The simplest model of the rim that the grey values do not contradict."""
     pixels, lay = task.pixels, task.across_lay()
-    light = Light(cone=task.hole.countersink_m is not None)
+    light = Light(cone=task.hole.kind == "countersink")
     bare = RimShape(task.centre, task.radius, _BLUR_PX)
     if task.hole.kind == "disc":
         return fit_rim(pixels, bare, light, lay)
