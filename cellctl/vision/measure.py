@@ -23,12 +23,10 @@ from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.plane_patch import X_AXIS
 from cellctl.vision.registration import kabsch, on_a_line
-from cellctl.vision.rim.result import Rim
+from cellctl.vision.rim.pair import RimPair, measure_rims
 from cellctl.vision.rim.sight import Located, Rejection, Sight, locate_rim
-from cellctl.vision.rim.single import measure_rim
-from cellctl.vision.rim.thread import measure_thread
 from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
-from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, midpoints, triangulate
+from cellctl.vision.stereo import epipolar_distances_px, midpoints, triangulate
 from cellctl.vision.stereo_head import StereoHead
 
 SEARCH_RADIUS_M = 12e-3
@@ -131,19 +129,13 @@ def _measure(
     for index in sorted(range(len(holes)), key=lambda index: holes[index].kind == "thread"):
         hole, places = holes[index], located[index]
         sights = _sights(pair, positions_m[index], normal)
-        if hole.kind == "thread":
-            known = np.median(blurs, axis=0) if blurs else None
-            blur_px = None if known is None else (float(known[0]), float(known[1]))
-            rims = _or_missing(hole, measure_thread(sights, hole, places, blur_px))
-        else:
-            left, right = (
-                _or_missing(hole, measure_rim(sight, hole, place), side)
-                for side, sight, place in zip(_SIDES, sights, places, strict=True)
-            )
-            blurs.append((left.blur_px, right.blur_px))
-            rims = left, right, joint_covariance(left.covariance_px2, right.covariance_px2)
-        _check_sharpness(hole, rims[0], rims[1])
-        measured[hole.name] = _stereo(pair.head, hole, *rims)
+        known = np.median(blurs, axis=0) if blurs else None
+        blur_px = None if known is None else (float(known[0]), float(known[1]))
+        rims = _or_missing(hole, measure_rims(sights, hole, places, blur_px))
+        if hole.kind != "thread":
+            blurs.append((rims.left.blur_px, rims.right.blur_px))
+        _check_sharpness(hole, rims)
+        measured[hole.name] = _stereo(pair.head, hole, rims)
     result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     _check_layout(holes, result.positions_m, tolerance_m)
     return result
@@ -190,8 +182,8 @@ def _positions(
     return midpoints(head, left_px, right_px)
 
 
-def _check_sharpness(hole: Hole, left: Rim, right: Rim) -> None:
-    for side, rim in zip(_SIDES, (left, right), strict=True):
+def _check_sharpness(hole: Hole, rims: RimPair) -> None:
+    for side, rim in zip(_SIDES, (rims.left, rims.right), strict=True):
         if rim.blur_px > _MAX_BLUR_PX:
             raise ImageBlurred(
                 f"{side}: the rim of {hole.name} is blurred over {rim.blur_px:.1f} px, "
@@ -199,10 +191,9 @@ def _check_sharpness(hole: Hole, left: Rim, right: Rim) -> None:
             )
 
 
-def _stereo(
-    head: StereoHead, hole: Hole, left: Rim, right: Rim, covariance_px2: Array
-) -> HoleMeasurement:
+def _stereo(head: StereoHead, hole: Hole, rims: RimPair) -> HoleMeasurement:
     """Both rims to a point, if they can be of the same hole."""
+    left, right = rims.left, rims.right
     epipolar_px = float(
         epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
     )
@@ -210,7 +201,7 @@ def _stereo(
         raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
     if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:
         raise HoleMissing(f"{hole.name}: left and right image show rims of different size")
-    point = triangulate(head, left.point_px, right.point_px, covariance_px2)
+    point = triangulate(head, left.point_px, right.point_px, rims.covariance_px2)
     return HoleMeasurement(
         name=hole.name,
         kind=hole.kind,
@@ -240,6 +231,7 @@ def _sights(pair: ImagePair, position_m: Array, normal: Array) -> tuple[Sight, S
 def _or_missing(hole: Hole, found: _T | Rejection, side: str = "") -> _T:
     """What was found, or ``HoleMissing`` with the reason."""
     if isinstance(found, Rejection):
+        side = side or found.side
         raise HoleMissing(f"{hole.name}{side and f' ({side})'}: {found.reason}")
     return found
 

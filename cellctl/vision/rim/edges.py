@@ -76,7 +76,7 @@ def _radial_edges(
     first = max(radius - reach, 2.0 * step)
     radii = first + step * np.arange(int((radius + reach - first) / step) + 2)
     grid = centre + _DIRECTIONS[:, None, :] * radii[None, :, None]
-    profile = _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
+    profile = sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
     slope = sign * np.asarray(np.gradient(profile, axis=1))
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
     typical = median(slope.max(axis=1))
@@ -88,7 +88,7 @@ def _radial_edges(
     return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which)
 
 
-def _sample(image: Image, pixels: Array) -> Array:
+def sample(image: Image, pixels: Array) -> Array:
     """Lightly blurred grey values at raw pixels, bilinear."""
     x0, y0 = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 3, 0)
     x1, y1 = np.ceil(pixels.max(axis=0)).astype(int) + 4

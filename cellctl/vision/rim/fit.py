@@ -1,13 +1,12 @@
 """Maximum-likelihood fit of a rim to the grey values around it, in one image or in both."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.light import Light
-from cellctl.vision.rim.model import RimPixels, RimShape, outside_walls
+from cellctl.vision.rim.model import RimPixels, RimShape
 from cellctl.vision.rim.noise import arc_covariance, texture_covariance, widened
 from cellctl.vision.rim.problem import Problem, RimView, Solution, first, refreshed
 from cellctl.vision.rim.robust import median
@@ -74,59 +73,44 @@ def finished(rough: Fitted) -> Fitted:
     return Fitted(rough.problem, *minimise(rough.problem, start, weighing_rounds=0))
 
 
-def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
-    """The wall ratio that would explain most of the misfit of a rim without a wall, and its gain.
-
-    A score test: how far the weighted squares would fall if a wall of unknown, even grey were
-    seen, with shape and light free to follow to first order.
-    """
-    solution, shape = bare.solution, bare.shapes[0]
-    pixels = bare.problem.views[0].pixels
-    seen = outside_walls(pixels, shape, ratios) - solution.outside
-    weighted = solution.noise.weigh(seen)
-    shared = weighted @ solution.design.T
-    normal = np.linalg.inv(solution.normal() + 1e-9 * np.eye(len(solution.design)))
-    size = (weighted * seen).sum(axis=1) - ((shared @ normal) * shared).sum(axis=1)
-    gains = np.where(size > 1e-6, (weighted @ solution.residuals) ** 2 / np.maximum(size, 1e-6), 0)
-    best = int(np.argmax(gains))
-    return ratios[best], float(gains[best])
-
-
 @dataclass(frozen=True, slots=True)
-class RingPrior:
-    """What is known of a rim with a ring before it is seen."""
+class PairPrior:
+    """What is known of a rim and its ring or wall before they are seen."""
 
     radius_sigma: float
     """Relative."""
-    ring_ratio: float
-    ring_sigma: float
     blur_sigma_px: float
+    extra_sigma: float
+    """Of the ring ratio or of the wall ratio."""
 
 
 def rough_rim_pair(
     pixels: tuple[RimPixels, RimPixels],
     starts: tuple[RimShape, RimShape],
     light: Light,
-    prior: RingPrior,
+    prior: PairPrior,
     across_lay: Array | None,
 ) -> Fitted:
-    """A rough fit, to be ``finished``, of a rim with a ring in both images at once.
+    """A rough fit, to be ``finished``, of a rim in both images at once, plain or with ring or wall.
 
     A ring two pixels wide whose grey is not known is easily taken for a shift of the rim. Both
     cameras see the same ring in the same light: what they share is estimated once, so that the
     difference between the images, hence the depth, does not suffer from it.
-    Joint parameters: x, y left; x, y right; radius left; blur left and right; ring ratio.
+    Joint parameters: x, y left; x, y right; radius left; blur left and right; ratio, if any.
     """
     left, right = starts
-    selections = np.zeros((2, 5, 8))
-    selections[0, [0, 1, 2, 3, 4], [0, 1, 4, 5, 7]] = 1.0
-    selections[1, [0, 1, 2, 3, 4], [2, 3, 4, 6, 7]] = [1, 1, right.radius / left.radius, 1, 1]
-    mean = np.array(
-        [*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, prior.ring_ratio]
-    )
-    sigma = np.full(8, np.inf)
+    ratio = [value for value in (left.wall_ratio, left.ring_ratio) if value is not None]
+    size, nearer = 4 + len(ratio), right.radius / left.radius
+    selections = np.zeros((2, size, 7 + len(ratio)))
+    selections[0, range(size), [0, 1, 4, 5, 7][:size]] = 1.0
+    selections[1, range(size), [2, 3, 4, 6, 7][:size]] = [1.0, 1.0, nearer, 1.0, 1.0][:size]
+    if left.wall_ratio is not None:
+        selections[1, 4, 7] = nearer
+    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, *ratio])
+    sigma = np.full(len(mean), np.inf)
     sigma[4] = prior.radius_sigma * left.radius
-    sigma[5:] = prior.blur_sigma_px, prior.blur_sigma_px, prior.ring_sigma
+    sigma[5:7] = prior.blur_sigma_px
+    sigma[7:] = prior.extra_sigma
     outer = [float(np.percentile(part.grey, 90)) for part in pixels]
     views = tuple(
         RimView(part, shape, selection, grey / outer[0])

@@ -125,6 +125,13 @@ def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -
     return np.asarray(ndtr(inner_px / shape.blur_px))
 
 
+def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
+    """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
+    return np.asarray(ndtr((distances_px + _bend_px(shape, rim)) / shape.blur_px))
+
+
 def wall_depth(points: Array, shape: RimShape) -> Array:
     """Depth below the rim, in radii, at which the ray of a pixel meets the bore's wall.
 

@@ -44,6 +44,8 @@ class Rejection:
     """Why there is no rim."""
 
     reason: str
+    side: str = ""
+    """Camera, where it is known."""
 
 
 @dataclass(frozen=True, slots=True)

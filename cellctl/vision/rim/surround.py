@@ -1,0 +1,54 @@
+"""How far the surface outside a rim reaches before another edge begins.
+
+Round a countersunk bore lies a cone. Its outer edge need not be in the drawing, and since it lies
+nearer to the camera than the bore's, it comes closer to the bore on one side.
+"""
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.plane_patch import PlanePatch
+from cellctl.vision.rim.edges import sample
+from cellctl.vision.rim.robust import median, robust_sigma
+
+_AZIMUTHS, _SECTOR = 60, 5
+"""Rays round the rim, and how many neighbours are averaged."""
+_STEP_PX = 0.5
+_OWN_EDGE_PX = 1.5
+_LEAST_SHARE, _SIGMAS = 0.06, 5.0
+"""Slopes that count as an edge: of the rim's own slope, and over the noise."""
+
+
+def clear_widths_px(
+    image: Image, patch: PlanePatch, centre: Array, radius: float, reach_px: float
+) -> Array:
+    """Distance from the rim to the next edge outside of it, at even azimuths, shape (60,), px.
+
+    ``centre`` and ``radius`` in plane units. Infinite where no edge lies within ``reach_px``.
+    """
+    angles = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
+    rays = np.column_stack([np.cos(angles), np.sin(angles)])
+    widths_px = np.arange(-2.0, reach_px + _STEP_PX, _STEP_PX)
+    grid = centre + rays[:, None, :] * (radius + widths_px * patch.unit_px)[None, :, None]
+    profile = sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, -1)
+    wrapped = np.concatenate([profile[-(_SECTOR // 2) :], profile, profile[: _SECTOR // 2]])
+    sums = np.cumsum(np.vstack([np.zeros_like(wrapped[:1]), wrapped]), axis=0)
+    slope = np.gradient((sums[_SECTOR:] - sums[:-_SECTOR]) / _SECTOR, axis=1) / _STEP_PX
+    own = widths_px <= _OWN_EDGE_PX
+    outer = slope[:, ~own]
+    limit = _LEAST_SHARE * median(np.abs(slope[:, own]).max(axis=1))
+    limit = max(limit, _SIGMAS * robust_sigma((outer - np.median(outer, axis=0)).ravel()))
+    return np.array([_first_edge(np.abs(row), widths_px[~own], limit) for row in outer])
+
+
+def _first_edge(steepness: Array, widths_px: Array, limit: float) -> float:
+    """Where the steepness first rises to a peak above the limit, past the rim's own decline."""
+    rising = np.diff(steepness) > 0.0
+    if not rising.any():
+        return np.inf
+    valley = int(np.argmax(rising))
+    peak = (steepness[1:-1] >= steepness[:-2]) & (steepness[1:-1] > steepness[2:])
+    peak &= steepness[1:-1] > limit
+    later = np.nonzero(peak[valley:])[0]
+    return float(widths_px[valley + later[0] + 1]) if len(later) else np.inf
