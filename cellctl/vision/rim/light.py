@@ -133,8 +133,11 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
-    terms = np.stack([fade, fade * met[0], fade * met[1], fade * depth, 1.0 - fade])
-    return terms, np.array([np.inf, np.inf, np.inf, _WALL_FADE_GREY, _WALL_OFFSET_GREY])
+    deep = 1.0 - fade
+    terms = np.stack(
+        [fade, fade * met[0], fade * met[1], fade * depth, deep, deep * met[0], deep * met[1]]
+    )
+    return terms, np.array([np.inf, np.inf, np.inf, _WALL_FADE_GREY, *[_WALL_OFFSET_GREY] * 3])
 
 
 def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:

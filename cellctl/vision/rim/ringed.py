@@ -17,6 +17,8 @@ _WALL_M, _WALL_SIGMAS = 0.3e-3, 4.0
 _DIAMETER_SIGMA = 0.005
 SIZE_TOLERANCE = 0.035
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
+_RING_COST = 80.0
+"""Fall of the squares that a ring must bring: real ones bring thousands."""
 _PIXELS_ALIKE = 10.0
 """What a model leaves unexplained is alike in about so many pixels: evidence counts that less."""
 
@@ -65,6 +67,7 @@ def fit_ringed(
 def _likeliest(models: list[Fitted]) -> Chosen:
     noise = models[0].solution.noise
     costs = np.array([model.solution.cost_under(noise) for model in models])
+    costs[: len(_SLOPES)] += _RING_COST
     best = int(np.argmin(costs))
     likelihoods = np.exp(-0.5 * (costs - costs[best]) / _PIXELS_ALIKE)
     geometry = np.array([model.solution.vector[:5] for model in models])

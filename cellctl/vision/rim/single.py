@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from cellctl.vision.rim.doubt import contradicts_plain_face, likely_wall
+from cellctl.vision.rim.doubt import contradicts_dark_inside, contradicts_plain_face, likely_wall
 from cellctl.vision.rim.fit import Fitted, finished, fit_rim, rated, rough_rim
 from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimShape
@@ -11,7 +11,8 @@ from cellctl.vision.rim.sight import Rejection
 from cellctl.vision.rim.task import Task
 
 _BLUR_PX = 1.0
-_WALL_DEPTHS_M = (0.5e-3, 1e-3, 2e-3, 4e-3, 9e-3)
+_WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
+"""From a start above the true depth a fit converges; from far below it may not."""
 _FAINT_GAIN, _HINT_GAIN, _CLEAR_GAIN = 2.0, 12.0, 60.0
 """Falls of the squares: worth a closer look, worth a fit with a wall, beyond doubt."""
 _EVIDENCE = 15.0
@@ -38,10 +39,10 @@ def _with_wall_if_seen(task: Task, rough: Fitted, light: Light) -> Fitted:
     if gain > _CLEAR_GAIN:
         return fit_rim(pixels, replace(rough.shapes[0], wall_ratio=ratio), light, lay)
     plain = finished(rough)
-    if gain < _FAINT_GAIN:
+    if gain < _FAINT_GAIN and not contradicts_dark_inside(rough):
         return plain
     ratio, gain = likely_wall(plain, ratios)
-    if gain < _HINT_GAIN:
+    if gain < _HINT_GAIN and not contradicts_dark_inside(plain):
         return plain
     walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light, lay)
     return walled if walled.bic() < plain.bic() - _EVIDENCE else plain
