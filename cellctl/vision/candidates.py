@@ -119,16 +119,29 @@ def _peaks(votes: Image32, radii: Array, limit: int) -> list[tuple[Array, float,
     order = np.argsort(-best[rows, columns])
     found: list[tuple[Array, float, float]] = []
     for row, column in zip(rows[order], columns[order], strict=True):
-        which = int(np.argmax(votes[:, row, column]))
         centre, support = np.array([column, row], dtype=float), float(best[row, column])
-        around = slice(max(which - 1, 0), which + 2)
-        weights = np.maximum(votes[around, row, column] - 0.4 * best[row, column], 0.0)
-        radius = float(weights @ radii[around] / weights.sum())
         if not any(_shadowed(centre, support, stronger) for stronger in found):
-            found.append((centre, radius, support))
-        if len(found) == limit:
+            along = votes[:, row, column]
+            found += [
+                (centre, _radius(along, radii, index), float(along[index]))
+                for index in _maxima(along)
+            ]
+        if len(found) >= limit:
             break
-    return found
+    return found[:limit]
+
+
+def _maxima(votes: Image32) -> NDArray[np.intp]:
+    """Concentric circles: the radii with more votes than their neighbours, the best first."""
+    padded = np.pad(votes, 1)
+    peaks = np.nonzero((votes >= padded[:-2]) & (votes > padded[2:]) & (votes > _SUPPORT))[0]
+    return peaks[np.argsort(-votes[peaks])]
+
+
+def _radius(votes: Image32, radii: Array, index: int) -> float:
+    around = slice(max(index - 1, 0), index + 2)
+    weights = np.maximum(votes[around] - 0.4 * votes[index], 0.0)
+    return float(weights @ radii[around] / weights.sum())
 
 
 def _shadowed(centre: Array, support: float, stronger: tuple[Array, float, float]) -> bool:
