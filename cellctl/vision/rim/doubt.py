@@ -12,8 +12,8 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim.fit import Fitted
 from cellctl.vision.rim.model import outside_circles, outside_walls
 
-_DOUBT_GAIN = 18.0
-"""Fall of the squares by up to eight terms that one rim in a hundred shows by chance."""
+_DOUBT_GAIN = 15.0
+"""Fall of the squares by up to six terms that two rims in a hundred show by chance."""
 _RING_WIDTHS_PX = (1.0, 2.0, 3.0, 4.5)
 
 
@@ -26,15 +26,6 @@ def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
     gains = _Score(bare).of_each(outside_walls(pixels, shape, ratios) - bare.solution.outside)
     best = int(np.argmax(gains))
     return ratios[best], float(gains[best])
-
-
-def contradicts_plain_face(bare: Fitted) -> bool:
-    """Whether the face outside a rim varies as no evenly lit plate does: as a cone would."""
-    radius, cos, sin = _polar(bare)
-    above = radius - 1.0
-    double_cos, double_sin = cos * cos - sin * sin, 2.0 * sin * cos
-    rows = np.stack([cos, sin, double_cos, double_sin, above, above * cos, above * sin])
-    return _Score(bare).of(bare.solution.outside * rows) > _DOUBT_GAIN
 
 
 def contradicts_dark_inside(bare: Fitted) -> bool:

@@ -16,7 +16,7 @@ from cellctl.vision.rim.task import Task, task_for
 from cellctl.vision.stereo import joint_covariance
 
 _SIDES = ("left", "right")
-_NARROW_PX = 7.0
+_NARROW_PX = 5.0
 """A cone narrower than this is a ring: both its edges are seen at once."""
 _CHAMFER = (0.1, 0.05)
 _UNSEEN_CONE = (0.15, 0.08)

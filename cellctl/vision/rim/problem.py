@@ -17,7 +17,7 @@ from cellctl.vision.rim.noise import Noise, noise_of
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_WALL_RATIO = 0.2
-_RING_LIMITS = (1.02, 1.4)
+_RING_LIMITS = (1.02, 1.7)
 _FLAT_WEIGHT = 0.04
 """Of every pixel before its noise is known, 1/grey²."""
 

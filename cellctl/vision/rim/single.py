@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from cellctl.vision.rim.doubt import contradicts_dark_inside, contradicts_plain_face, likely_wall
+from cellctl.vision.rim.doubt import contradicts_dark_inside, likely_wall
 from cellctl.vision.rim.fit import Fitted, finished, fit_rim, rated, rough_rim
 from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimShape
@@ -21,14 +21,11 @@ _EVIDENCE = 15.0
 
 def fit_alone(task: Task) -> Fitted:
     """The simplest model of the rim that the grey values do not contradict."""
-    light, bare = Light(), RimShape(task.centre, task.radius, _BLUR_PX)
-    lay = task.across_lay()
+    light = Light(cone=task.hole.kind == "countersink")
+    bare, lay = RimShape(task.centre, task.radius, _BLUR_PX), task.across_lay()
     if task.hole.kind == "disc":
         return fit_rim(task.pixels, bare, light, lay)
     rough = rough_rim(task.pixels, bare, light, lay)
-    if task.hole.kind == "countersink" and contradicts_plain_face(rough):
-        light = Light(cone=True)
-        rough = rough_rim(task.pixels, bare, light, lay)
     return _with_wall_if_seen(task, rough, light)
 
 
