@@ -33,6 +33,7 @@ from cellctl.calibration.stereo_picture import stereo_picture
 from cellctl.calibration.tool import calibrate_tool
 from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.cli.measure import read_image
+from cellctl.cli.output import write_file
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.vision import ImageFileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
@@ -200,16 +201,9 @@ def _finish(
     for warning in warnings:
         console.print(f"  warning: {warning}", markup=False)
     if out is not None:
-        _write(out, json.dumps(result.to_record(), indent=2).encode() + b"\n")
+        write_file(out, json.dumps(result.to_record(), indent=2).encode() + b"\n")
     if picture is not None:
-        _write(picture, draw())
+        write_file(picture, draw())
     console.print("passed" if result.passed else "NOT passed")
     if not result.passed:
         raise typer.Exit(NOT_PASSED)
-
-
-def _write(path: Path, content: bytes) -> None:
-    try:
-        path.write_bytes(content)
-    except OSError as error:
-        raise FileInvalid(f"cannot write {path}: {error.strerror or error}") from error

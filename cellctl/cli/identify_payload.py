@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.output import write_file
 from cellctl.errors.force import PayloadFileInvalid
 from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.pose_file import parse_pose_file
@@ -38,9 +39,9 @@ def identify_payload(
     result = evaluate_payload(parse_pose_file(_read(file)), expected_mass_kg=mass_kg)
     _show(result, Console(soft_wrap=True, highlight=False))
     if out is not None:
-        _write(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
+        write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:
-        _write(picture, residual_picture(result))
+        write_file(picture, residual_picture(result))
     if not result.accepted:
         raise typer.Exit(NOT_ACCEPTED)
 
@@ -50,13 +51,6 @@ def _read(file: Path) -> str:
         return file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise PayloadFileInvalid(f"{file}: {error}") from error
-
-
-def _write(file: Path, content: bytes) -> None:
-    try:
-        file.write_bytes(content)
-    except OSError as error:
-        raise PayloadFileInvalid(f"cannot write {file}: {error}") from error
 
 
 def _show(result: PayloadResult, console: Console) -> None:

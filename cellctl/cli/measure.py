@@ -8,6 +8,8 @@ import cv2
 import numpy as np
 import typer
 
+from cellctl.cli.output import write_file
+from cellctl.errors.config import FileInvalid
 from cellctl.errors.vision import (
     HoleAmbiguous,
     HoleMissing,
@@ -48,20 +50,19 @@ def measure(  # noqa: PLR0917 - the options of the command
         holes = _holes(read_features(features), head)
         images = read_image(left), read_image(right)
         result = measure_pair(*images, stereo_head, holes, method=_method(method))
-        pose = _pose(result, holes)
+        text = json.dumps(measurement_to_json(result, _pose(result, holes)), indent=2) + "\n"
+        if picture is not None:
+            write_file(picture, _picture(images, result))
+        if out is not None:
+            write_file(out, text.encode())
     except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
         typer.echo(f"{fault}\n  {fault.remedy}", err=True)
         raise typer.Exit(EXIT_NOT_FOUND) from fault
-    except VisionError as fault:
+    except (VisionError, FileInvalid) as fault:
         typer.echo(f"{fault}\n  {fault.remedy}", err=True)
         raise typer.Exit(EXIT_REFUSED) from fault
-    text = json.dumps(measurement_to_json(result, pose), indent=2)
-    if picture is not None:
-        _write_picture(picture, images, result)
     if out is None:
-        typer.echo(text)
-    else:
-        out.write_text(text + "\n", encoding="utf-8")
+        typer.echo(text, nl=False)
 
 
 def read_image(path: Path) -> Image:
@@ -146,9 +147,9 @@ def _pose(result: PairMeasurement, holes: tuple[Hole, ...]) -> PartPose | None:
     return part_pose(result, None, None, holes, residual_limit_m=limit_m)
 
 
-def _write_picture(path: Path, images: tuple[Image, Image], result: PairMeasurement) -> None:
+def _picture(images: tuple[Image, Image], result: PairMeasurement) -> bytes:
     both = np.hstack([annotate(images[0], result, "left"), annotate(images[1], result, "right")])
     done, data = cv2.imencode(".png", both)
     if not done:
-        raise ImageFileInvalid(f"{path}: picture could not be encoded")
-    path.write_bytes(data.tobytes())
+        raise ImageFileInvalid("the picture could not be encoded as PNG")
+    return data.tobytes()

@@ -116,7 +116,10 @@ class HoleAmbiguous(VisionError):
     number = 422
     text = "A hole cannot be told from another feature"
     cause = "A mark of the same size near the hole, or a layout that fits in two ways."
-    remedy = "Clean the part, give a predicted pose, or choose holes with an unequal layout."
+    remedy = (
+        "Clean the part, state `outward_axis` in the feature file, "
+        "or choose holes with an unequal layout."
+    )
 
 
 class TooFewHoles(VisionError):

@@ -16,12 +16,12 @@ HoleKind = Literal["pin", "thread", "countersink", "disc"]
 """``disc`` is a bright round target; the others are dark holes in a brighter part."""
 
 _HOLE_KEYS = {"name", "kind", "diameter_mm", "position_mm", "countersink_mm"}
-_FILE_KEYS = {"hole", "head_1", "head_2"}
+_FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis"}
 
 
 @dataclass(frozen=True, slots=True)
 class Hole:
-    """One feature with its nominal geometry in the part frame, z out of the visible face."""
+    """One feature with its nominal geometry in the part frame."""
 
     name: str
     kind: HoleKind
@@ -31,6 +31,8 @@ class Hole:
     """Shape (3,)."""
     countersink_m: float | None = None
     """Diameter of the countersink's outer rim."""
+    outward: Array | None = None
+    """Unit vector out of the face that is seen, shape (3,); None when the drawing does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,8 @@ def _features(data: Mapping[str, Any]) -> FeatureFile:
     tables = data.get("hole", [])
     if not isinstance(tables, list) or not tables:
         raise ValueError("needs at least one [[hole]]")
-    holes = tuple(_hole(table, index) for index, table in enumerate(tables, start=1))
+    outward = _outward(data)
+    holes = tuple(_hole(table, index, outward) for index, table in enumerate(tables, start=1))
     names = [hole.name for hole in holes]
     if len(set(names)) != len(names):
         raise ValueError("every hole needs a name of its own")
@@ -82,7 +85,17 @@ def _head(data: Mapping[str, Any], key: str, names: list[str]) -> tuple[str, ...
     return tuple(listed)
 
 
-def _hole(table: Mapping[str, Any], index: int) -> Hole:
+def _outward(data: Mapping[str, Any]) -> Array | None:
+    if "outward_axis" not in data:
+        return None
+    axis = _three_numbers(data, "outward_axis", "the file")
+    length = float(np.linalg.norm(axis))
+    if length == 0.0:
+        raise ValueError("outward_axis must have a direction")
+    return axis / length
+
+
+def _hole(table: Mapping[str, Any], index: int, outward: Array | None) -> Hole:
     where = f"hole {index}"
     if not isinstance(table, dict):
         raise ValueError(f"{where} is not a table")  # noqa: TRY004
@@ -105,8 +118,9 @@ def _hole(table: Mapping[str, Any], index: int) -> Hole:
         name,
         cast(HoleKind, kind),
         diameter_mm * MM,
-        _position_m(table, where),
+        _three_numbers(table, "position_mm", where) * MM,
         None if countersink_mm is None else countersink_mm * MM,
+        outward,
     )
 
 
@@ -117,11 +131,11 @@ def _positive(table: Mapping[str, Any], key: str, where: str) -> float:
     return float(value)
 
 
-def _position_m(table: Mapping[str, Any], where: str) -> Array:
+def _three_numbers(table: Mapping[str, Any], key: str, where: str) -> Array:
     try:
-        position_m = np.array(table.get("position_mm"), dtype=float) * MM
+        values = np.array(table.get(key), dtype=float)
     except (TypeError, ValueError):
-        raise ValueError(f"{where}: position_mm must be three numbers") from None
-    if position_m.shape != (3,) or not np.isfinite(position_m).all():
-        raise ValueError(f"{where}: position_mm must be three numbers")
-    return position_m
+        raise ValueError(f"{where}: {key} must be three numbers") from None
+    if values.shape != (3,) or not np.isfinite(values).all():
+        raise ValueError(f"{where}: {key} must be three numbers")
+    return values

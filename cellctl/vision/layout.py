@@ -106,7 +106,7 @@ def assignments(
     wanted = np.linalg.norm(nominal[:, None] - nominal[None], axis=2)
     found = []
     for chosen in _consistent(order, choices, spots, wanted, 2.0 * tolerance_m):
-        assignment = _checked(nominal, [spots[index] for index in chosen], tolerance_m)
+        assignment = _checked(holes, [spots[index] for index in chosen], tolerance_m)
         if assignment is not None:
             found.append(assignment)
         if len(found) >= _MAX_ASSIGNMENTS:
@@ -171,15 +171,16 @@ def _consistent(
     yield from extend(0)
 
 
-def _checked(nominal: Array, spots: Sequence[Spot], tolerance_m: float) -> Assignment | None:
-    """The assignment, unless its layout is off or its part would face away from the head."""
+def _checked(holes: Sequence[Hole], spots: Sequence[Spot], tolerance_m: float) -> Assignment | None:
+    """The assignment, unless its layout is off or a face that is known would look away."""
+    nominal = np.array([hole.position_m for hole in holes])
     measured = np.array([spot.position_m for spot in spots])
     if on_a_line(nominal):
         return Assignment(tuple(spots), 0.0)
     rotation, translation_m = kabsch(nominal, measured)
     rest = measured - nominal @ rotation.T - translation_m
     misfit = float(np.linalg.norm(rest, axis=1).max())
-    towards_camera = float(rotation[:, 2] @ measured.mean(axis=0)) < 0.0
-    if misfit > tolerance_m or not towards_camera:
+    outward, middle = holes[0].outward, measured.mean(axis=0)
+    if misfit > tolerance_m or (outward is not None and rotation @ outward @ middle >= 0.0):
         return None
     return Assignment(tuple(spots), misfit)

@@ -4,6 +4,7 @@ The head frame is the left camera: x right, y down, z forward. Pixel centres lie
 """
 
 import json
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -121,30 +122,45 @@ def _head_from_json(data: Mapping[str, Any]) -> StereoHead:
     translation_m = _array(data, "translation_mm", (3,)) * MM
     if not np.linalg.norm(translation_m) > 0:
         raise ValueError("translation_mm is zero: the cameras have no baseline")
-    covariance = None
-    if data.get("covariance") is not None:
-        scale = np.outer(_FILE_UNITS, _FILE_UNITS)
-        covariance = _array(data, "covariance", (24, 24)) * scale
     return StereoHead(
         image_size=(width, height),
-        left=_camera_from_json(data["left"]),
-        right=_camera_from_json(data["right"]),
+        left=_camera_from_json(data, "left"),
+        right=_camera_from_json(data, "right"),
         rotation=rotation,
         translation_m=translation_m,
         rms_px=float(data.get("rms_px", np.nan)),
-        covariance=covariance,
+        covariance=_covariance_from_json(data),
     )
 
 
-def _camera_from_json(data: Mapping[str, Any]) -> CameraModel:
-    matrix = _array(data, "camera_matrix", (3, 3))
+def _covariance_from_json(data: Mapping[str, Any]) -> Array | None:
+    """In our order; that of other programs means nothing here and is left out, with a warning."""
+    if data.get("covariance") is None:
+        return None
+    if data.get("covariance_order") != list(PARAMETER_ORDER):
+        warnings.warn("covariance left out: its order is not that of cellctl", stacklevel=2)
+        return None
+    return _array(data, "covariance", (24, 24)) * np.outer(_FILE_UNITS, _FILE_UNITS)
+
+
+def _camera_from_json(data: Mapping[str, Any], side: str) -> CameraModel:
+    try:
+        matrix = _array(data[side], "camera_matrix", (3, 3))
+        distortion = _array(data[side], "distortion", (5,))
+    except KeyError as error:
+        raise ValueError(f"{side}: missing {error}") from error
+    except ValueError as error:
+        raise ValueError(f"{side}: {error}") from error
     if matrix[0, 0] <= 0 or matrix[1, 1] <= 0 or not np.array_equal(matrix[2], [0.0, 0.0, 1.0]):
-        raise ValueError("camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy")
-    return CameraModel(matrix, _array(data, "distortion", (5,)))
+        raise ValueError(
+            f"{side}: camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy"
+        )
+    return CameraModel(matrix, distortion)
 
 
 def _array(data: Mapping[str, Any], key: str, shape: tuple[int, ...]) -> Array:
+    """Numbers of one shape; a vector may be a row or a column, as OpenCV writes it."""
     values = np.asarray(data[key], dtype=float)
-    if values.shape != shape or not np.isfinite(values).all():
+    if values.squeeze().shape != shape or not np.isfinite(values).all():
         raise ValueError(f"{key} must hold finite numbers of shape {shape}")
-    return values
+    return values.reshape(shape)

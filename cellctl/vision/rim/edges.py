@@ -43,6 +43,7 @@ class EdgeCircle:
 class _Edges:
     points: Array
     azimuth: NDArray[np.intp]
+    slope: Array
 
 
 def edge_circle(
@@ -68,6 +69,19 @@ def edge_circle(
     return None if start is None else _refined(edges, start, patch)
 
 
+def strongest_edges(
+    image: Image, patch: PlanePatch, centre: Array, radius: float, reach: float, *, bright: bool
+) -> Array:
+    """The steepest edge in each direction within ``reach`` of a circle, shape (n, 2), n ≤ 64.
+
+    All in plane units.
+    """
+    edges = _radial_edges(image, patch, centre, radius, reach, sign=-1.0 if bright else 1.0)
+    order = np.argsort(-edges.slope)
+    _, first = np.unique(edges.azimuth[order], return_index=True)
+    return edges.points[order[first]]
+
+
 def _radial_edges(
     image: Image, patch: PlanePatch, centre: Array, radius: float, reach: float, *, sign: float
 ) -> _Edges:
@@ -85,7 +99,7 @@ def _radial_edges(
     value, low, high = (part[which, index] for part in (middle, before, after))
     shift = 0.5 * (low - high) / np.minimum(low - 2.0 * value + high, -1e-9)
     distance = radii[index + 1] + np.clip(shift, -0.5, 0.5) * step
-    return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which)
+    return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which, value)
 
 
 def sample(image: Image, pixels: Array) -> Array:

@@ -1,0 +1,50 @@
+"""Which way the holes of a part face: where their rims' plane lies before the rims are fitted.
+
+Drawings differ: z may point out of the face or into the part, and the face may lie askew in the
+part's frame. Where the drawing does not say, the rims themselves decide.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.features import Hole
+from cellctl.vision.layout import Expectation
+from cellctl.vision.registration import kabsch, on_a_line
+
+_SAME_AXIS = float(np.cos(np.radians(1.0)))
+
+
+def possible_normals(
+    holes: Sequence[Hole], positions_m: Array, expectation: Expectation | None
+) -> list[Array]:
+    """Unit normals of the rims' planes that the drawing allows, likeliest first.
+
+    ``positions_m`` (n, 3) are where the holes are, in the left camera; the normals point away from
+    it. Empty when nothing says how the part is turned: fewer than three holes, or all on a line,
+    and no expected pose.
+    """
+    nominal = np.array([hole.position_m for hole in holes])
+    if not on_a_line(nominal):
+        rotation, _ = kabsch(nominal, positions_m)
+    elif expectation is not None:
+        rotation = expectation.camera_T_part.rotation.as_matrix()
+    else:
+        return []
+    middle = positions_m.mean(axis=0)
+    normals = [rotation @ axis for axis in _axes(holes, nominal)]
+    return [normal * np.sign(normal @ middle) for normal in normals]
+
+
+def _axes(holes: Sequence[Hole], nominal: Array) -> list[Array]:
+    """Of the holes in the part's frame, either way round."""
+    stated = holes[0].outward
+    if stated is not None:
+        return [stated]
+    axes = [np.array([0.0, 0.0, 1.0])]
+    if not on_a_line(nominal):
+        across = np.linalg.svd(nominal - nominal.mean(axis=0))[2][2]
+        if abs(across[2]) < _SAME_AXIS:
+            axes.append(across)
+    return axes
