@@ -1,6 +1,7 @@
 """``cellctl measure``: measure the holes of one stereo pair of image files."""
 
 import json
+import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -46,7 +47,10 @@ def measure(  # noqa: PLR0917 - the options of the command
     Exit code 3 when a hole is missing or ambiguous, 1 for any other reason to refuse.
     """
     try:
-        stereo_head = read_stereo_head(calibration)
+        with warnings.catch_warnings(record=True) as notes:
+            stereo_head = read_stereo_head(calibration)
+        for note in notes:
+            typer.echo(f"warning: {note.message}", err=True)
         holes = _holes(read_features(features), head)
         images = read_image(left), read_image(right)
         result = measure_pair(*images, stereo_head, holes, method=_method(method))

@@ -138,7 +138,9 @@ def _covariance_from_json(data: Mapping[str, Any]) -> Array | None:
     if data.get("covariance") is None:
         return None
     if data.get("covariance_order") != list(PARAMETER_ORDER):
-        warnings.warn("covariance left out: its order is not that of cellctl", stacklevel=2)
+        warnings.warn(
+            "covariance of the calibration left out: covariance_order is not ours", stacklevel=2
+        )
         return None
     return _array(data, "covariance", (24, 24)) * np.outer(_FILE_UNITS, _FILE_UNITS)
 
