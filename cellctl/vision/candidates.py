@@ -5,6 +5,7 @@ as closed contours do, so a visible wall, a thread or a scratch across the rim d
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import cv2
 import numpy as np
@@ -41,6 +42,22 @@ def find_candidates(
     limit: int = 60,
 ) -> list[Candidate]:
     """Dark (or bright) discs with a radius in the given range, best supported first."""
+    found: list[Candidate] = []
+    for octave in _octaves(*radii_px):
+        found += _at_one_scale(image, octave, bright=bright, limit=limit)
+    return sorted(found, key=lambda item: -item.support)[:limit]
+
+
+def _octaves(smallest: float, largest: float) -> list[tuple[float, float]]:
+    """The range in parts of a factor of two at most: large circles are found at small scale."""
+    count = max(1, int(np.ceil(np.log2(largest / smallest) - 1e-9)))
+    ends = np.geomspace(smallest, largest, count + 1)
+    return [(float(low), float(high)) for low, high in pairwise(ends)]
+
+
+def _at_one_scale(
+    image: Image, radii_px: tuple[float, float], *, bright: bool, limit: int
+) -> list[Candidate]:
     shrink = _shrink(radii_px[0])
     small = _reduced(image, shrink)
     radii = _radii(radii_px[0] / shrink, radii_px[1] / shrink)
