@@ -18,6 +18,8 @@ from cellctl.vision.rim.noise import Noise, noise_of
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _MAX_WALL_RATIO = 0.2
 _RING_LIMITS = (1.02, 1.7)
+_RIDGE = 1e-11
+"""Of a normal matrix with a unit diagonal: terms that no pixel shows stay finite."""
 _FLAT_WEIGHT = 0.04
 """Of every pixel before its noise is known, 1/grey²."""
 
@@ -112,9 +114,8 @@ class Solution:
         normal = self.normal()
         size = np.sqrt(np.diag(normal)) + 1e-12
         scaled = normal / np.outer(size, size)
-        return np.asarray(
-            np.linalg.pinv(scaled, rcond=1e-12, hermitian=True) / np.outer(size, size)
-        )
+        scaled[np.diag_indices_from(scaled)] += _RIDGE
+        return np.asarray(np.linalg.inv(scaled) / np.outer(size, size))
 
 
 def first(problem: Problem, vector: Array) -> Solution:

@@ -39,16 +39,13 @@ def clear_widths_px(
     outer = slope[:, ~own]
     limit = _LEAST_SHARE * median(np.abs(slope[:, own]).max(axis=1))
     limit = max(limit, _SIGMAS * robust_sigma((outer - np.median(outer, axis=0)).ravel()))
-    return np.array([_first_edge(np.abs(row), widths_px[~own], limit) for row in outer])
+    return _first_edges(np.abs(outer), widths_px[~own], limit)
 
 
-def _first_edge(steepness: Array, widths_px: Array, limit: float) -> float:
-    """Where the steepness first rises to a peak above the limit, past the rim's own decline."""
-    rising = np.diff(steepness) > 0.0
-    if not rising.any():
-        return np.inf
-    valley = int(np.argmax(rising))
-    peak = (steepness[1:-1] >= steepness[:-2]) & (steepness[1:-1] > steepness[2:])
-    peak &= steepness[1:-1] > limit
-    later = np.nonzero(peak[valley:])[0]
-    return float(widths_px[valley + later[0] + 1]) if len(later) else np.inf
+def _first_edges(steepness: Array, widths_px: Array, limit: float) -> Array:
+    """Where the steepness (k, n) first rises to a peak above the limit, past the rim's own decline,
+    shape (k,)."""
+    before, here, after = steepness[:, :-2], steepness[:, 1:-1], steepness[:, 2:]
+    past_valley = np.logical_or.accumulate(here > before, axis=1)
+    peak = past_valley & (here >= before) & (here > after) & (here > limit)
+    return np.where(peak.any(axis=1), widths_px[1:-1][np.argmax(peak, axis=1)], np.inf)
