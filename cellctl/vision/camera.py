@@ -16,16 +16,14 @@ def project(camera: CameraModel, points: Array) -> Array:
 
 def distort(camera: CameraModel, rays: Array) -> Array:
     """Raw pixels, shape (n, 2), of undistorted rays x/z, y/z, shape (n, 2)."""
-    k1, k2, p1, p2, k3 = camera.distortion
+    k1, k2, p1, p2, k3 = camera.distortion.tolist()
     x, y = rays[:, 0], rays[:, 1]
-    r2 = x * x + y * y
+    xx, yy, twice_xy = x * x, y * y, 2.0 * x * y
+    r2 = xx + yy
     radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
-    bent = np.column_stack(
-        [
-            x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
-            y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y,
-        ]
-    )
+    bent = np.empty_like(rays)
+    bent[:, 0] = x * radial + p1 * twice_xy + p2 * (r2 + 2.0 * xx)
+    bent[:, 1] = y * radial + p1 * (r2 + 2.0 * yy) + p2 * twice_xy
     return bent @ camera.camera_matrix[:2, :2].T + camera.camera_matrix[:2, 2]
 
 

@@ -10,10 +10,13 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.fit import Fitted
+from cellctl.vision.rim.matrix import add_to_diagonal, with_unit_diagonal
 from cellctl.vision.rim.model import outside_circles, outside_walls
 
 _DOUBT_GAIN = 15.0
 """Fall of the squares by up to six terms that two rims in a hundred show by chance."""
+_RIDGE = 1e-6
+"""Keeps terms that are modelled already from counting."""
 _RING_WIDTHS_PX = (1.0, 2.0, 3.0, 4.5)
 
 
@@ -57,11 +60,11 @@ class _Score:
         solution = self._solution
         weighted = solution.noise.weigh(rows)
         shared = weighted @ solution.design.T
-        full = weighted @ rows.T
-        scale = np.sqrt(np.maximum(np.diag(full), 1e-12))
-        size = (full - shared @ self._covariance @ shared.T) / np.outer(scale, scale)
+        size, scale = with_unit_diagonal(weighted @ rows.T)
+        size -= (shared @ self._covariance @ shared.T) / (scale[:, None] * scale)
+        add_to_diagonal(size, _RIDGE)
         score = (weighted @ solution.residuals) / scale
-        return float(score @ np.linalg.pinv(size, rcond=1e-6, hermitian=True) @ score)
+        return float(score @ np.linalg.solve(size, score))
 
     def of_each(self, rows: Array) -> Array:
         """If one of ``rows`` (k, n) were added, shape (k,)."""

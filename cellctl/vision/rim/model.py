@@ -95,7 +95,7 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     """Borders between neighbouring surfaces, from the outermost to the innermost."""
     rim = _circle(pixels, shape.centre, shape.radius)
     by_rim = _by_centre_and_radius(rim, shape)
-    bend_px = _bend_px(shape, rim)
+    bend_px = _bend_px(pixels, shape)
     found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
     if shape.ring_ratio is not None:
         found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
@@ -121,7 +121,7 @@ def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -
     shrink = 1.0 + np.array(ratios)[:, None]
     x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
     low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
-    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(shape, rim)
+    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(pixels, shape)
     return np.asarray(ndtr(inner_px / shape.blur_px))
 
 
@@ -129,7 +129,7 @@ def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
     """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
     rim = _circle(pixels, shape.centre, shape.radius)
     distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
-    return np.asarray(ndtr((distances_px + _bend_px(shape, rim)) / shape.blur_px))
+    return np.asarray(ndtr((distances_px + _bend_px(pixels, shape)) / shape.blur_px))
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:
@@ -145,9 +145,9 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 
 
-def _bend_px(shape: RimShape, rim: _Circle) -> float:
+def _bend_px(pixels: RimPixels, shape: RimShape) -> float:
     """A blurred disc of radius r shows its half level nearer to its centre by blur²/(2 r)."""
-    return 0.5 * shape.blur_px**2 / (shape.radius * float(np.mean(rim.px)))
+    return 0.5 * shape.blur_px**2 * pixels.unit_px / shape.radius
 
 
 def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:

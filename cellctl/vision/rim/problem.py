@@ -12,16 +12,21 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.lay import strokes
 from cellctl.vision.rim.light import Light, Surface, surfaces
+from cellctl.vision.rim.matrix import add_to_diagonal, with_unit_diagonal
 from cellctl.vision.rim.model import Border, RimPixels, RimShape, borders
 from cellctl.vision.rim.noise import Noise, noise_of
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
-_MAX_WALL_RATIO = 0.2
+_WALL_LIMITS = (0.0, 0.2)
 _RING_LIMITS = (1.02, 1.7)
 _RIDGE = 1e-11
 """Of a normal matrix with a unit diagonal: terms that no pixel shows stay finite."""
 _FLAT_WEIGHT = 0.04
 """Of every pixel before its noise is known, 1/grey²."""
+
+
+def _inside(value: float, limits: tuple[float, float]) -> float:
+    return min(max(value, limits[0]), limits[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +44,11 @@ class RimView:
     def shape(self, vector: Array) -> RimShape:
         """The shape of the rim in this image, inside what is physically possible."""
         values = self.selection @ vector
-        values[3] = np.clip(values[3], *_BLUR_LIMITS_PX)
+        values[3] = _inside(values[3], _BLUR_LIMITS_PX)
         if self.model.wall_ratio is not None:
-            values[4] = np.clip(values[4], 0.0, _MAX_WALL_RATIO)
+            values[4] = _inside(values[4], _WALL_LIMITS)
         if self.model.ring_ratio is not None:
-            values[-1] = np.clip(values[-1], *_RING_LIMITS)
+            values[-1] = _inside(values[-1], _RING_LIMITS)
         return self.model.with_vector(values)
 
 
@@ -107,15 +112,16 @@ class Solution:
 
     def normal(self) -> Array:
         """Normal matrix over light and joint parameters."""
-        return np.asarray(self.noise.weigh(self.design) @ self.design.T + np.diag(self.precision))
+        normal = self.noise.weigh(self.design) @ self.design.T
+        add_to_diagonal(normal, self.precision)
+        return np.asarray(normal)
 
     def covariance(self) -> Array:
         """Covariance of light and joint parameters for independent pixels."""
         normal = self.normal()
-        size = np.sqrt(np.diag(normal)) + 1e-12
-        scaled = normal / np.outer(size, size)
-        scaled[np.diag_indices_from(scaled)] += _RIDGE
-        return np.asarray(np.linalg.inv(scaled) / np.outer(size, size))
+        scaled, size = with_unit_diagonal(normal)
+        add_to_diagonal(scaled, _RIDGE)
+        return np.asarray(np.linalg.inv(scaled) / (size[:, None] * size))
 
 
 def first(problem: Problem, vector: Array) -> Solution:
@@ -172,7 +178,7 @@ def solved(
     grey = np.concatenate([view.pixels.grey for view in problem.views])
     weighted = noise.weigh(terms)
     gram = weighted @ terms.T
-    gram[np.diag_indices_from(gram)] += layout.precision + 1e-9 * np.diag(gram).max()
+    add_to_diagonal(gram, layout.precision + 1e-9 * float(gram.diagonal().max()))
     levels = np.linalg.solve(gram, weighted @ grey)
     by_vector = np.zeros((len(vector), len(noise.weights)))
     for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.matrix import add_to_diagonal, with_unit_diagonal
 from cellctl.vision.rim.problem import Problem, Solution, refreshed, solved
 
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
@@ -71,10 +72,8 @@ def _gain(problem: Problem, before: Array, change: Array) -> float:
 
 def _moved(problem: Problem, solution: Solution, damping: float) -> Array:
     """Joint parameters after a damped Gauss-Newton step."""
-    normal = solution.normal()
-    size = np.sqrt(np.diag(normal)) + 1e-12
-    scaled = normal / np.outer(size, size)
-    scaled[np.diag_indices_from(scaled)] += damping + 1e-10
+    scaled, size = with_unit_diagonal(solution.normal())
+    add_to_diagonal(scaled, damping + 1e-10)
     gradient = solution.design @ solution.noise.weigh(solution.residuals)
     gradient += solution.precision * solution.pull
     step = (np.linalg.solve(scaled, gradient / size) / size)[solution.lights :]
