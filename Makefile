@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration cell test test-long check lint types imports lock campaign campaign-mating bench bench-metrology bench-guard clean
+.PHONY: venv demo demo-calibration cell test test-long check lint types imports lock campaign campaign-mating bench bench-metrology bench-looks bench-guard clean
 
 venv: $(VENV)/.installed
 
@@ -31,10 +31,13 @@ campaign-mating: venv
 	$(BIN)/python -m benchmarks.campaign_mating
 	$(BIN)/python -m benchmarks.campaign_mating_pins
 
-bench: bench-metrology bench-guard
+bench: bench-metrology bench-looks bench-guard
 
 bench-metrology: venv
 	$(BIN)/python -m benchmarks.metrology
+
+bench-looks: venv
+	$(BIN)/python -m benchmarks.metrology_looks
 
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard

@@ -52,10 +52,13 @@ class HoleErrors:
                 (hole.left_px, hole.left_covariance_px2, view.truth_px[hole.name][0]),
                 (hole.right_px, hole.right_covariance_px2, view.truth_px[hole.name][1]),
             ):
-                error = point - truth
-                self.along_px.append(error)
-                self.bounds_px.append(bound)
-                self.squared_2d.append(float(error @ np.linalg.solve(covariance, error)))
+                self.add_point(point - truth, covariance, bound)
+
+    def add_point(self, error_px: Array, covariance_px2: Array, bound_px: float) -> None:
+        """Take in one image point."""
+        self.along_px.append(error_px)
+        self.bounds_px.append(bound_px)
+        self.squared_2d.append(float(error_px @ np.linalg.solve(covariance_px2, error_px)))
 
     @property
     def count(self) -> int:
