@@ -15,7 +15,7 @@ from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 4.0, 15.0
+_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 10.0, 15.0
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
