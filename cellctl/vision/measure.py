@@ -10,6 +10,7 @@ from cellctl.errors.vision import (
     ImageBlurred,
     VisionError,
 )
+from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.diagnose import fault_without_layout
 from cellctl.vision.drawing_fit import check_layout, only_one
@@ -34,8 +35,9 @@ _COARSE_M = 0.5e-3
 _EPIPOLAR_PX = 0.35
 _SIZE_AGREEMENT = 0.02
 _MAX_BLUR_PX = 2.5
-_SAME_PLACE_M = 2.5e-3
-"""Coarse places closer than this lead to one fine place."""
+_SAME_HOLES_M, _SAME_PLACE_M = 2.5e-3, 0.3e-3
+"""Coarse places closer than this to measured holes lead there; closer than this to each other, to
+the same."""
 _MAX_TRIED = 10
 _SIDES = ("left", "right")
 
@@ -66,14 +68,16 @@ def measure_pair(
         return measure_pair_by_paper(pair, holes, expectation)
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
+    tried: list[Array] = []
     for assignment in _find(pair, holes, expectation):
-        if any(_same_place(assignment, other) for other in good):
+        if _done_already(assignment, good, tried):
             continue
+        tried.append(assignment.positions_m)
         try:
             good.append(_measure(pair, holes, assignment, expectation, layout_tolerance_m))
         except VisionError as fault:
             faults.append(fault)
-        if len(good) + len(faults) >= _MAX_TRIED:
+        if len(tried) >= _MAX_TRIED:
             break
     if not good:
         raise faults[0]
@@ -98,9 +102,14 @@ def _find(
     raise fault_without_layout(pair, holes, spots, expectation)
 
 
-def _same_place(assignment: Assignment, measured: PairMeasurement) -> bool:
-    """Whether an assignment is another coarse view of what is measured already."""
-    return bool(np.abs(assignment.positions_m - measured.positions_m).max() < _SAME_PLACE_M)
+def _done_already(
+    assignment: Assignment, good: Sequence[PairMeasurement], tried: Sequence[Array]
+) -> bool:
+    """Whether an assignment is another coarse view of what is measured, or was tried as it is."""
+    positions_m = assignment.positions_m
+    return any(
+        np.abs(positions_m - other.positions_m).max() < _SAME_HOLES_M for other in good
+    ) or any(np.abs(positions_m - other).max() < _SAME_PLACE_M for other in tried)
 
 
 def _measure(

@@ -15,7 +15,7 @@ from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY, _THREAD_GREY = 40.0, 10.0, 15.0
+_WALL_OFFSET_GREY, _WALL_FADE_GREY = 40.0, 10.0
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
@@ -28,8 +28,9 @@ class Light:
 
     cone: bool = False
     """Outside the rim lies a cone, whose grey varies with the azimuth, not with x and y."""
-    thread: bool = False
-    """Inside the rim lie the turns of a thread, not an even dark."""
+    turns_grey: float = 0.0
+    """How uneven the turns of a thread inside the rim are, standard deviation; 0 for an even
+    dark."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +142,7 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
 
 
 def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
-    if not light.thread:
+    if light.turns_grey == 0.0:
         return _free(np.ones((1, points.shape[1])))
     radius, cos, sin = _polar(points, shape)
     double_cos, double_sin = cos * cos - sin * sin, 2.0 * sin * cos
@@ -152,4 +153,4 @@ def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]
     level = np.stack([np.ones_like(cos), cos, sin, double_cos, double_sin, triple_cos, triple_sin])
     band = (radius - 1.0) / _THREAD_BAND
     terms = np.concatenate([level, level * band, level[:5] * band**2])
-    return terms, np.array([np.inf, *[_THREAD_GREY] * (len(terms) - 1)])
+    return terms, np.array([np.inf, *[light.turns_grey] * (len(terms) - 1)])

@@ -1,5 +1,6 @@
 """A rim measured in both images, by the simplest model that their grey values do not contradict."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,6 +24,7 @@ _UNSEEN_CONE = (0.15, 0.08)
 """Width of a ring over the radius, and its standard deviation."""
 _SEEN_SHARE = 0.2
 _LEAST_RING_PX = 2.0
+_MAX_SIGMA_PX = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +107,8 @@ def _apart(tasks: tuple[Task, Task], fits: tuple[Fitted, Fitted]) -> RimPair | R
         if isinstance(rim, Rejection):
             return replace(rim, side=side)
         rims.append(rim)
+    if (refused := _vague(rims)) is not None:
+        return refused
     joint = joint_covariance(rims[0].covariance_px2, rims[1].covariance_px2)
     return RimPair(rims[0], rims[1], joint)
 
@@ -122,5 +126,17 @@ def _together(tasks: tuple[Task, Task], chosen: Chosen) -> RimPair | Rejection:
         part = slice(2 * index, 2 * index + 2)
         jacobian[part, part] = task.patch.px_by_point(shape.centre)
         rims.append(rim_of(task, fit, shape, fit.covariance[part, part]))
+    if (refused := _vague(rims)) is not None:
+        return refused
     joint = jacobian @ fit.covariance[:4, :4] @ jacobian.T + np.eye(4) * FLOOR_PX**2
     return RimPair(rims[0], rims[1], joint)
+
+
+def _vague(rims: Sequence[Rim]) -> Rejection | None:
+    """Refusal of rims whose centre the grey values leave open: no contrast to what lies beside."""
+    for side, rim in zip(_SIDES, rims, strict=True):
+        sigma_px = float(np.sqrt(np.linalg.eigvalsh(rim.covariance_px2)[-1]))
+        if sigma_px > _MAX_SIGMA_PX:
+            reason = f"centre known to {sigma_px:.2f} px only, allowed {_MAX_SIGMA_PX:.2f} px"
+            return Rejection(reason, side)
+    return None

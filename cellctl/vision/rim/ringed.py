@@ -19,6 +19,8 @@ SIZE_TOLERANCE = 0.035
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 _RING_COST = 80.0
 """Fall of the squares that a ring must bring: real ones bring thousands."""
+_CALM_GREY, _CALM_LIMIT_GREY, _WILD_GREY = 15.0, 12.5, 50.0
+"""How uneven turns are expected to be; beyond the limit far more is allowed for, and stated."""
 _PIXELS_ALIKE = 10.0
 """What a model leaves unexplained is alike in about so many pixels: evidence counts that less."""
 
@@ -50,18 +52,30 @@ def fit_ringed(
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (tasks[0].pixels, tasks[1].pixels), tasks[0].across_lay()
 
-    def rough(sigma: float, **model: float) -> Fitted:
+    def rough(turns_grey: float, sigma: float, **model: float) -> Fitted:
         first, second = (
             RimShape(task.centre, task.nominal, blur, **model)
             for task, blur in zip(tasks, blurs, strict=True)
         )
-        prior = PairPrior(_DIAMETER_SIGMA, blur_sigma, sigma)
-        return rough_rim_pair(pixels, (first, second), Light(thread=True), prior, across_lay)
+        prior, light = PairPrior(_DIAMETER_SIGMA, blur_sigma, sigma), Light(turns_grey=turns_grey)
+        return rough_rim_pair(pixels, (first, second), light, prior, across_lay)
 
-    wall = _WALL_M / tasks[0].sight.distance_m
-    models = [rough(ring[1], ring_ratio=ring[0], ring_slope=slope) for slope in _SLOPES]
-    models += [rough(np.inf), rough(_WALL_SIGMAS * wall, wall_ratio=wall)]
-    return _likeliest(models)
+    def likeliest(turns_grey: float) -> Chosen:
+        wall = _WALL_M / tasks[0].sight.distance_m
+        return _likeliest(
+            [
+                *(rough(turns_grey, ring[1], ring_ratio=ring[0], ring_slope=s) for s in _SLOPES),
+                rough(turns_grey, np.inf),
+                rough(turns_grey, _WALL_SIGMAS * wall, wall_ratio=wall),
+            ]
+        )
+
+    calm = likeliest(_CALM_GREY)
+    if calm.fitted.solution.unevenness_grey(_CALM_GREY) < _CALM_LIMIT_GREY:
+        return calm
+    wild = likeliest(_WILD_GREY)
+    off = wild.fitted.solution.vector[:5] - calm.fitted.solution.vector[:5]
+    return Chosen(wild.fitted, wild.spread + np.outer(off, off))
 
 
 def _likeliest(models: list[Fitted]) -> Chosen:
