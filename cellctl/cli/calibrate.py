@@ -35,7 +35,6 @@ from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.cli.measure import read_image
 from cellctl.cli.output import write_file
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.vision import ImageFileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 
@@ -164,9 +163,9 @@ def _pairs(left: str, right: str) -> list[ImagePair]:
     names = [sorted(glob.glob(pattern)) for pattern in (left, right)]
     for pattern, found in zip((left, right), names, strict=True):
         if not found:
-            raise ImageFileInvalid(f"no file matches {pattern}")
+            raise FileInvalid(f"no file matches {pattern}")
     if len(names[0]) != len(names[1]):
-        raise ImageFileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
+        raise FileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
     return [
         ImagePair(Path(one).stem, read_image(Path(one)), read_image(Path(other)))
         for one, other in zip(*names, strict=True)

@@ -34,8 +34,11 @@ class WrongBoard(CalibrationError):
 
     number = 602
     text = "The board in the images is not the one described"
-    cause = "Another board was used, or the number of inner corners was given wrongly."
-    remedy = "Count inner corners, not squares: 10 x 7 squares have 9 x 6 inner corners."
+    cause = "Another board or marker dictionary, or a wrong number of inner corners."
+    remedy = (
+        "Count inner corners, not squares: 10 x 7 squares have 9 x 6 inner corners. "
+        "Give the marker dictionary that is printed on the board."
+    )
 
 
 class TooFewViews(CalibrationError):
@@ -151,8 +154,8 @@ class RobotCameraMismatch(CalibrationError):
 
     number = 624
     text = "Robot and camera motions do not fit each other"
-    cause = "Wrong setup (eye-in-hand or eye-to-hand), wrong angle convention, or mixed-up poses."
-    remedy = "Check the setup, the pose convention and the order of the poses."
+    cause = "Wrong setup (eye-in-hand or eye-to-hand), angle convention or unit, or mixed-up poses."
+    remedy = "Check the setup, the pose convention, mm and degrees, and the order of the poses."
 
 
 class CalibrationRecordInvalid(CalibrationError):

@@ -24,13 +24,15 @@ def fault_without_layout(
     if len(holes) >= 3:
         if _fits(replace(pair, left=pair.right, right=pair.left), holes):
             return CamerasSwapped("the holes are found with the images exchanged")
+        left, right = _turned(pair.left), _turned(pair.right)
         turned = {
-            "left": replace(pair, left=_turned(pair.left)),
-            "right": replace(pair, right=_turned(pair.right)),
+            "the left image": replace(pair, left=left),
+            "the right image": replace(pair, right=right),
+            "both images": replace(pair, left=left, right=right),
         }
-        for side, other in turned.items():
+        for which, other in turned.items():
             if _fits(other, holes):
-                return CameraUpsideDown(f"the holes are found with the {side} image turned by 180°")
+                return CameraUpsideDown(f"the holes are found with {which} turned by 180°")
     missing = holes_without_spot(holes, spots, expectation)
     if missing:
         return HoleMissing(f"nothing like {', '.join(missing)} was seen by both cameras")

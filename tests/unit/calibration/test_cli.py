@@ -16,7 +16,6 @@ from cellctl.calibration.record import covariance_to_written
 from cellctl.cli.calibrate import app
 from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.vision import ImageFileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.vision.stereo_head import read_stereo_head
 from fakes.render import api
@@ -200,7 +199,7 @@ def test_stereo_without_images(tmp_path: Path) -> None:
     pattern = tmp_path / "left-*.png"
     result = call("stereo", "--left", pattern, "--right", pattern, "--board", "9x6",
                   "--square-mm", 25, "--out", tmp_path / "o.json")  # fmt: skip
-    assert isinstance(result.exception, ImageFileInvalid)
+    assert isinstance(result.exception, FileInvalid)
     assert "no file matches" in str(result.exception)
 
 

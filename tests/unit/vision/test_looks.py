@@ -1,0 +1,32 @@
+"""A quick part of ``make bench-looks``: every look once on each of two heads."""
+
+import numpy as np
+import pytest
+
+from benchmarks.drawn_looks import LOOKS
+from benchmarks.drawn_scenes import drawn_scene
+from benchmarks.metrology_figures import HoleErrors
+from benchmarks.metrology_looks import measure
+
+WORST_PX = {
+    "disc": 0.02,
+    "lit wall": 0.06,
+    "bright wall": 0.12,
+    "fading wall": 0.05,
+    "flat cone": 0.05,
+    "bright cone": 0.03,
+    "narrow cone": 0.08,
+    "true cone": 0.10,
+    "turns": 0.10,
+    "chamfered turns": 0.15,
+}
+
+
+@pytest.mark.parametrize("look", LOOKS)
+def test_every_look_is_measured_and_its_uncertainty_is_honest(look: str) -> None:
+    errors = HoleErrors()
+    for seed in (1, 2):
+        assert measure(drawn_scene(look, seed), errors, "default") is None
+    assert errors.worst_px() < WORST_PX[look]
+    # Eight image points: the mean of honest values exceeds 5.5 once in a thousand cases.
+    assert np.mean(errors.squared_2d) < 5.5
