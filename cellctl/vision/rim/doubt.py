@@ -17,46 +17,44 @@ _DOUBT_GAIN = 15.0
 """Fall of the squares by up to six terms that two rims in a hundred show by chance."""
 _RIDGE = 1e-6
 """Keeps terms that are modelled already from counting."""
-_RING_WIDTHS_PX = (1.0, 2.0, 3.0, 4.5)
+_RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 
 
-def likely_wall(bare: Fitted, ratios: Sequence[float]) -> tuple[float, float]:
-    """The wall ratio that would explain most of the misfit of a rim without a wall, and its gain.
-
-    As if a wall of unknown, even grey were seen.
-    """
-    pixels, shape = bare.problem.views[0].pixels, bare.shapes[0]
-    gains = _Score(bare).of_each(outside_walls(pixels, shape, ratios) - bare.solution.outside)
-    best = int(np.argmax(gains))
-    return ratios[best], float(gains[best])
-
-
-def contradicts_dark_inside(bare: Fitted) -> bool:
-    """Whether the inside of a rim is not even."""
-    radius, cos, sin = _polar(bare)
-    below = 1.0 - radius
-    rows = np.stack([cos, sin, below, below * cos, below * sin, below * below])
-    return _Score(bare).of((1.0 - bare.solution.outside) * rows) > _DOUBT_GAIN
-
-
-def contradicts_sharp_rim(bare: Fitted) -> bool:
-    """Whether a narrow ring of another grey lies round a rim."""
-    _, cos, sin = _polar(bare)
-    around, shape, score = np.stack([np.ones_like(cos), cos, sin]), bare.shapes[0], _Score(bare)
-    radii = shape.radius + np.array(_RING_WIDTHS_PX) * bare.problem.unit_px
-    rings = bare.solution.outside - outside_circles(bare.problem.views[0].pixels, shape, radii)
-    return max(score.of(around * ring) for ring in rings) > _DOUBT_GAIN
-
-
-class _Score:
-    """Falls of the squares of a fit."""
+class Doubt:
+    """Score tests on one fit of one image."""
 
     def __init__(self, bare: Fitted) -> None:
-        self._solution = bare.solution
-        self._covariance = bare.solution.covariance()
+        self._solution, self._shape = bare.solution, bare.shapes[0]
+        self._pixels, self._unit_px = bare.problem.views[0].pixels, bare.problem.unit_px
+        self._covariance = bare.solution.covariance
+        x, y = (self._pixels.points - self._shape.centre[:, None]) / self._shape.radius
+        self._radius = np.maximum(np.sqrt(x * x + y * y), 1e-6)
+        self._cos, self._sin = x / self._radius, y / self._radius
 
-    def of(self, rows: Array) -> float:
-        """If ``rows`` (k, n) were added to the model with free weights."""
+    def likely_wall(self, ratios: Sequence[float]) -> tuple[float, float]:
+        """The wall ratio that would explain most of the misfit of a fit without a wall, and its
+        gain, as if a wall of unknown, even grey were seen."""
+        seen = outside_walls(self._pixels, self._shape, ratios) - self._solution.outside
+        gains = self._gain_of_each(seen)
+        best = int(np.argmax(gains))
+        return ratios[best], float(gains[best])
+
+    def uneven_inside(self) -> bool:
+        """Whether the inside of the rim is not even."""
+        below, cos, sin = 1.0 - self._radius, self._cos, self._sin
+        rows = np.stack([cos, sin, below, below * cos, below * sin, below * below])
+        return self._gain((1.0 - self._solution.outside) * rows) > _DOUBT_GAIN
+
+    def ring(self) -> bool:
+        """Whether a narrow ring of another grey lies round the rim."""
+        around = np.stack([np.ones_like(self._cos), self._cos, self._sin])
+        radii = self._shape.radius + np.array(_RING_WIDTHS_PX) * self._unit_px
+        beyond = outside_circles(self._pixels, self._shape, radii)
+        gains = (self._gain(around * ring) for ring in self._solution.outside - beyond)
+        return any(gain > _DOUBT_GAIN for gain in gains)
+
+    def _gain(self, rows: Array) -> float:
+        """Fall of the squares if ``rows`` (k, n) were added to the model with free weights."""
         solution = self._solution
         weighted = solution.noise.weigh(rows)
         shared = weighted @ solution.design.T
@@ -66,19 +64,11 @@ class _Score:
         score = (weighted @ solution.residuals) / scale
         return float(score @ np.linalg.solve(size, score))
 
-    def of_each(self, rows: Array) -> Array:
-        """If one of ``rows`` (k, n) were added, shape (k,)."""
+    def _gain_of_each(self, rows: Array) -> Array:
+        """The same for each of ``rows`` (k, n) alone, shape (k,)."""
         solution = self._solution
         weighted = solution.noise.weigh(rows)
         shared = weighted @ solution.design.T
         size = (weighted * rows).sum(axis=1) - ((shared @ self._covariance) * shared).sum(axis=1)
         squares = (weighted @ solution.residuals) ** 2
         return np.where(size > 1e-6, squares / np.maximum(size, 1e-6), 0.0)
-
-
-def _polar(bare: Fitted) -> tuple[Array, Array, Array]:
-    """Radius over the rim's, cosine and sine of the azimuth of every pixel, each (n,)."""
-    shape = bare.shapes[0]
-    x, y = (bare.problem.views[0].pixels.points - shape.centre[:, None]) / shape.radius
-    radius = np.maximum(np.sqrt(x * x + y * y), 1e-6)
-    return radius, x / radius, y / radius

@@ -141,7 +141,7 @@ def rated(fitted: Fitted) -> RimFit:
     problem, solution = fitted.problem, fitted.solution
     geometry = range(2 * len(problem.views) + 1)
     rows = [solution.lights + index for index in geometry]
-    everything = solution.covariance()
+    everything = solution.covariance
     covariance = everything[np.ix_(rows, rows)]
     influence = everything[rows] @ solution.noise.weigh(solution.design)
     unexplained = solution.noise.own(solution.residuals)

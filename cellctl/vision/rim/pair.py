@@ -7,7 +7,7 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.features import Hole
-from cellctl.vision.rim.doubt import contradicts_dark_inside, contradicts_sharp_rim
+from cellctl.vision.rim.doubt import Doubt
 from cellctl.vision.rim.fit import Fitted, rated
 from cellctl.vision.rim.result import FLOOR_PX, Rim, refusal, rim_of
 from cellctl.vision.rim.ringed import SIZE_TOLERANCE, Chosen, fit_ringed
@@ -80,10 +80,10 @@ def _tasks(
 def _ring_needed(hole: Hole, tasks: tuple[Task, Task], fits: tuple[Fitted, Fitted]) -> bool:
     """Whether a ring or an uneven inside must be modelled too."""
     if hole.kind == "thread":
-        return any(contradicts_sharp_rim(fit) or contradicts_dark_inside(fit) for fit in fits)
+        return any(doubt.ring() or doubt.uneven_inside() for doubt in map(Doubt, fits))
     if hole.kind == "countersink":
         narrow = any(task.clear_px < _NARROW_PX for task in tasks)
-        return narrow or any(contradicts_sharp_rim(fit) for fit in fits)
+        return narrow or any(Doubt(fit).ring() for fit in fits)
     return False
 
 

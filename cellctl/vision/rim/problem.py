@@ -6,6 +6,7 @@ the cost.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -75,7 +76,7 @@ class Problem:
         return self.views[0].pixels.unit_px
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Solution:
     """Best light for one vector of joint parameters, and what the next step needs."""
 
@@ -105,7 +106,7 @@ class Solution:
         ours = np.isclose(self.precision[: self.lights], sigma_grey**-2.0)
         return float(np.sqrt(np.mean(self.pull[: self.lights][ours] ** 2)))
 
-    @property
+    @cached_property
     def cost(self) -> float:
         """Weighted squares of residuals and priors."""
         return self.cost_under(self.noise)
@@ -115,15 +116,17 @@ class Solution:
         squares = self.residuals @ noise.weigh(self.residuals)
         return float(squares + self.precision @ self.pull**2)
 
+    @cached_property
     def normal(self) -> Array:
         """Normal matrix over light and joint parameters."""
         normal = self.noise.weigh(self.design) @ self.design.T
         add_to_diagonal(normal, self.precision)
         return np.asarray(normal)
 
+    @cached_property
     def covariance(self) -> Array:
         """Covariance of light and joint parameters for independent pixels."""
-        normal = self.normal()
+        normal = self.normal
         scaled, size = with_unit_diagonal(normal)
         add_to_diagonal(scaled, _RIDGE)
         return np.asarray(np.linalg.inv(scaled) / (size[:, None] * size))

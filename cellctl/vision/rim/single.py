@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from cellctl.vision.rim.doubt import contradicts_dark_inside, likely_wall
+from cellctl.vision.rim.doubt import Doubt
 from cellctl.vision.rim.fit import Fitted, finished, fit_rim, rated, rough_rim
 from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimShape
@@ -26,23 +26,25 @@ def fit_alone(task: Task) -> Fitted:
     if task.hole.kind == "disc":
         return fit_rim(task.pixels, bare, light, lay)
     rough = rough_rim(task.pixels, bare, light, lay)
-    return _with_wall_if_seen(task, rough, light)
-
-
-def _with_wall_if_seen(task: Task, rough: Fitted, light: Light) -> Fitted:
-    pixels, lay = task.pixels, task.across_lay()
     ratios = [depth_m / task.sight.distance_m for depth_m in _WALL_DEPTHS_M]
-    ratio, gain = likely_wall(rough, ratios)
+
+    def walled(start: Fitted, ratio: float) -> Fitted:
+        shape = replace(start.shapes[0], wall_ratio=ratio)
+        return fit_rim(task.pixels, shape, light, lay)
+
+    doubt = Doubt(rough)
+    ratio, gain = doubt.likely_wall(ratios)
     if gain > _CLEAR_GAIN:
-        return fit_rim(pixels, replace(rough.shapes[0], wall_ratio=ratio), light, lay)
+        return walled(rough, ratio)
     plain = finished(rough)
-    if gain < _FAINT_GAIN and not contradicts_dark_inside(rough):
+    if gain < _FAINT_GAIN and not doubt.uneven_inside():
         return plain
-    ratio, gain = likely_wall(plain, ratios)
-    if gain < _HINT_GAIN and not contradicts_dark_inside(plain):
+    doubt = Doubt(plain)
+    ratio, gain = doubt.likely_wall(ratios)
+    if gain < _HINT_GAIN and not doubt.uneven_inside():
         return plain
-    walled = fit_rim(pixels, replace(plain.shapes[0], wall_ratio=ratio), light, lay)
-    return walled if walled.bic() < plain.bic() - _EVIDENCE else plain
+    other = walled(plain, ratio)
+    return other if other.bic() < plain.bic() - _EVIDENCE else plain
 
 
 def rim_alone(task: Task, fitted: Fitted) -> Rim | Rejection:

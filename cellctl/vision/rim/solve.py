@@ -72,7 +72,7 @@ def _gain(problem: Problem, before: Array, change: Array) -> float:
 
 def _moved(problem: Problem, solution: Solution, damping: float) -> Array:
     """Joint parameters after a damped Gauss-Newton step."""
-    scaled, size = with_unit_diagonal(solution.normal())
+    scaled, size = with_unit_diagonal(solution.normal)
     add_to_diagonal(scaled, damping + 1e-10)
     gradient = solution.design @ solution.noise.weigh(solution.residuals)
     gradient += solution.precision * solution.pull

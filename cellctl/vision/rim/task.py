@@ -46,7 +46,7 @@ class Task:
 
     def across_lay(self) -> Array | None:
         """Across the lay of the face beside the rim, shape (2,); None without one."""
-        if self.hole.countersink_m is not None:
+        if self.hole.kind == "countersink":
             return None
         clear = _CHAMFER_CLEAR if self.hole.kind == "thread" else _RIM_CLEAR
         clear_px = clear * self.radius / self.patch.unit_px + _CLEAR_PX
