@@ -1,4 +1,4 @@
-"""A quick part of ``make bench-looks``: every look once on each of two heads."""
+"""A quick part of ``make bench-looks``: every look once."""
 
 import numpy as np
 import pytest
@@ -25,8 +25,7 @@ WORST_PX = {
 @pytest.mark.parametrize("look", LOOKS)
 def test_every_look_is_measured_and_its_uncertainty_is_honest(look: str) -> None:
     errors = HoleErrors()
-    for seed in (1, 2):
-        assert measure(drawn_scene(look, seed), errors, "default") is None
+    assert measure(drawn_scene(look, 2), errors, "default") is None
     assert errors.worst_px() < WORST_PX[look]
-    # Eight image points: the mean of honest values exceeds 5.5 once in a thousand cases.
-    assert np.mean(errors.squared_2d) < 5.5
+    # Four image points: the mean of honest values exceeds 6.5 once in a thousand cases.
+    assert np.mean(errors.squared_2d) < 6.5

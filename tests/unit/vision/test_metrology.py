@@ -10,9 +10,6 @@ from benchmarks.metrology_figures import band
 from benchmarks.metrology_scenes import parts
 from fakes.render import api
 
-pytestmark = pytest.mark.xdist_group("metrology")
-"""Rendered once, on one worker."""
-
 
 @pytest.fixture(scope="module")
 def clean() -> Run:
