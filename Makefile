@@ -55,10 +55,10 @@ imports: venv
 check: lint types imports
 
 test: check
-	$(BIN)/pytest -n 2 --dist loadfile -m "not long"
+	$(BIN)/pytest -n 2 -m "not long"
 
 test-long: venv
-	$(BIN)/pytest -n 2 --dist loadfile -m long
+	$(BIN)/pytest -n 2 -m long
 
 lock: venv
 	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url --universal -o requirements.lock
