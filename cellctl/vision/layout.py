@@ -53,6 +53,11 @@ class Assignment:
         """Shape (n, 3)."""
         return np.array([spot.position_m for spot in self.spots])
 
+    @property
+    def places_px(self) -> Array:
+        """Coarse places in both images, left first, shape (n, 2, 2)."""
+        return np.array([[spot.left.centre_px, spot.right.centre_px] for spot in self.spots])
+
 
 def pair_spots(
     head: StereoHead,

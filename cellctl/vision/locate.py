@@ -18,7 +18,8 @@ from cellctl.vision.search import ImagePair
 from cellctl.vision.stereo import epipolar_distances_px, midpoints
 from cellctl.vision.stereo_head import StereoHead
 
-_REACH_PX = 7.0
+LOCATE_REACH_PX = 7.0
+"""How far from its coarse place a rim is found."""
 _EPIPOLAR_PX = 2.5
 _SIDES = ("left", "right")
 
@@ -92,7 +93,7 @@ def _locate(
     found = []
     for hole, position_m in zip(holes, positions_m, strict=True):
         left, right = (
-            or_missing(hole, locate_rim(sight, hole, _REACH_PX), side)
+            or_missing(hole, locate_rim(sight, hole, LOCATE_REACH_PX), side)
             for side, sight in zip(_SIDES, sights_of(pair, position_m, normal), strict=True)
         )
         found.append((left, right))

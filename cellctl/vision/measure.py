@@ -17,7 +17,7 @@ from cellctl.vision.drawing_fit import check_layout, only_one
 from cellctl.vision.features import Hole
 from cellctl.vision.image_checks import check_pair
 from cellctl.vision.layout import Assignment, Expectation, Spot, assignments
-from cellctl.vision.locate import locate_holes, or_missing, sights_of
+from cellctl.vision.locate import LOCATE_REACH_PX, locate_holes, or_missing, sights_of
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.rim.pair import RimPair, measure_rims
@@ -35,9 +35,7 @@ _COARSE_M = 0.5e-3
 _EPIPOLAR_PX = 0.35
 _SIZE_AGREEMENT = 0.02
 _MAX_BLUR_PX = 2.5
-_SAME_HOLES_M, _SAME_PLACE_M = 2.5e-3, 0.3e-3
-"""Coarse places closer than this to measured holes lead there; closer than this to each other, to
-the same."""
+_SAME_PLACE_PX = 1.0
 _MAX_TRIED = 10
 _SIDES = ("left", "right")
 
@@ -70,9 +68,9 @@ def measure_pair(
     faults: list[VisionError] = []
     tried: list[Array] = []
     for assignment in _find(pair, holes, expectation):
-        if _done_already(assignment, good, tried):
+        if _done_already(assignment.places_px, good, tried):
             continue
-        tried.append(assignment.positions_m)
+        tried.append(assignment.places_px)
         try:
             good.append(_measure(pair, holes, assignment, expectation, layout_tolerance_m))
         except VisionError as fault:
@@ -103,13 +101,15 @@ def _find(
 
 
 def _done_already(
-    assignment: Assignment, good: Sequence[PairMeasurement], tried: Sequence[Array]
+    places_px: Array, good: Sequence[PairMeasurement], tried: Sequence[Array]
 ) -> bool:
-    """Whether an assignment is another coarse view of what is measured, or was tried as it is."""
-    positions_m = assignment.positions_m
-    return any(
-        np.abs(positions_m - other.positions_m).max() < _SAME_HOLES_M for other in good
-    ) or any(np.abs(positions_m - other).max() < _SAME_PLACE_M for other in tried)
+    """Whether places lead to the holes that are measured, or were tried as they are."""
+    measured = [
+        np.array([[hole.left_px, hole.right_px] for hole in result.holes]) for result in good
+    ]
+    return any(np.abs(places_px - other).max() < LOCATE_REACH_PX for other in measured) or any(
+        np.abs(places_px - other).max() < _SAME_PLACE_PX for other in tried
+    )
 
 
 def _measure(
