@@ -21,6 +21,7 @@ from cellctl.vision.stereo_head import StereoHead
 LOCATE_REACH_PX = 7.0
 """How far from its coarse place a rim is found."""
 _EPIPOLAR_PX = 2.5
+_MOST_PASSES, _SETTLED_M = 2, 1.5e-3
 _SIDES = ("left", "right")
 
 _T = TypeVar("_T")
@@ -47,6 +48,23 @@ def locate_holes(
 
     Where the drawing leaves the plane of the rims open, the rims decide.
     """
+    for _ in range(_MOST_PASSES):
+        normal, places = _facing(pair, holes, positions_m, expectation)
+        before_m, positions_m = positions_m, _positions(pair.head, holes, places)
+        # From a place far off the plane is off as well, and the edges are not yet what they seem.
+        if np.abs(positions_m - before_m).max() < _SETTLED_M:
+            break
+    normals = possible_normals(holes, positions_m, expectation)
+    return LocatedHoles(places, positions_m, _closest(normal, normals))
+
+
+def _facing(
+    pair: ImagePair,
+    holes: Sequence[Hole],
+    positions_m: Array,
+    expectation: Expectation | None,
+) -> tuple[Array, list[tuple[Located, Located]]]:
+    """The normal for which the rims show most of their edges, and where they do."""
     normals = possible_normals(holes, positions_m, expectation)
     if not normals:
         normals = [_normal_by_rims(pair, holes, positions_m)]
@@ -59,11 +77,7 @@ def locate_holes(
             faults.append(fault)
     if not found:
         raise faults[0]
-    normal, places = max(found, key=_support)
-    fine_m = _positions(pair.head, holes, places)
-    return LocatedHoles(
-        places, fine_m, _closest(normal, possible_normals(holes, fine_m, expectation))
-    )
+    return max(found, key=_support)
 
 
 def _support(found: tuple[Array, list[tuple[Located, Located]]]) -> float:

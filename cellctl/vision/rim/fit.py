@@ -16,6 +16,8 @@ _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
 
 _ROUGH_PX = 0.03
+_RADIUS_SIGMA = 0.005
+"""Relative: it counts only where little of a rim stands out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +57,25 @@ class Fitted:
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
-def fit_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
+@dataclass(frozen=True, slots=True)
+class Known:
+    """What is known of a rim in one image before it is fitted."""
+
+    radius: float
+    """Nominal, plane units."""
+    across_lay: Array | None
+    """Unit vector across the lay of the face, if it has one."""
+
+
+def fit_rim(pixels: RimPixels, start: RimShape, light: Light, known: Known) -> Fitted:
     """Fit one image from a start within 1–2 px."""
-    problem = _alone(pixels, start, light, across_lay)
+    problem = _alone(pixels, start, light, known)
     return Fitted(problem, *minimise(problem, first(problem, start.vector)))
 
 
-def rough_rim(pixels: RimPixels, start: RimShape, light: Light, across_lay: Array | None) -> Fitted:
+def rough_rim(pixels: RimPixels, start: RimShape, light: Light, known: Known) -> Fitted:
     """A quick fit to a few hundredths of a pixel, to be ``finished``."""
-    problem = _alone(pixels, start, light, across_lay)
+    problem = _alone(pixels, start, light, known)
     return _rough(problem, start.vector)
 
 
@@ -125,15 +137,15 @@ def _rough(problem: Problem, start: Array) -> Fitted:
     return Fitted(problem, *minimise(problem, begun, tolerance_px=_ROUGH_PX, weighing_rounds=1))
 
 
-def _alone(pixels: RimPixels, shape: RimShape, light: Light, across_lay: Array | None) -> Problem:
+def _alone(pixels: RimPixels, shape: RimShape, light: Light, known: Known) -> Problem:
     size = len(shape.vector)
     view = RimView(pixels, shape, np.eye(size))
-    sigma = np.full(size, np.inf)
+    mean, sigma = shape.vector, np.full(size, np.inf)
+    mean[2], sigma[2] = known.radius, _RADIUS_SIGMA * known.radius
     if shape.wall_ratio is not None:
-        sigma[4] = (
-            4.0 * shape.wall_ratio
-        )  # Where the lower edge is out of sight, nothing else holds it.
-    return Problem((view,), light, shape.vector, sigma, across_lay)
+        # Where the lower edge is out of sight, nothing else holds it.
+        sigma[4] = 4.0 * shape.wall_ratio
+    return Problem((view,), light, mean, sigma, known.across_lay)
 
 
 def rated(fitted: Fitted) -> RimFit:

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from cellctl.vision.rim.doubt import Doubt
-from cellctl.vision.rim.fit import Fitted, finished, fit_rim, rated, rough_rim
+from cellctl.vision.rim.fit import Fitted, Known, finished, fit_rim, rated, rough_rim
 from cellctl.vision.rim.light import Light
 from cellctl.vision.rim.model import RimShape
 from cellctl.vision.rim.result import Rim, refusal, rim_of
@@ -22,15 +22,16 @@ _EVIDENCE = 15.0
 def fit_alone(task: Task) -> Fitted:
     """The simplest model of the rim that the grey values do not contradict."""
     light = Light(cone=task.hole.kind == "countersink")
-    bare, lay = RimShape(task.centre, task.radius, _BLUR_PX), task.across_lay()
+    bare = RimShape(task.centre, task.radius, _BLUR_PX)
+    known = Known(task.nominal, task.across_lay())
     if task.hole.kind == "disc":
-        return fit_rim(task.pixels, bare, light, lay)
-    rough = rough_rim(task.pixels, bare, light, lay)
+        return fit_rim(task.pixels, bare, light, known)
+    rough = rough_rim(task.pixels, bare, light, known)
     ratios = [depth_m / task.sight.distance_m for depth_m in _WALL_DEPTHS_M]
 
     def walled(start: Fitted, ratio: float) -> Fitted:
         shape = replace(start.shapes[0], wall_ratio=ratio)
-        return fit_rim(task.pixels, shape, light, lay)
+        return fit_rim(task.pixels, shape, light, known)
 
     doubt = Doubt(rough)
     ratio, gain = doubt.likely_wall(ratios)
