@@ -285,7 +285,9 @@ class GuardClient:
         _log.warning("guard has stopped the robot", trip=str(trip))
 
     def _died(self, how: str) -> None:
-        was_ready = self._started is not None and self._started.done()
+        # A guard that reports a fault at its start and ends has never guarded anything.
+        started = self._started
+        was_ready = started is not None and started.done() and started.exception() is None
         self._fail(GuardDied(how))
         if was_ready and not self._stopping:
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))
