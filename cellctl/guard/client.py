@@ -49,7 +49,7 @@ class GuardClient:
         self._settings = settings
         self._child: GuardChild | None = None
         self._started: asyncio.Future[None] | None = None
-        self._stopping = False
+        self._stopping = self._ready = False
         self._requests = Requests(settings.reply_timeout_s)
         self._trip: GuardTrip | None = None
         self._tripped = asyncio.Event()
@@ -69,7 +69,7 @@ class GuardClient:
         if self.running:
             return
         await self.stop()
-        self._stopping = False
+        self._stopping = self._ready = False
         self._started = asyncio.get_running_loop().create_future()
         self._child = GuardChild(self._settings.ring_slots, self._take, self._died)
         try:
@@ -274,6 +274,7 @@ class GuardClient:
         if self._started is None or self._started.done():
             return
         if fault is None:
+            self._ready = True
             self._started.set_result(None)
         else:
             self._started.set_exception(fault)
@@ -285,11 +286,8 @@ class GuardClient:
         _log.warning("guard has stopped the robot", trip=str(trip))
 
     def _died(self, how: str) -> None:
-        # A guard that reports a fault at its start and ends has never guarded anything.
-        started = self._started
-        was_ready = started is not None and started.done() and started.exception() is None
         self._fail(GuardDied(how))
-        if was_ready and not self._stopping:
+        if self._ready and not self._stopping:
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))
 
     def _fail(self, fault: GuardDied) -> None:
