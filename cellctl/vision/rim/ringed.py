@@ -14,8 +14,8 @@ _SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _WALL_M, _WALL_SIGMAS = 0.3e-3, 4.0
 """Depth of a relief above the first turn."""
-_DIAMETER_SIGMA = 0.005
-SIZE_TOLERANCE = 0.035
+_DIAMETER_SIGMA, SIZE_TOLERANCE = 0.005, 0.035
+"""Relative: what a drawing leaves open, and from where on it is another edge."""
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 _RING_COST = 80.0
 """Fall of the squares that a ring must bring: real ones bring thousands."""
@@ -86,9 +86,5 @@ def _likeliest(models: list[Fitted]) -> Chosen:
     likelihoods = np.exp(-0.5 * (costs - costs[best]) / _PIXELS_ALIKE)
     geometry = np.array([model.solution.vector[:5] for model in models])
     off = geometry - geometry[best]
-    import os
-
-    if os.environ.get("DBG"):
-        print((costs - costs[best]).round(0), likelihoods.round(2), best)
     spread = (off * (likelihoods / likelihoods.sum())[:, None]).T @ off
     return Chosen(finished(models[best]), np.asarray(spread))
