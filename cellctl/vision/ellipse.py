@@ -40,15 +40,11 @@ class Ellipse:
         return np.asarray(self.centre_px + local @ np.array([[c, s], [-s, c]]))
 
 
-def ellipse_from_points(points_px: Array) -> Ellipse:
-    """Least-squares conic through points that lie on an ellipse, shape (n, 2), n ≥ 5."""
-    middle = points_px.mean(axis=0)
-    scale = float(np.abs(points_px - middle).max())
-    x, y = ((points_px - middle) / scale).T
-    design = np.column_stack([x * x, x * y, y * y, x, y])
-    a, b, c, d, e = np.linalg.lstsq(design, np.ones(len(x)), rcond=None)[0]
-    conic = np.array([[a, b / 2, d / 2], [b / 2, c, e / 2], [d / 2, e / 2, -1.0]])
-    return _ellipse_from_conic(conic, middle, scale)
+def ellipse_of_circle(centre_px: Array, jacobian: Array) -> Ellipse:
+    """Image of a circle to first order; ``jacobian`` (2, 2) maps the unit circle to pixels."""
+    axes, sizes, _ = np.linalg.svd(jacobian)
+    angle_rad = float(np.arctan2(axes[1, 0], axes[0, 0]))
+    return Ellipse(centre_px, (float(sizes[0]), float(sizes[1])), angle_rad)
 
 
 def conic_of_circle(centre: Array, normal: Array, radius: float) -> Array:
@@ -66,17 +62,3 @@ def eccentricity(centre: Array, normal: Array, radius: float) -> Array:
     conic = conic_of_circle(centre, normal, radius)
     ellipse_centre = -np.linalg.solve(conic[:2, :2], conic[:2, 2])
     return np.asarray(ellipse_centre - centre[:2] / centre[2])
-
-
-def _ellipse_from_conic(conic: Array, middle: Array, scale: float) -> Ellipse:
-    centre = -np.linalg.solve(conic[:2, :2], conic[:2, 2])
-    level = -float(conic[2, 2] + conic[2, :2] @ centre)
-    values, vectors = np.linalg.eigh(conic[:2, :2] / level)
-    if values[0] <= 0:
-        raise ValueError("the points do not lie on an ellipse")
-    major = vectors[:, 0]
-    return Ellipse(
-        middle + scale * centre,
-        (float(scale / np.sqrt(values[0])), float(scale / np.sqrt(values[1]))),
-        float(np.arctan2(major[1], major[0])),
-    )

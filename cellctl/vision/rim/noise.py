@@ -24,6 +24,9 @@ _CHANCE = 2.1
 _LAG = 24
 """Distance in px over which texture is followed."""
 _FEWEST_PAIRS = 40
+_NEIGHBOURS = ((0, 1), (1, 0), (1, 2), (2, 1), (0, 3), (3, 0))
+_WHITE_SIGMAS = 3.0
+"""Steps between pixels of the band, and what their products may be by chance."""
 _CLIP_GREY = 30.0
 _CLIP_SIGMAS = 4.0
 _LEAST_STROKE_GREY = 0.3
@@ -132,6 +135,8 @@ def texture_covariance(
     shares = influence * outside
     images = np.zeros((2 + len(shares), size, size), dtype=np.float32)
     images[:, rows, columns] = np.vstack([clipped * bright, bright, shares])
+    if _is_white(images[0], images[1]):
+        return np.zeros((len(shares), len(shares)))
     spectra = rfft2(images)
     seen, pairs = irfft2(np.abs(spectra[:2]) ** 2, s=(size, size))
     lags = np.minimum(np.arange(size), size - np.arange(size))
@@ -145,6 +150,19 @@ def texture_covariance(
     rows_of = (len(shares), -1)
     found = (passed.reshape(rows_of) @ spectra[2:].reshape(rows_of).conj().T).real
     return np.asarray(found / size**2)
+
+
+def _is_white(residuals: Array, used: Array) -> bool:
+    """Whether neighbours in an image (h, w) are as independent as noise; ``used`` is 0 or 1."""
+    variance = float((residuals * residuals).sum()) / max(float(used.sum()), 1.0)
+    for down, right in _NEIGHBOURS:
+        here, there = slice(down, None), slice(None, -down or None)
+        east, west = slice(right, None), slice(None, -right or None)
+        products = float((residuals[here, east] * residuals[there, west]).sum())
+        pairs = float((used[here, east] * used[there, west]).sum())
+        if abs(products) > _WHITE_SIGMAS * variance * np.sqrt(max(pairs, 1.0)):
+            return False
+    return True
 
 
 def widened(covariance: Array, seen: Array) -> Array:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.ellipse import Ellipse, ellipse_from_points
+from cellctl.vision.ellipse import Ellipse, ellipse_of_circle
 from cellctl.vision.rim.fit import Fitted, RimFit
 from cellctl.vision.rim.model import RimShape
 from cellctl.vision.rim.sight import RADIUS_TOLERANCE, Rejection
@@ -56,13 +56,12 @@ def refusal(
 def rim_of(task: Task, fit: RimFit, shape: RimShape, covariance: Array) -> Rim:
     """The fit in one image in raw pixels; ``covariance`` (2, 2) in plane units squared."""
     jacobian = task.patch.px_by_point(shape.centre)
-    angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
-    circle = shape.centre + shape.radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    point_px = task.patch.to_px(shape.centre[None])[0]
     wall = shape.wall_ratio
     return Rim(
-        point_px=task.patch.to_px(shape.centre[None])[0],
+        point_px=point_px,
         covariance_px2=jacobian @ covariance @ jacobian.T + np.eye(2) * FLOOR_PX**2,
-        ellipse=ellipse_from_points(task.patch.to_px(circle)),
+        ellipse=ellipse_of_circle(point_px, jacobian * shape.radius),
         size_ratio=shape.radius / task.nominal,
         residual_grey=fit.residual_grey,
         blur_px=shape.blur_px,

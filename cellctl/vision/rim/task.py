@@ -13,7 +13,7 @@ from cellctl.vision.rim.robust import median
 from cellctl.vision.rim.sight import BAND_OUTSIDE_PX, Located, Rejection, Sight, patch_of
 from cellctl.vision.rim.surround import clear_widths_px
 
-_BAND_INSIDE_PX, _DENSE_PX = 6.5, 3.0
+_BAND_INSIDE_PX, _DENSE_PX = 6.5, 2.5
 _INSIDE_RING_PX, _BESIDE_RING_PX = 3.0, 3.5
 _CHAMFER_CLEAR, _RIM_CLEAR = 1.15, 1.0
 """From which radius on, in those of the rim, the face beside it is seen."""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cellctl.vision.camera import distort, distort_jacobian, project, undistort
-from cellctl.vision.ellipse import conic_of_circle, eccentricity, ellipse_from_points
+from cellctl.vision.ellipse import conic_of_circle, eccentricity, ellipse_of_circle
 from cellctl.vision.plane_patch import plane_basis, plane_patch, to_plane
 from cellctl.vision.stereo import (
     epipolar_distances_px,
@@ -77,9 +77,27 @@ def test_the_conic_of_a_circle_holds_its_image() -> None:
     rays = ring / ring[:, 2:]
     conic = conic_of_circle(centre, normal, 3e-3)
     assert np.abs(np.einsum("ni,ij,nj->n", rays, conic, rays)).max() < 1e-12
-    fitted = ellipse_from_points(rays[:, :2] * 3580)
-    predicted = (centre[:2] / centre[2] + eccentricity(centre, normal, 3e-3)) * 3580
-    assert np.allclose(fitted.centre_px, predicted, atol=1e-6)
+    middle, scale = rays[:, :2].mean(axis=0), 3e-3 / 0.5
+    x, y = ((rays[:, :2] - middle) / scale).T
+    design = np.column_stack([x * x, x * y, y * y, x, y])
+    a, b, c, d, e = np.linalg.lstsq(design, np.ones(len(x)), rcond=None)[0]
+    seen = middle - scale * np.linalg.solve([[2 * a, b], [b, 2 * c]], [d, e])
+    predicted = centre[:2] / centre[2] + eccentricity(centre, normal, 3e-3)
+    assert np.allclose(seen, predicted, atol=1e-9)
+
+
+def test_the_ellipse_of_a_circle_lies_on_its_image() -> None:
+    normal = np.array([0.3, -0.2, 0.93]) / np.linalg.norm([0.3, -0.2, 0.93])
+    centre, radius_m = np.array([0.03, -0.05, 0.5]), 3e-3
+    basis = plane_basis(normal)
+    unit_px = 1e-6 * basis
+    at, across, along = project(HEAD.left, centre + np.vstack([np.zeros(3), unit_px]))
+    jacobian = np.column_stack([across - at, along - at]) / 1e-6 * radius_m
+    drawn = ellipse_of_circle(at, jacobian).points(60)
+    turns = np.linspace(0, 2 * np.pi, 2000)
+    rim = centre + radius_m * (np.column_stack([np.cos(turns), np.sin(turns)]) @ basis)
+    gaps = np.linalg.norm(project(HEAD.left, rim)[None] - drawn[:, None], axis=2).min(axis=1)
+    assert gaps.max() < 0.15
 
 
 def test_triangulation_is_exact_and_its_covariance_is_that_of_its_scatter() -> None:
