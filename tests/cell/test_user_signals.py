@@ -114,6 +114,7 @@ def test_while_measuring(visited: OwnCell) -> None:
     only_run_is_aborted(visited)
 
 
+@pytest.mark.long
 def test_while_mating(visited: OwnCell) -> None:
     without_precision(visited)
     daemon = visited.daemon()

@@ -86,6 +86,7 @@ def test_the_commanded_travel_never_passes_its_bound() -> None:
     assert np.nanmax(curve.travel_m) <= plan.window.latest_m + 1e-6
 
 
+@pytest.mark.long
 def test_a_false_seat_is_measured_again_three_times() -> None:
     cell = cell_of(seed=4)
     cell.world.faults.inject("foreign_body", x_mm=0.0, y_mm=0.0, height_mm=0.2)

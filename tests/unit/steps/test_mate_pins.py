@@ -21,6 +21,7 @@ def mated(pins: PinSettings | None, hook: Hook | None = None) -> Trial:
     return run_trial(trial, hook, special=special, pins=pins, stiffness_n_m=5.5e5)
 
 
+@pytest.mark.long
 def test_giving_way_seats_where_a_rigid_deck_is_caught() -> None:
     rigid = mated(PinSettings(ENGAGED_M, compliant=False))
     assert rigid.outcome == "F522", "contact far above the seat"

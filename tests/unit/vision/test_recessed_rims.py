@@ -44,7 +44,7 @@ def _errors(kind: Literal["deck", "frame"], options: api.RenderOptions, seed: in
 
 
 @pytest.mark.parametrize("kind", ["deck", "frame"])
-@pytest.mark.parametrize("recessed", [False, True])
+@pytest.mark.parametrize("recessed", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_rims_are_measured_where_they_are(kind: Literal["deck", "frame"], recessed: bool) -> None:
     options = api.RenderOptions(recessed_rims=recessed)
     for _, error_um, squared in _errors(kind, options, 2):
