@@ -8,7 +8,7 @@ from cellctl.errors.vision import HoleAmbiguous, ResidualsTooLarge
 from cellctl.geometry.pose import MM, Array
 from cellctl.vision.features import Hole
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.registration import kabsch, on_a_line
+from cellctl.vision.registration import misfits_m, on_a_line
 
 _APART_M = 0.5e-3
 """Two measurements of a hole that are farther apart than this are of different features."""
@@ -19,17 +19,17 @@ measuring adds, as large as holes are off their drawing."""
 
 def only_one(holes: Sequence[Hole], measured: Sequence[PairMeasurement]) -> PairMeasurement:
     """The arrangement that fits best; raises ``HoleAmbiguous`` when another fits as well."""
-    misfits_m = [float(_misfits_m(holes, item.positions_m).max()) for item in measured]
-    best = int(np.argmin(misfits_m))
-    for other, misfit_m in zip(measured, misfits_m, strict=True):
-        if misfit_m < misfits_m[best] + _RIVAL_M:
+    off_m = [float(_off_drawing_m(holes, item.positions_m).max()) for item in measured]
+    best = int(np.argmin(off_m))
+    for other, other_m in zip(measured, off_m, strict=True):
+        if other_m < off_m[best] + _RIVAL_M:
             _refuse_ambiguity(measured[best], other)
     return measured[best]
 
 
 def check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float) -> None:
     """Raise ``ResidualsTooLarge`` when a hole is farther from its place on the drawing."""
-    misfits = _misfits_m(holes, positions_m)
+    misfits = _off_drawing_m(holes, positions_m)
     worst = int(np.argmax(misfits))
     if misfits[worst] > tolerance_m:
         raise ResidualsTooLarge(
@@ -38,15 +38,14 @@ def check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float) 
         )
 
 
-def _misfits_m(holes: Sequence[Hole], positions_m: Array) -> Array:
+def _off_drawing_m(holes: Sequence[Hole], positions_m: Array) -> Array:
     """How far each hole is from where the others put it on the drawing, shape (n,)."""
     nominal = np.array([hole.position_m for hole in holes])
     if on_a_line(nominal):
         wanted = np.linalg.norm(nominal - nominal[0], axis=1)
         have = np.linalg.norm(positions_m - positions_m[0], axis=1)
         return np.asarray(np.abs(have - wanted))
-    rotation, translation_m = kabsch(nominal, positions_m)
-    return np.asarray(np.linalg.norm(positions_m - nominal @ rotation.T - translation_m, axis=1))
+    return misfits_m(nominal, positions_m)
 
 
 def _refuse_ambiguity(first: PairMeasurement, other: PairMeasurement) -> None:

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import Array
 from cellctl.vision.candidates import Candidate
 from cellctl.vision.features import Hole
-from cellctl.vision.registration import kabsch, on_a_line
+from cellctl.vision.registration import kabsch, misfits_m, on_a_line
 from cellctl.vision.stereo import epipolar_distances_px, midpoints
 from cellctl.vision.stereo_head import StereoHead
 
@@ -182,10 +182,10 @@ def _checked(holes: Sequence[Hole], spots: Sequence[Spot], tolerance_m: float) -
     measured = np.array([spot.position_m for spot in spots])
     if on_a_line(nominal):
         return Assignment(tuple(spots), 0.0)
-    rotation, translation_m = kabsch(nominal, measured)
-    rest = measured - nominal @ rotation.T - translation_m
-    misfit = float(np.linalg.norm(rest, axis=1).max())
-    outward, middle = holes[0].outward, measured.mean(axis=0)
-    if misfit > tolerance_m or (outward is not None and rotation @ outward @ middle >= 0.0):
+    misfit_m = float(misfits_m(nominal, measured).max())
+    if misfit_m > tolerance_m:
         return None
-    return Assignment(tuple(spots), misfit)
+    outward = holes[0].outward
+    if outward is not None and kabsch(nominal, measured)[0] @ outward @ measured.mean(axis=0) >= 0:
+        return None
+    return Assignment(tuple(spots), misfit_m)

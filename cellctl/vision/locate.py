@@ -12,7 +12,7 @@ from cellctl.vision.facing import possible_normals
 from cellctl.vision.features import Hole
 from cellctl.vision.layout import Expectation
 from cellctl.vision.plane_patch import X_AXIS
-from cellctl.vision.rim.sight import Located, Rejection, Sight, locate_rim
+from cellctl.vision.rim.sight import SIDES, Located, Rejection, Sight, locate_rim
 from cellctl.vision.rim.tilt import measured_normal
 from cellctl.vision.search import ImagePair
 from cellctl.vision.stereo import epipolar_distances_px, midpoints
@@ -22,7 +22,6 @@ LOCATE_REACH_PX = 7.0
 """How far from its coarse place a rim is found."""
 _EPIPOLAR_PX = 2.5
 _MOST_PASSES, _SETTLED_M = 2, 1.5e-3
-_SIDES = ("left", "right")
 
 _T = TypeVar("_T")
 
@@ -108,7 +107,7 @@ def _locate(
     for hole, position_m in zip(holes, positions_m, strict=True):
         left, right = (
             or_missing(hole, locate_rim(sight, hole, LOCATE_REACH_PX), side)
-            for side, sight in zip(_SIDES, sights_of(pair, position_m, normal), strict=True)
+            for side, sight in zip(SIDES, sights_of(pair, position_m, normal), strict=True)
         )
         found.append((left, right))
     return found

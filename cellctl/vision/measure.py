@@ -21,6 +21,7 @@ from cellctl.vision.locate import LOCATE_REACH_PX, locate_holes, or_missing, sig
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
 from cellctl.vision.rim.pair import RimPair, measure_rims
+from cellctl.vision.rim.sight import SIDES
 from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
 from cellctl.vision.stereo import epipolar_distances_px, triangulate
 from cellctl.vision.stereo_head import StereoHead
@@ -37,7 +38,6 @@ _SIZE_AGREEMENT = 0.02
 _MAX_BLUR_PX = 2.5
 _SAME_PLACE_PX = 1.0
 _MAX_TRIED = 10
-_SIDES = ("left", "right")
 
 
 def measure_pair(
@@ -139,7 +139,7 @@ def _measure(
 
 
 def _check_sharpness(hole: Hole, rims: RimPair) -> None:
-    for side, rim in zip(_SIDES, (rims.left, rims.right), strict=True):
+    for side, rim in zip(SIDES, (rims.left, rims.right), strict=True):
         if rim.blur_px > _MAX_BLUR_PX:
             raise ImageBlurred(
                 f"{side}: the rim of {hole.name} is blurred over {rim.blur_px:.1f} px, "

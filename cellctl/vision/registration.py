@@ -32,6 +32,13 @@ def kabsch(nominal_m: Array, measured_m: Array) -> tuple[Array, Array]:
     return rotation, measured_mean - rotation @ nominal_mean
 
 
+def misfits_m(nominal_m: Array, measured_m: Array) -> Array:
+    """Distances (n,) that the unweighted least-squares pose leaves."""
+    rotation, translation_m = kabsch(nominal_m, measured_m)
+    rest_m = measured_m - nominal_m @ rotation.T - translation_m
+    return np.asarray(np.linalg.norm(rest_m, axis=1))
+
+
 def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Registration:
     """Generalised least squares; ``covariances_m2`` has shape (n, 3, 3)."""
     rotation, translation_m = kabsch(nominal_m, measured_m)

@@ -89,8 +89,7 @@ def _radial_edges(
     step = float(_STEP_PX * patch.unit_px)
     first = max(radius - reach, 2.0 * step)
     radii = first + step * np.arange(int((radius + reach - first) / step) + 2)
-    grid = centre + _DIRECTIONS[:, None, :] * radii[None, :, None]
-    profile = sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, len(radii))
+    profile = polar_profile(image, patch, centre, _DIRECTIONS, np.asarray(radii, dtype=float))
     slope = sign * np.asarray(np.gradient(profile, axis=1))
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
     typical = median(slope.max(axis=1))
@@ -102,7 +101,15 @@ def _radial_edges(
     return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which, value)
 
 
-def sample(image: Image, pixels: Array) -> Array:
+def polar_profile(
+    image: Image, patch: PlanePatch, centre: Array, directions: Array, radii: Array
+) -> Array:
+    """Grey values along rays from the centre, lightly blurred, shape (rays, radii)."""
+    grid = centre + directions[:, None, :] * radii[None, :, None]
+    return _sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(len(directions), len(radii))
+
+
+def _sample(image: Image, pixels: Array) -> Array:
     """Lightly blurred grey values at raw pixels, bilinear."""
     x0, y0 = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - 3, 0)
     x1, y1 = np.ceil(pixels.max(axis=0)).astype(int) + 4

@@ -87,10 +87,8 @@ def finished(rough: Fitted) -> Fitted:
 
 @dataclass(frozen=True, slots=True)
 class PairPrior:
-    """What is known of a rim and its ring or wall before they are seen."""
+    """What is known of the blur and of a ring or wall before they are seen, standard deviations."""
 
-    radius_sigma: float
-    """Relative."""
     blur_sigma_px: float
     extra_sigma: float
     """Of the ring ratio or of the wall ratio."""
@@ -120,7 +118,7 @@ def rough_rim_pair(
         selections[1, 4, 7] = nearer
     mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, *ratio])
     sigma = np.full(len(mean), np.inf)
-    sigma[4] = prior.radius_sigma * left.radius
+    sigma[4] = _RADIUS_SIGMA * left.radius
     sigma[5:7] = prior.blur_sigma_px
     sigma[7:] = prior.extra_sigma
     outer = [float(np.percentile(part.grey, 90)) for part in pixels]

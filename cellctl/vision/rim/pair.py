@@ -11,12 +11,11 @@ from cellctl.vision.rim.doubt import Doubt
 from cellctl.vision.rim.fit import Fitted, rated
 from cellctl.vision.rim.result import FLOOR_PX, Rim, refusal, rim_of
 from cellctl.vision.rim.ringed import SIZE_TOLERANCE, Chosen, fit_ringed
-from cellctl.vision.rim.sight import Located, Rejection, Sight
+from cellctl.vision.rim.sight import SIDES, Located, Rejection, Sight
 from cellctl.vision.rim.single import fit_alone, rim_alone
 from cellctl.vision.rim.task import Task, task_for
 from cellctl.vision.stereo import joint_covariance
 
-_SIDES = ("left", "right")
 _NARROW_PX = 5.0
 """A cone narrower than this is a ring: both its edges are seen at once."""
 _CHAMFER = (0.1, 0.05)
@@ -69,7 +68,7 @@ def _tasks(
     ring_px: float | None,
 ) -> tuple[Task, Task] | Rejection:
     tasks = []
-    for side, sight, place in zip(_SIDES, sights, located, strict=True):
+    for side, sight, place in zip(SIDES, sights, located, strict=True):
         task = task_for(sight, hole, place, ring_px)
         if isinstance(task, Rejection):
             return replace(task, side=side)
@@ -102,7 +101,7 @@ def _ring(hole: Hole, tasks: tuple[Task, Task]) -> tuple[float, float]:
 def _apart(tasks: tuple[Task, Task], fits: tuple[Fitted, Fitted]) -> RimPair | Rejection:
     """Fits of each image for itself."""
     rims = []
-    for side, task, fitted in zip(_SIDES, tasks, fits, strict=True):
+    for side, task, fitted in zip(SIDES, tasks, fits, strict=True):
         rim = rim_alone(task, fitted)
         if isinstance(rim, Rejection):
             return replace(rim, side=side)
@@ -122,7 +121,7 @@ def _together(tasks: tuple[Task, Task], chosen: Chosen) -> RimPair | Rejection:
     for index, (task, shape) in enumerate(zip(tasks, fit.shapes, strict=True)):
         refused = refusal(task, fitted, fit, shape, SIZE_TOLERANCE)
         if refused is not None:
-            return replace(refused, side=_SIDES[index])
+            return replace(refused, side=SIDES[index])
         part = slice(2 * index, 2 * index + 2)
         jacobian[part, part] = task.patch.px_by_point(shape.centre)
         rims.append(rim_of(task, fit, shape, fit.covariance[part, part]))
@@ -134,7 +133,7 @@ def _together(tasks: tuple[Task, Task], chosen: Chosen) -> RimPair | Rejection:
 
 def _vague(rims: Sequence[Rim]) -> Rejection | None:
     """Refusal of rims whose centre the grey values leave open: no contrast to what lies beside."""
-    for side, rim in zip(_SIDES, rims, strict=True):
+    for side, rim in zip(SIDES, rims, strict=True):
         sigma_px = float(np.sqrt(np.linalg.eigvalsh(rim.covariance_px2)[-1]))
         if sigma_px > _MAX_SIGMA_PX:
             reason = f"centre known to {sigma_px:.2f} px only, allowed {_MAX_SIGMA_PX:.2f} px"

@@ -126,8 +126,7 @@ class Solution:
     @cached_property
     def covariance(self) -> Array:
         """Covariance of light and joint parameters for independent pixels."""
-        normal = self.normal
-        scaled, size = with_unit_diagonal(normal)
+        scaled, size = with_unit_diagonal(self.normal)
         add_to_diagonal(scaled, _RIDGE)
         return np.asarray(np.linalg.inv(scaled) / (size[:, None] * size))
 

@@ -14,8 +14,8 @@ _SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _WALL_M, _WALL_SIGMAS = 0.3e-3, 4.0
 """Depth of a relief above the first turn."""
-_DIAMETER_SIGMA, SIZE_TOLERANCE = 0.005, 0.035
-"""Relative: what a drawing leaves open, and from where on it is another edge."""
+SIZE_TOLERANCE = 0.035
+"""Relative: from here on it is another edge."""
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 _RING_COST = 80.0
 """Fall of the squares that a ring must bring: real ones bring thousands."""
@@ -57,7 +57,7 @@ def fit_ringed(
             RimShape(task.centre, task.nominal, blur, **model)
             for task, blur in zip(tasks, blurs, strict=True)
         )
-        prior, light = PairPrior(_DIAMETER_SIGMA, blur_sigma, sigma), Light(turns_grey=turns_grey)
+        prior, light = PairPrior(blur_sigma, sigma), Light(turns_grey=turns_grey)
         return rough_rim_pair(pixels, (first, second), light, prior, across_lay)
 
     def likeliest(turns_grey: float) -> Chosen:
@@ -80,8 +80,8 @@ def fit_ringed(
 
 def _likeliest(models: list[Fitted]) -> Chosen:
     noise = models[0].solution.noise
-    costs = np.array([model.solution.cost_under(noise) for model in models])
-    costs[: len(_SLOPES)] += _RING_COST
+    ringed = np.array([model.shapes[0].ring_ratio is not None for model in models])
+    costs = np.array([model.solution.cost_under(noise) for model in models]) + _RING_COST * ringed
     best = int(np.argmin(costs))
     likelihoods = np.exp(-0.5 * (costs - costs[best]) / _PIXELS_ALIKE)
     geometry = np.array([model.solution.vector[:5] for model in models])

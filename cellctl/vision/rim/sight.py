@@ -17,6 +17,9 @@ RADIUS_TOLERANCE = 0.07
 BAND_OUTSIDE_PX = 5.5
 """How far outside the rim its pixels are used."""
 
+SIDES = ("left", "right")
+"""The cameras of a head."""
+
 _MIN_SUPPORT = 0.55
 
 

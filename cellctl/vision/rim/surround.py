@@ -9,7 +9,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.plane_patch import PlanePatch
-from cellctl.vision.rim.edges import sample
+from cellctl.vision.rim.edges import polar_profile
 from cellctl.vision.rim.robust import median, robust_sigma
 
 _AZIMUTHS, _SECTOR = 60, 5
@@ -30,8 +30,7 @@ def clear_widths_px(
     angles = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
     rays = np.column_stack([np.cos(angles), np.sin(angles)])
     widths_px = np.arange(-2.0, reach_px + _STEP_PX, _STEP_PX)
-    grid = centre + rays[:, None, :] * (radius + widths_px * patch.unit_px)[None, :, None]
-    profile = sample(image, patch.to_px(grid.reshape(-1, 2))).reshape(_AZIMUTHS, -1)
+    profile = polar_profile(image, patch, centre, rays, radius + widths_px * patch.unit_px)
     wrapped = np.concatenate([profile[-(_SECTOR // 2) :], profile, profile[: _SECTOR // 2]])
     sums = np.cumsum(np.vstack([np.zeros_like(wrapped[:1]), wrapped]), axis=0)
     slope = np.gradient((sums[_SECTOR:] - sums[:-_SECTOR]) / _SECTOR, axis=1) / _STEP_PX

@@ -79,7 +79,7 @@ def task_for(
     radius = nominal * located.size_ratio
     radius_px = radius / patch.unit_px
     clear_px = np.full(1, np.inf)
-    if hole.kind == "countersink":
+    if hole.kind == "countersink" and ring_px is None:
         clear_px = clear_widths_px(sight.image, patch, centre, radius, _LOOK_PX)
     if ring_px is None:
         beyond = np.clip(clear_px - _EDGE_PX, _LEAST_OUTSIDE_PX, BAND_OUTSIDE_PX)
