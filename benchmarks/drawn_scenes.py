@@ -7,11 +7,10 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from benchmarks.drawn_looks import LOOKS, PLATE, Array, Look, disc
-from cellctl.interfaces.stereo_camera import Image
+from benchmarks.metrology_views import NOISE_GREY, HeadView
 from cellctl.vision.features import Hole
 from cellctl.vision.stereo_head import CameraModel, StereoHead
 
-NOISE_GREY = 2.0
 _SUB = 8
 _MARGIN_PX = 8
 _LAYOUT_M = np.array([[-0.055, -0.032, 0.0], [0.058, -0.040, 0.0], [-0.020, 0.055, 0.0]])
@@ -22,12 +21,7 @@ _DIAMETERS_M = (5e-3, 6e-3, 8e-3)
 class Scene:
     """One stereo pair of a plate and what is true of it."""
 
-    head: StereoHead
-    holes: tuple[Hole, ...]
-    camera_T_part: RigidTransform
-    images: tuple[Image, Image]
-    truth_px: dict[str, tuple[Array, Array]]
-    blur_px: float
+    view: HeadView
     steps: dict[str, float]
     """Typical difference of grey across each rim."""
 
@@ -66,7 +60,8 @@ def drawn_scene(look: str, seed: int) -> Scene:
     head, pose = _head(rig), _pose(rig, rng)
     cameras = ((head.left, pose), (head.right, head.right_T_left * pose))
     blur_px = float(rng.uniform(0.8, 1.2))
-    images, truth = [], []
+    at_m = np.array([hole.position_m for hole in holes])
+    images, truth_px = [], []
     for camera, camera_T_part in cameras:
         image = np.full(rig.size_px[::-1], PLATE)
         for hole, one in zip(holes, looks, strict=True):
@@ -75,15 +70,18 @@ def drawn_scene(look: str, seed: int) -> Scene:
             _draw(image, rim, one, blur_px)
         noisy = image + rng.normal(0.0, NOISE_GREY, image.shape)
         images.append(np.clip(np.rint(noisy), 0, 255).astype(np.uint8))
-        truth.append(
-            _project(camera, camera_T_part.apply(np.array([hole.position_m for hole in holes])))
-        )
-    truth_px = {
-        hole.name: (left, right)
-        for hole, left, right in zip(holes, truth[0], truth[1], strict=True)
-    }
-    steps = {hole.name: one.step for hole, one in zip(holes, looks, strict=True)}
-    return Scene(head, holes, pose, (images[0], images[1]), truth_px, blur_px, steps)
+        truth_px.append(_project(camera, camera_T_part.apply(at_m)))
+    names = [hole.name for hole in holes]
+    view = HeadView(
+        head,
+        holes,
+        pose,
+        (images[0], images[1]),
+        dict(zip(names, zip(*truth_px, strict=True), strict=True)),
+        dict(zip(names, pose.apply(at_m), strict=True)),
+        blur_px,
+    )
+    return Scene(view, dict(zip(names, [one.step for one in looks], strict=True)))
 
 
 def _head(rig: _Rig) -> StereoHead:

@@ -14,14 +14,17 @@ import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import islice
 
 import cv2
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks.metrology_figures import HoleErrors, PoseErrors, band
-from benchmarks.metrology_scenes import PartView, parts
+from benchmarks.metrology_scenes import parts
+from benchmarks.metrology_views import NOISE_GREY, HeadView, PartView
 from cellctl.errors.vision import VisionError
+from cellctl.vision.average import average
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.part_pose import part_pose
@@ -30,6 +33,10 @@ from fakes.render import api
 CLEAN_GREY = {"pin": 132.0, "countersink": 100.0, "thread": 132.0}
 MACHINED_GREY = {"pin": 90.0, "countersink": 80.0, "thread": 80.0}
 """Step at the rim, by kind: plate or cone over the dark, and over the lit wall or flank."""
+AVERAGED = ("thread",)
+"""Kinds judged on all exposures of a plate together, at most as many as a recipe permits: what one
+frame's noise leaves open behind a narrow ring of unknown light exceeds the target by itself
+(docs/metrology.md). The bound stays that of one frame."""
 
 
 @dataclass
@@ -37,6 +44,8 @@ class Run:
     """Everything measured on one kind of image."""
 
     holes: dict[str, HoleErrors] = field(default_factory=dict)
+    averaged: dict[str, HoleErrors] = field(default_factory=dict)
+    """Holes of all exposures of a plate together, as a state takes them."""
     poses: PoseErrors = field(default_factory=PoseErrors)
     failures: list[str] = field(default_factory=list)
     times_ms: list[float] = field(default_factory=list)
@@ -65,8 +74,10 @@ class Verdicts:
         self.table.add_row(what, text, "", "")
 
 
-def measure(run: Run, part: PartView, method: Method, contrast: dict[str, float]) -> None:
-    """Both heads in known windows, then the pose."""
+def measure(
+    run: Run, part: PartView, method: Method, contrast: dict[str, float]
+) -> list[PairMeasurement]:
+    """Both heads in known windows, then the pose; empty when anything was refused."""
     results: list[PairMeasurement] = []
     for view in part.views:
         started = time.process_time()
@@ -80,15 +91,26 @@ def measure(run: Run, part: PartView, method: Method, contrast: dict[str, float]
             )
         except VisionError as fault:
             run.failures.append(str(fault))
-            return
+            return []
         run.times_ms.append((time.process_time() - started) * 1e3)
         results.append(result)
-        for kind in {hole.kind for hole in view.holes}:
-            run.holes.setdefault(kind, HoleErrors()).add(view, result, kind, contrast[kind])
+        add_holes(run.holes, view, result, contrast)
     pose = part_pose(
         results[0], results[1], part.c1_T_c2, part.holes, method, residual_limit_m=2e-3
     )
     run.poses.add(part, pose)
+    return results
+
+
+def add_holes(
+    errors: dict[str, HoleErrors],
+    view: HeadView,
+    result: PairMeasurement,
+    contrast: dict[str, float],
+) -> None:
+    """Take in the holes of one head, each with its kind."""
+    for hole in result.holes:
+        errors.setdefault(hole.kind, HoleErrors()).add(view, hole, contrast[hole.kind])
 
 
 def both(
@@ -99,9 +121,14 @@ def both(
 ) -> dict[Method, Run]:
     """Default and paper on the same images."""
     runs: dict[Method, Run] = {"default": Run(), "paper": Run()}
-    for part in parts(kind, options, arguments.plates, arguments.exposures, seed=arguments.seed):
+    seen = parts(kind, options, arguments.plates, arguments.exposures, seed=arguments.seed)
+    for _ in range(arguments.plates):
+        exposures = list(islice(seen, arguments.exposures))
         for method, run in runs.items():
-            measure(run, part, method, contrast)
+            results = [measure(run, part, method, contrast) for part in exposures]
+            measured = [both_heads for both_heads in results if both_heads]
+            for view, of_head in zip(exposures[0].views, zip(*measured, strict=True), strict=False):
+                add_holes(run.averaged, view, average(of_head), contrast)
     return runs
 
 
@@ -138,22 +165,28 @@ def judge_pose(name: str, runs: dict[Method, Run], verdicts: Verdicts) -> None:
 
 
 def judge_machined(name: str, runs: dict[Method, Run], verdicts: Verdicts) -> None:
-    for kind, errors in runs["default"].holes.items():
-        verdicts.add(f"{name} {kind}: median centre error / CRLB", errors.median_ratio(), 4.0)
-        verdicts.add(f"{name} {kind}: 95 % of the centre errors", errors.p95_px(), 0.05, "px")
-        verdicts.note(
-            f"{name} {kind}: bias in depth, worst centre",
-            f"{errors.depth_bias_um():+.1f} µm, {errors.worst_px():.3f} px",
-        )
-        other = runs["paper"].holes.get(kind)
-        if other is not None:
-            verdicts.note(
-                f"{name} {kind}: paper",
-                f"{other.median_ratio():.1f} × CRLB, {other.depth_bias_um():+.0f} µm",
-            )
+    ours, paper = runs["default"], runs["paper"]
+    for kind, in_one_frame in ours.holes.items():
+        errors, what = in_one_frame, f"{name} {kind}"
+        if kind in AVERAGED:
+            verdicts.note(f"{what}, one frame", figures(in_one_frame))
+            errors, what = ours.averaged[kind], f"{what}, averaged"
+        verdicts.add(f"{what}: median centre error / CRLB", errors.median_ratio(), 4.0)
+        verdicts.add(f"{what}: 95 % of the centre errors", errors.p95_px(), 0.05, "px")
+        verdicts.note(f"{what}: all", figures(errors))
+        if kind in paper.holes:
+            verdicts.note(f"{name} {kind}: paper", figures(paper.holes[kind]))
     judge_pose(name, runs, verdicts)
     verdicts.note(f"{name}: refused", f"{len(runs['default'].failures)} of ours, "
                   f"{len(runs['paper'].failures)} of the paper's")  # fmt: skip
+
+
+def figures(errors: HoleErrors) -> str:
+    """Centre errors and what they do to the depth, in one line."""
+    return (
+        f"{errors.median_ratio():.1f} × CRLB, p95 {errors.p95_px():.3f}, "
+        f"worst {errors.worst_px():.3f} px, depth {errors.depth_bias_um():+.1f} µm"
+    )
 
 
 def judge_times(part: PartView, verdicts: Verdicts) -> None:
@@ -192,7 +225,7 @@ def main() -> int:
     cv2.setNumThreads(1)
     table = Table("figure", "measured", "target", "reached")
     verdicts = Verdicts(table)
-    clean = api.RenderOptions.clean(noise_grey=2.0)
+    clean = api.RenderOptions.clean(noise_grey=NOISE_GREY)
     judge_clean(both("deck", clean, arguments, CLEAN_GREY), verdicts)
     for kind in ("deck", "frame"):
         machined = both(kind, api.RenderOptions(), arguments, MACHINED_GREY)

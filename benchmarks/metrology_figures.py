@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from benchmarks.metrology_scenes import HeadView, PartView
+from benchmarks.metrology_views import NOISE_GREY, HeadView, PartView
 from cellctl.geometry.pose import pose_error
-from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.measurement import HoleMeasurement
 from cellctl.vision.part_pose import PartPose
 
 Array = NDArray[np.float64]
@@ -36,29 +36,23 @@ class HoleErrors:
     squared_3d: list[float] = field(default_factory=list)
     depth_m: list[float] = field(default_factory=list)
 
-    def add(self, view: HeadView, result: PairMeasurement, kind: str, contrast: float) -> None:
-        """Take in the holes of one kind from one measurement."""
-        focal = float(view.head.left.camera_matrix[0, 0])
-        for hole in result.holes:
-            if hole.kind != kind:
-                continue
-            truth_m = view.truth_m[hole.name]
-            radius_px = focal * hole.diameter_m / 2.0 / truth_m[2]
-            bound = crlb_px(radius_px, contrast, 2.0, view.blur_px)
-            error_m = hole.position_m - truth_m
-            self.squared_3d.append(float(error_m @ np.linalg.solve(hole.covariance_m2, error_m)))
-            self.depth_m.append(float(error_m[2]))
-            for point, covariance, truth in (
-                (hole.left_px, hole.left_covariance_px2, view.truth_px[hole.name][0]),
-                (hole.right_px, hole.right_covariance_px2, view.truth_px[hole.name][1]),
-            ):
-                self.add_point(point - truth, covariance, bound)
-
-    def add_point(self, error_px: Array, covariance_px2: Array, bound_px: float) -> None:
-        """Take in one image point."""
-        self.along_px.append(error_px)
-        self.bounds_px.append(bound_px)
-        self.squared_2d.append(float(error_px @ np.linalg.solve(covariance_px2, error_px)))
+    def add(self, view: HeadView, hole: HoleMeasurement, step_grey: float) -> None:
+        """Take in one hole; ``step_grey`` is the typical difference of grey across its rim."""
+        truth_m = view.truth_m[hole.name]
+        focal_px = float(view.head.left.camera_matrix[0, 0])
+        radius_px = focal_px * hole.diameter_m / 2.0 / truth_m[2]
+        bound_px = crlb_px(radius_px, step_grey, NOISE_GREY, view.blur_px)
+        error_m = hole.position_m - truth_m
+        self.squared_3d.append(_squared(error_m, hole.covariance_m2))
+        self.depth_m.append(float(error_m[2]))
+        left_px, right_px = view.truth_px[hole.name]
+        for error_px, covariance_px2 in (
+            (hole.left_px - left_px, hole.left_covariance_px2),
+            (hole.right_px - right_px, hole.right_covariance_px2),
+        ):
+            self.along_px.append(error_px)
+            self.bounds_px.append(bound_px)
+            self.squared_2d.append(_squared(error_px, covariance_px2))
 
     @property
     def count(self) -> int:
@@ -95,7 +89,7 @@ class PoseErrors:
         truth = part.views[0].camera_T_part
         translation_m, rotation_rad = pose_error(truth, result.pose.pose)
         error = np.concatenate([translation_m, rotation_rad])
-        self.squared.append(float(error @ np.linalg.solve(result.pose.covariance, error)))
+        self.squared.append(_squared(error, result.pose.covariance))
         turn = truth.rotation.inv()
         middle_m = result.pose.pose.translation - truth.translation
         self.translation_m.append(turn.apply(middle_m))
@@ -108,6 +102,11 @@ class PoseErrors:
     def rotation_deg(self) -> Array:
         """Rms by axis."""
         return np.degrees(np.sqrt(np.mean(np.square(self.rotation_rad), axis=0)))
+
+
+def _squared(error: Array, covariance: Array) -> float:
+    """Normalised error squared."""
+    return float(error @ np.linalg.solve(covariance, error))
 
 
 def band(freedom: int, count: int) -> tuple[float, float]:

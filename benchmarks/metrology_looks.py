@@ -18,8 +18,8 @@ from rich.progress import track
 from rich.table import Table
 
 from benchmarks.drawn_looks import LOOKS
-from benchmarks.drawn_scenes import NOISE_GREY, Scene, drawn_scene
-from benchmarks.metrology_figures import HoleErrors, crlb_px
+from benchmarks.drawn_scenes import Scene, drawn_scene
+from benchmarks.metrology_figures import HoleErrors
 from cellctl.errors.vision import VisionError
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method
@@ -30,21 +30,13 @@ MOST_SQUARED = 4.0
 
 def measure(scene: Scene, errors: HoleErrors, method: Method) -> str | None:
     """Take in all holes but the plain first one; the reason when the scene is refused."""
+    view = scene.view
     try:
-        result = measure_pair(*scene.images, scene.head, scene.holes, method=method)
+        result = measure_pair(*view.images, view.head, view.holes, method=method)
     except VisionError as fault:
         return str(fault)
     for hole in result.holes[1:]:
-        for side, (point, covariance) in enumerate(
-            (
-                (hole.left_px, hole.left_covariance_px2),
-                (hole.right_px, hole.right_covariance_px2),
-            )
-        ):
-            focal = float(scene.head.left.camera_matrix[0, 0])
-            radius_px = focal * hole.diameter_m / 2.0 / hole.position_m[2]
-            bound = crlb_px(radius_px, scene.steps[hole.name], NOISE_GREY, scene.blur_px)
-            errors.add_point(point - scene.truth_px[hole.name][side], covariance, bound)
+        errors.add(view, hole, scene.steps[hole.name])
     return None
 
 

@@ -1,12 +1,10 @@
 """Rendered parts with known truth, seen by one or two heads, for the metrology benchmark."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.spatial.transform import RigidTransform
 
+from benchmarks.metrology_views import HeadView, PartView
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features import Hole
@@ -15,32 +13,6 @@ from fakes.render import api
 from fakes.world.scene import LensTruth, ScenePlate, StereoTruth
 
 HEAD_HOLES = (("P1", "P2", "P3"), ("P4", "P5", "P6"))
-
-
-@dataclass(frozen=True, slots=True)
-class HeadView:
-    """What one head sees of a part, with its truth."""
-
-    head: StereoHead
-    holes: tuple[Hole, ...]
-    camera_T_part: RigidTransform
-    images: tuple[Image, Image]
-    truth_px: dict[str, tuple[NDArray[np.float64], NDArray[np.float64]]]
-    truth_m: dict[str, NDArray[np.float64]]
-    blur_px: float
-
-
-@dataclass(frozen=True, slots=True)
-class PartView:
-    """One exposure of a part by both heads; the transform between them is exact."""
-
-    views: tuple[HeadView, HeadView]
-    c1_T_c2: UncertainPose
-
-    @property
-    def holes(self) -> tuple[Hole, ...]:
-        """All six, in their order."""
-        return self.views[0].holes + self.views[1].holes
 
 
 def parts(

@@ -21,7 +21,8 @@ _NARROW_PX = 5.0
 _CHAMFER = (0.1, 0.05)
 _UNSEEN_CONE = (0.15, 0.08)
 """Width of a ring over the radius, and its standard deviation."""
-_SEEN_SHARE = 0.2
+_STATED_SHARE, _SEEN_SHARE = 0.1, 0.2
+"""Standard deviation of that width over itself, by the drawing and by the image."""
 _LEAST_RING_PX = 2.0
 _MAX_SIGMA_PX = 0.2
 
@@ -90,6 +91,10 @@ def _ring(hole: Hole, tasks: tuple[Task, Task]) -> tuple[float, float]:
     """Width of a ring over the radius and its standard deviation, as far as known."""
     if hole.kind == "thread":
         return _CHAMFER
+    narrow = _NARROW_PX * tasks[0].patch.unit_px / tasks[0].radius
+    stated = (hole.countersink_m or np.inf) / hole.diameter_m - 1.0
+    if stated < narrow:
+        return stated, _STATED_SHARE * stated
     seen = [
         task.clear_px * task.patch.unit_px / task.radius
         for task in tasks
