@@ -106,7 +106,10 @@ class HoleMissing(VisionError):
 
     number = 421
     text = "A hole was not found"
-    cause = "Part not in view, hole covered or damaged, wrong feature file, or bad light."
+    cause = (
+        "Part not in view, hole covered or damaged, wrong feature file, or light under which the "
+        "hole is not darker than the face round it."
+    )
     remedy = "Look at the picture; check part, light and feature file."
 
 
