@@ -121,6 +121,7 @@ def measurement_to_json(result: PairMeasurement, pose: PartPose | None) -> dict[
         for name, residual in zip(pose.names, pose.residuals_m, strict=True)
     }
     data["outliers"] = list(pose.outliers)
+    data["misfit"] = {"chi2": pose.misfit.chi2, "freedom": pose.misfit.freedom}
     return data
 
 

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -184,4 +184,5 @@ def measurement_detail(measured: PartMeasurement) -> dict[str, Any]:
             for name, residual in zip(measured.pose.names, measured.pose.residuals_m, strict=True)
         },
         "outliers": list(measured.pose.outliers),
+        "misfit": asdict(measured.pose.misfit),
     }

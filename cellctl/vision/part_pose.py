@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import block_diag
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
@@ -11,8 +12,9 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.vision.features import Hole
 from cellctl.vision.measurement import Method, PairMeasurement
+from cellctl.vision.misfit import Misfit, misfit
 from cellctl.vision.paper import paper_frame
-from cellctl.vision.registration import on_a_line, register
+from cellctl.vision.registration import by_pose, on_a_line, register
 
 RESIDUAL_LIMIT_M = 0.2e-3
 """Largest distance of a measured hole from its registered nominal position."""
@@ -26,7 +28,8 @@ class PartPose:
     """A registered part."""
 
     pose: UncertainPose
-    """``c1_T_part`` with everything that is known to be uncertain, the heads' transform too."""
+    """``c1_T_part`` with everything that is known to be uncertain, the heads' transform too; wider
+    where all that does not explain the residuals: a part off its drawing, a worn calibration."""
     own_covariance: Array
     """Shape (6, 6): from the hole measurements alone. The error of ``c1_T_c2`` is common to all
     parts that the same heads measure in the same place and cancels between them."""
@@ -35,9 +38,8 @@ class PartPose:
     """Measured minus registered, shape (n, 3), in C1, in the order of ``names``."""
     outliers: tuple[str, ...]
     """Holes that were left out of the registration."""
-    chi2: float
-    """Weighted sum of squared residuals of the holes used."""
-    freedom: int
+    misfit: Misfit
+    """Of the holes used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,13 @@ class _Points:
     """Of the measurement, in C1, shape (n, 3, 3)."""
     by_transfer: Array
     """Derivative of each point by the error of ``c1_T_c2``, shape (n, 3, 6)."""
+
+    def joint_covariance(self, transfer_covariance: Array) -> Array:
+        """Of all coordinates, with what they share by ``c1_T_c2``, shape (3n, 3n)."""
+        shared = self.by_transfer.reshape(-1, 6)
+        return np.asarray(
+            block_diag(*self.covariances_m2) + shared @ transfer_covariance @ shared.T
+        )
 
     def without(self, index: int) -> "_Points":
         keep = [i for i in range(len(self.names)) if i != index]
@@ -153,8 +162,7 @@ def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) 
         offset = points.measured_m[index] - fit.pose.apply(points.nominal_m[index])
         if np.linalg.norm(fit.residuals_m, axis=1).max() > limit_m:
             continue
-        turned = fit.pose.rotation.apply(points.nominal_m[index])
-        design = np.hstack([np.eye(3), -skew(turned)])
+        design = by_pose(fit.pose.rotation.apply(points.nominal_m[index])[None])[0]
         spread = (
             design @ _pose_covariance(fit.gain, rest, transfer_covariance) @ design.T
             + points.covariances_m2[index]
@@ -167,8 +175,7 @@ def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) 
 
 
 def _pose_covariance(gain: Array, points: _Points, transfer_covariance: Array) -> Array:
-    common = gain @ points.by_transfer.reshape(-1, 6)
-    return _own_covariance(gain, points) + common @ transfer_covariance @ common.T
+    return np.asarray(gain @ points.joint_covariance(transfer_covariance) @ gain.T)
 
 
 def _own_covariance(gain: Array, points: _Points) -> Array:
@@ -187,16 +194,18 @@ def _result(
 ) -> PartPose:
     residuals_m = points.measured_m - pose.apply(points.nominal_m)
     used = np.array([name not in outliers for name in points.names])
-    misfit = residuals_m[used]
-    chi2 = float(np.einsum("ni,nij,nj->", misfit, np.linalg.inv(kept.covariances_m2), misfit))
+    design = by_pose(pose.rotation.apply(kept.nominal_m)).reshape(-1, 6)
+    unexplained = misfit(
+        residuals_m[used], kept.joint_covariance(transfer_covariance), design, gain
+    )
+    covariance = _pose_covariance(gain, kept, transfer_covariance) * unexplained.growth
     return PartPose(
-        UncertainPose(pose, _pose_covariance(gain, kept, transfer_covariance)),
+        UncertainPose(pose, covariance),
         _own_covariance(gain, kept),
         points.names,
         residuals_m,
         outliers,
-        chi2,
-        3 * len(kept.names) - 6,
+        unexplained,
     )
 
 

@@ -18,8 +18,6 @@ class Registration:
     """Measured minus fitted, shape (n, 3), camera frame."""
     gain: Array
     """Derivative of the pose (order of ``UncertainPose``) by the measured points, (6, 3n)."""
-    chi2: float
-    """Weighted sum of squared residuals, for 3n - 6 degrees of freedom."""
 
 
 def kabsch(nominal_m: Array, measured_m: Array) -> tuple[Array, Array]:
@@ -48,7 +46,7 @@ def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Regi
     for _ in range(4):
         turned = pose.rotation.apply(nominal_m)
         residuals = measured_m - turned - pose.translation
-        design = np.stack([np.hstack([np.eye(3), -skew(point)]) for point in turned])
+        design = by_pose(turned)
         weighted = np.einsum("nij,njk->nik", weights, design)
         normal = np.einsum("nij,nik->jk", design, weighted)
         gain = np.linalg.solve(normal, np.concatenate(list(weighted)).T)
@@ -57,8 +55,15 @@ def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Regi
             pose.translation + step[:3], Rotation.from_rotvec(step[3:]) * pose.rotation
         )
     residuals = measured_m - pose.apply(nominal_m)
-    chi2 = float(np.einsum("ni,nij,nj->", residuals, weights, residuals))
-    return Registration(pose, residuals, gain, chi2)
+    return Registration(pose, residuals, gain)
+
+
+def by_pose(turned_m: Array) -> Array:
+    """Derivative of points by the pose (order of ``UncertainPose``), shape (n, 3, 6).
+
+    ``turned_m`` (n, 3) are the nominal points in the axes of the camera.
+    """
+    return np.stack([np.hstack([np.eye(3), -skew(point)]) for point in turned_m])
 
 
 def on_a_line(points_m: Array) -> bool:

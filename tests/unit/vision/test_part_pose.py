@@ -106,3 +106,32 @@ def test_too_few_holes() -> None:
         part_pose(head_1, None, None, HOLES, "paper")
     with pytest.raises(ValueError, match="c1_T_c2"):
         part_pose(head_1, head_2, None, HOLES)
+
+
+def test_the_misfit_is_of_its_expected_size_with_an_uncertain_transfer() -> None:
+    rng = np.random.default_rng(11)
+    sigma = np.array([2e-5, 2e-5, 4e-5, 5e-5, 5e-5, 5e-5])
+    known = UncertainPose(C1_T_C2, np.diag(sigma**2))
+    found = []
+    for _ in range(200):
+        noise, off = rng.normal(size=(6, 3)) * SIGMA_M, rng.normal(size=6) * sigma
+        true = RigidTransform.from_components(
+            C1_T_C2.translation + off[:3], Rotation.from_rotvec(off[3:]) * C1_T_C2.rotation
+        )
+        found.append(part_pose(*heads(noise, true), known, HOLES).misfit)
+    assert {misfit.freedom for misfit in found} == {12}
+    # 200 values of 12 degrees of freedom: their mean scatters by 0.35.
+    assert np.mean([misfit.chi2 for misfit in found]) == pytest.approx(12.0, abs=1.2)
+    assert np.mean([misfit.growth > 1.0 for misfit in found]) < 0.05
+
+
+def test_a_part_off_its_drawing_makes_the_pose_less_sure() -> None:
+    off = np.zeros((6, 3))
+    off[1, 0] = 60e-6
+    exact = UncertainPose.exact(C1_T_C2)
+    good, odd = (part_pose(*heads(noise), exact, HOLES) for noise in (np.zeros((6, 3)), off))
+    assert odd.outliers == ()
+    assert odd.misfit.growth > 100.0
+    assert odd.pose.sigma.max() > 10.0 * good.pose.sigma.max()
+    own = [np.diag(result.own_covariance) for result in (good, odd)]
+    np.testing.assert_allclose(*own, rtol=1e-2)
