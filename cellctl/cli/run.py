@@ -18,10 +18,12 @@ def run(
     modbus_port: Annotated[
         int | None, typer.Option(help="Overrides plc.port; 0 takes any free port.")
     ] = None,
-    log_level: Annotated[str, typer.Option(help="DEBUG, INFO, WARNING or ERROR.")] = "INFO",
+    log_level: Annotated[
+        log.LogLevel, typer.Option(case_sensitive=False, help="What is logged at least.")
+    ] = log.LogLevel.INFO,
 ) -> None:
     """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
     from cellctl.daemon.app import serve
 
-    log.configure(level=log_level.upper())
+    log.configure(level=log_level)
     sys.exit(asyncio.run(serve(cell_file, data_dir=data_dir, modbus_port=modbus_port)))

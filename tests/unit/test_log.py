@@ -1,0 +1,46 @@
+"""Lines of the daemon and of drivers look alike, and the level holds for both."""
+
+import json
+import logging
+from collections.abc import Iterator
+
+import pytest
+import structlog
+
+from cellctl import log
+from cellctl.log import LogLevel
+
+
+@pytest.fixture(autouse=True)
+def _restored() -> Iterator[None]:
+    root = logging.getLogger()
+    handlers, level = root.handlers[:], root.level
+    yield
+    root.handlers[:], root.level = handlers, level
+    structlog.reset_defaults()
+
+
+def _lines(capsys: pytest.CaptureFixture[str]) -> list[dict[str, str]]:
+    return [json.loads(line) for line in capsys.readouterr().err.splitlines()]
+
+
+def test_a_driver_logs_as_the_core_does(capsys: pytest.CaptureFixture[str]) -> None:
+    log.configure()
+    with log.bound(run=7):
+        log.get("cellctl.daemon").info("started")
+        logging.getLogger("drivers.robot").info("%s connected", "main")
+    own, foreign = _lines(capsys)
+    assert own.keys() == foreign.keys() == {"event", "module", "level", "timestamp", "run"}
+    assert foreign["event"] == "main connected"
+    assert foreign["module"] == "drivers.robot"
+    assert foreign["level"] == "info"
+
+
+@pytest.mark.parametrize("level", LogLevel)
+def test_the_level_holds_for_both(level: LogLevel, capsys: pytest.CaptureFixture[str]) -> None:
+    log.configure(level=level)
+    for name in LogLevel:
+        log.get("own").log(getattr(logging, name), name)
+        logging.getLogger("foreign").log(getattr(logging, name), name)
+    wanted = list(LogLevel)[list(LogLevel).index(level) :]
+    assert [line["event"] for line in _lines(capsys)] == [name for name in wanted for _ in range(2)]
