@@ -29,6 +29,8 @@ def config(**changes: object) -> SiasunConfig:
         "stop_timeout_s": 0.5,
         "workspace_min_mm": (1000.0, -500.0, 800.0),
         "workspace_max_mm": (2000.0, 500.0, 1500.0),
+        "joints_min_deg": (-360.0,) * 6,
+        "joints_max_deg": (360.0,) * 6,
         "max_speed_mm_s": 250.0,
     }
     return SiasunConfig.model_validate(settings | changes)

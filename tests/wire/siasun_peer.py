@@ -56,7 +56,7 @@ class Peer:
     ) -> None:
         """Send the next state report."""
         self.count += 1
-        self.send(f"STAT,{self.count},{self.count * 20},{flags},{pose},{JOINTS}")
+        self.send(f"STAT,{self.count},{self.count * 20},{flags},{pose},{joints}")
 
     async def expect(self) -> str:
         """The next record, its sum checked and taken off."""

@@ -61,6 +61,8 @@ async def sjl_rig(
             "connect_timeout_s": 3.0,
             "workspace_min_mm": (900.0, -900.0, 300.0),
             "workspace_max_mm": (2500.0, 900.0, 2200.0),
+            "joints_min_deg": (-360.0,) * 6,
+            "joints_max_deg": (360.0,) * 6,
             "max_speed_mm_s": 250.0,
             "max_joint_speed_percent": 100,
         }

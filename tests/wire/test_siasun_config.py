@@ -11,6 +11,8 @@ GOOD: dict[str, object] = {
     "state_port": 7002,
     "workspace_min_mm": [900.0, -900.0, 300.0],
     "workspace_max_mm": [2500.0, 900.0, 2200.0],
+    "joints_min_deg": [-90.0, -130.0, 20.0, -180.0, -30.0, -30.0],
+    "joints_max_deg": [90.0, 20.0, 144.0, 180.0, 120.0, 210.0],
     "max_speed_mm_s": 250.0,
 }
 
@@ -42,6 +44,12 @@ def test_the_good_one() -> None:
 def test_what_is_refused(key: str, value: object) -> None:
     with pytest.raises(ValidationError):
         SiasunConfig.model_validate(GOOD | {key: value})
+
+
+@pytest.mark.parametrize("bound", ["workspace_min_mm", "joints_min_deg", "joints_max_deg"])
+def test_bounds_are_not_optional(bound: str) -> None:
+    with pytest.raises(ValidationError, match=bound):
+        SiasunConfig.model_validate({key: GOOD[key] for key in GOOD if key != bound})
 
 
 def test_the_guard_needs_its_own_port() -> None:

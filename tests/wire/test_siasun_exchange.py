@@ -128,3 +128,16 @@ async def test_a_motion_that_ends_elsewhere_latches(cell: Cell) -> None:
         await move
     with pytest.raises(NotRearmed):
         await cell.move()
+
+
+async def test_joints_that_end_elsewhere_latch(cell: Cell) -> None:
+    target_rad = np.radians([0.0, -45.0, 90.0, 0.0, 45.0, 0.5])
+    move = asyncio.ensure_future(cell.robot.move_joint(target_rad, speed_ratio=0.1))
+    await cell.cmd.expect()
+    cell.cmd.send("ACK,1")
+    cell.cmd.send(f"DONE,1,{POSE}")
+    await cell.report_until(move)
+    with pytest.raises(MotionAborted, match=r"-0.5\] deg away from the target"):
+        await move
+    with pytest.raises(NotRearmed):
+        await cell.move()

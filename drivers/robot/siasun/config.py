@@ -9,9 +9,6 @@ Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Point = tuple[float, float, float]
 Joints = tuple[float, float, float, float, float, float]
 
-_ANY_JOINTS_MIN: Joints = (-360.0, -360.0, -360.0, -360.0, -360.0, -360.0)
-_ANY_JOINTS_MAX: Joints = (360.0, 360.0, 360.0, 360.0, 360.0, 360.0)
-
 
 class _Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -41,8 +38,9 @@ class SiasunConfig(_Section):
     workspace_min_mm: Point
     workspace_max_mm: Point
     """Corners of the box, in the robot base, that the flange must stay in."""
-    joints_min_deg: Joints = _ANY_JOINTS_MIN
-    joints_max_deg: Joints = _ANY_JOINTS_MAX
+    joints_min_deg: Joints
+    joints_max_deg: Joints
+    """What a joint move may ask for; at most the robot's own range."""
     max_speed_mm_s: Annotated[float, Field(gt=0.0, le=2000.0)]
     max_acceleration_mm_s2: Annotated[float, Field(gt=0.0, le=5000.0)] = 1000.0
     max_joint_speed_percent: Annotated[int, Field(ge=1, le=100)] = 25
@@ -50,6 +48,7 @@ class SiasunConfig(_Section):
     arrival_tolerance_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
     """A motion that reports its end farther from its target than this has failed."""
     arrival_tolerance_deg: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
+    """Of the flange's angle, and of every joint."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

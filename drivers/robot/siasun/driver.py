@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
@@ -16,13 +15,13 @@ from cellctl.errors.robot import (
     NotRearmed,
     RobotNotReady,
 )
-from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.interfaces.robot import Robot, RobotState
 from drivers.robot.siasun import protocol
+from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
-from drivers.robot.siasun.records import Six
 from drivers.robot.siasun.state_channel import StateChannel
 
 
@@ -39,6 +38,7 @@ class SiasunRobot(Robot):
         self.name = name
         self._config = config
         self._bounds = Bounds(name, config)
+        self._arrival = Arrival(config)
         self._latch: CellError | None = None
         """Why moves are refused until ``rearm``."""
         self._command = CommandChannel(name, config, self._on_command_lost)
@@ -89,7 +89,7 @@ class SiasunRobot(Robot):
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
         return await self._move(
             lambda session, seq: protocol.move_joint(session, seq, joints_deg.tolist(), percent),
-            target=None,
+            lambda state: self._arrival.off_joints(state, joints_rad),
         )
 
     async def move_linear(
@@ -101,7 +101,7 @@ class SiasunRobot(Robot):
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
         return await self._move(
             lambda session, seq: protocol.move_linear(session, seq, xyzabc, speed, acceleration),
-            target=base_T_flange,
+            lambda state: self._arrival.off_pose(state, base_T_flange),
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
@@ -112,7 +112,7 @@ class SiasunRobot(Robot):
         self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
         return await self._move(
             lambda session, seq: protocol.step(session, seq, xyzabc, speed),
-            target=base_T_flange,
+            lambda state: self._arrival.off_pose(state, base_T_flange),
         )
 
     async def stop(self) -> None:
@@ -133,7 +133,7 @@ class SiasunRobot(Robot):
         self._latch = None
 
     async def _move(
-        self, build: Callable[[int, int], bytes], target: RigidTransform | None
+        self, build: Callable[[int, int], bytes], off_target: Callable[[RobotState], str | None]
     ) -> RobotState:
         """Run one motion to standstill; leave it early only after stopping the robot."""
         self._check_ready()
@@ -146,8 +146,12 @@ class SiasunRobot(Robot):
             self._latch = self._latch or fault
             raise
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
-        self._check_arrival(end_xyzabc, target)
-        return replace(self.state(self._config.stale_s), base_T_flange=pose_from_xyzabc(end_xyzabc))
+        state = self.state(self._config.stale_s)
+        end = replace(state, base_T_flange=pose_from_xyzabc(end_xyzabc))
+        if off := off_target(end):
+            self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
+            raise self._latch
+        return end
 
     def _check_ready(self) -> None:
         if self._command.running:
@@ -166,24 +170,6 @@ class SiasunRobot(Robot):
                 f"{'on' if state.drives_on else 'off'}, emergency stop "
                 f"{'active' if state.emergency_stop else 'released'}"
             )
-
-    def _check_arrival(self, end_xyzabc: Six, target: RigidTransform | None) -> None:
-        if target is None:
-            return
-        end = pose_from_xyzabc(end_xyzabc)
-        delta = end.inv() * target
-        distance_mm = float(np.linalg.norm(delta.translation)) / MM
-        angle_deg = float(np.degrees(delta.rotation.magnitude()))
-        tolerance = self._config
-        if not (
-            distance_mm <= tolerance.arrival_tolerance_mm
-            and angle_deg <= tolerance.arrival_tolerance_deg
-        ):
-            self._latch = MotionAborted(
-                f"{self.name} reports its end {distance_mm:.3f} mm and {angle_deg:.3f} deg "
-                "away from the target"
-            )
-            raise self._latch
 
     async def _stop_before_leaving(self) -> None:
         """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to
