@@ -53,7 +53,7 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         await unit.open()
         line = Line(unit, archive)
         previous_seq = await archive.do(RunStore.line_seq)
-        port = PlcPort(config.plc, line.take, unit.line_lost, previous_seq=previous_seq)
+        port = PlcPort(config.plc, line, unit.line_lost, previous_seq=previous_seq)
         line.attach(port)
         stack.push_async_callback(port.stop)
         await port.start()  # first of all: a second daemon must not take over the robots

@@ -1,9 +1,11 @@
 """The unit and its line: takes commands, shows the status."""
 
+import asyncio
+
 from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.daemon.unit import MAY_MOVE, Unit
-from cellctl.errors.records import RecordsError
+from cellctl.errors.records import DiskSilent, RecordsError
 from cellctl.packml.command import COMMANDS, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
@@ -15,9 +17,12 @@ from cellctl.records.store import RunStore
 
 _log = log.get(__name__)
 
+DISK_TIMEOUT_S = 3.0
+"""A command that may move is refused when its number is not on the disk after this time."""
+
 
 class Line:
-    """Judges and obeys the commands that the port hands over, one after the other."""
+    """Judges and obeys the commands that the port hands over."""
 
     def __init__(self, unit: Unit, archive: Archive) -> None:
         self._unit = unit
@@ -34,15 +39,30 @@ class Line:
         self._coupling = LineCoupling(unit.machine, port.finish, lambda: unit.work.result)
 
     async def take(self, command: LineCommand) -> RejectCode:
-        """A command of the line; returns once it is obeyed or refused."""
+        """Judge a command and obey it; Stop and Abort are obeyed whatever else they ask for."""
+        code = RejectCode.NONE if command.ends_motion else await self.judge(command)
+        return code or await self.obey(command)
+
+    async def judge(self, command: LineCommand) -> RejectCode:
+        """Why a command other than Stop and Abort is refused.
+
+        What waits for the disk is given up after ``DISK_TIMEOUT_S``, with a fault.
+        """
+        try:
+            async with asyncio.timeout(DISK_TIMEOUT_S):
+                code = await self._note(command) or await self._acknowledge(command)
+                return code or await self._judge_start(command)
+        except TimeoutError:
+            late = DiskSilent(f"{DISK_TIMEOUT_S:g} s for command {command.seq} of the line")
+            await self._unit.machine.fail(late)
+            return RejectCode.RECORDS_NOT_READY
+
+    async def obey(self, command: LineCommand) -> RejectCode:
+        """Begin a command that was judged; waits for nothing but the machine's turn."""
         assert self._coupling is not None
-        code = await self._note(command)
-        if code is RejectCode.NONE:
-            code = await self._acknowledge(command)
-        if code is RejectCode.NONE:
-            code = await self._judge_start(command)
-        if code is RejectCode.NONE:
-            code = await self._coupling.obey(command)
+        if command.ends_motion:
+            self._note_soon(command)
+        code = await self._coupling.obey(command)
         if code is RejectCode.NONE:
             self._audit(command)
         return code
@@ -56,22 +76,23 @@ class Line:
     async def _note(self, command: LineCommand) -> RejectCode:
         """After a restart the number must be known as old, so what may move waits for the disk.
 
-        Everything else, Abort above all, is obeyed at once; it does no harm a second time.
+        Everything else does no harm a second time.
         """
-        note = self._archive.do(RunStore.note_line_seq, command.seq)
         if command.cntrl_cmd not in MAY_MOVE:
-            self._unit.background.start(note)
+            self._note_soon(command)
             return RejectCode.NONE
         try:
-            await note
+            await self._archive.do(RunStore.note_line_seq, command.seq)
         except RecordsError as error:
             _log.error("command not noted", number=error.number, fault=str(error))
             return RejectCode.RECORDS_NOT_READY
         return RejectCode.NONE
 
+    def _note_soon(self, command: LineCommand) -> None:
+        self._unit.background.start(self._archive.do(RunStore.note_line_seq, command.seq))
+
     async def _acknowledge(self, command: LineCommand) -> RejectCode:
-        """Stop and Abort are obeyed whatever else they ask for."""
-        if not command.alarm_ack_id or command.ends_motion:
+        if not command.alarm_ack_id:
             return RejectCode.NONE
         try:
             known = await self._unit.alarms.acknowledge(

@@ -83,3 +83,13 @@ class ValueRefused(RecordsError):
     cause = "Mistyped, or outside what can be measured."
     remedy = "See the detail for what is allowed."
     reaction = Reaction.WARN
+
+
+class DiskSilent(RecordsError):
+    """The disk did not take or give what a command waits for."""
+
+    number = 809
+    text = "The disk did not answer in time"
+    cause = "Disk overloaded or failing, or a file system that hangs."
+    remedy = "The command was not carried out: give it again. Check the disk if it happens again."
+    reaction = Reaction.WARN

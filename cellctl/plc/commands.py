@@ -108,6 +108,10 @@ class CommandLatch:
         self._begun = None
         self._end(seq, Result.REJECTED, code)
 
+    def supersede(self, seq: int) -> None:
+        """A waiting command was dropped, whatever is being decided meanwhile."""
+        self._end(seq, Result.REJECTED, RejectCode.SUPERSEDED)
+
     def finish(self, seq: int, result: Result) -> bool:
         """The command has ended; False when a later one has taken its place."""
         if self._begun is not None and seq == self._begun[0]:

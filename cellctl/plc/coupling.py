@@ -47,14 +47,17 @@ class LineCoupling:
         machine.on_change.append(self._changed)
 
     async def obey(self, command: LineCommand) -> RejectCode:
-        """Change the mode if asked, then command the unit. Stop and Abort change no mode."""
+        """Change the mode if asked, then command the unit. Stop and Abort change no mode.
+
+        A mode that is set already counts as reached.
+        """
         machine = self._machine
         changes_mode = command.unit_mode not in (0, machine.mode) and not command.ends_motion
         if changes_mode:
             code = self._refused_in_new_mode(command) or await machine.set_mode(command.unit_mode)
             if code is not RejectCode.NONE:
                 return code
-        if command.cntrl_cmd == Command.UNDEFINED and (changes_mode or command.alarm_ack_id):
+        if command.cntrl_cmd == Command.UNDEFINED and (command.unit_mode or command.alarm_ack_id):
             self._finish(command.seq, Result.GOOD)
             return RejectCode.NONE
         before, self._pursued = self._pursued, None

@@ -1,8 +1,9 @@
 """The line's side of the daemon: takes commands, publishes the state, watches heartbeats."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from importlib.metadata import version
+from typing import Protocol
 
 from cellctl import log
 from cellctl.config.cell import Plc
@@ -12,30 +13,43 @@ from cellctl.packml.reject import RejectCode
 from cellctl.plc.commands import CommandLatch, LineCommand
 from cellctl.plc.heartbeat import HeartbeatWatch
 from cellctl.plc.image import input_block
+from cellctl.plc.intake import Intake
 from cellctl.plc.pdu import Responder
 from cellctl.plc.registers import RegisterFile
 from cellctl.plc.result import Result
 from cellctl.plc.server import ModbusServer, ServerLimits
 from cellctl.plc.status import CellStatus, Handshake, values
 
-OnCommand = Callable[[LineCommand], Awaitable[RejectCode]]
-
 _log = log.get(__name__)
 _IDENTITY = ("cellctl", "cell controller", version("cellctl"))
 _QUEUE = 16
 
 
+class CommandHandler(Protocol):
+    """Who decides about the line's commands and has them carried out."""
+
+    async def judge(self, command: LineCommand) -> RejectCode:
+        """Why a command other than Stop and Abort is refused; may wait for the disk.
+
+        Cancelled when a Stop or an Abort overtakes it.
+        """
+
+    async def obey(self, command: LineCommand) -> RejectCode:
+        """Begin what was judged well; waits for nothing but the state machine's turn."""
+
+
 class PlcPort:
     """Modbus TCP server with the register map and its handshake.
 
-    ``on_command`` answers quickly whether a command begins; whoever carries it out calls
-    ``finish`` with the same number at its end. Lives in one event loop.
+    Commands are taken one after the other. Stop and Abort wait for no other command: they take the
+    place of all that were not yet obeyed. Whoever carries a command out calls ``finish`` with its
+    number at its end. Lives in one event loop.
     """
 
     def __init__(
         self,
         config: Plc,
-        on_command: OnCommand,
+        handler: CommandHandler,
         on_plc_lost: Callable[[], None],
         *,
         previous_seq: int | None = None,
@@ -43,7 +57,7 @@ class PlcPort:
     ) -> None:
         """``previous_seq``: number of the last command before this start, from the run store."""
         self._config = config
-        self._on_command = on_command
+        self._handler = handler
         self._on_plc_lost = on_plc_lost
         self._latch = CommandLatch(previous_seq, config.word_order)
         self._watch = HeartbeatWatch(config.heartbeat_timeout_s, self._lost)
@@ -53,7 +67,7 @@ class PlcPort:
             allowed_clients=config.allowed_clients,
             limits=limits,
         )
-        self._queue: asyncio.Queue[LineCommand] = asyncio.Queue(_QUEUE)
+        self._intake = Intake(_QUEUE)
         self._worker: asyncio.Task[None] | None = None
         self._status = CellStatus()
         self._seq = 0
@@ -63,11 +77,6 @@ class PlcPort:
     def port(self) -> int:
         """The TCP port it listens on."""
         return self._server.port
-
-    @property
-    def line_alive(self) -> bool:
-        """True while the PLC's heartbeat changes in time."""
-        return self._watch.alive
 
     @property
     def counters(self) -> dict[str, int]:
@@ -118,11 +127,9 @@ class PlcPort:
 
     def _committed(self) -> None:
         command = self._latch.commit(self._registers.holding)
-        if command is not None:
-            if self._queue.full():
-                dropped = self._queue.get_nowait()
-                _log.warning("line commands faster than they can be taken", dropped=dropped.seq)
-            self._queue.put_nowait(command)
+        dropped = None if command is None else self._intake.add(command)
+        if dropped is not None:
+            self._supersede(dropped)
         self._refresh()
 
     def _beaten(self, value: int) -> None:
@@ -137,9 +144,11 @@ class PlcPort:
 
     async def _take_commands(self) -> None:
         while True:
-            command = await self._queue.get()
+            command = await self._intake.next()
+            for earlier in self._intake.overtaken():
+                self._supersede(earlier)
             self._latch.begin(command.seq)
-            code = await self._decide(command)
+            code = await self._take(command)
             if code is RejectCode.NONE:
                 self._latch.accept(command.seq)
             else:
@@ -147,17 +156,36 @@ class PlcPort:
             _log.info("line command", seq=command.seq, cmd=command.cntrl_cmd, reject=code.text)
             self._refresh()
 
-    async def _decide(self, command: LineCommand) -> RejectCode:
-        if not (command.ends_motion or self._watch.alive):
-            return RejectCode.LINE_HEARTBEAT_MISSING
-        code = command.judge()
-        if code is not RejectCode.NONE:
-            return code
+    def _supersede(self, command: LineCommand) -> None:
+        self._latch.supersede(command.seq)
+        _log.warning("line command superseded", seq=command.seq, cmd=command.cntrl_cmd)
+
+    async def _take(self, command: LineCommand) -> RejectCode:
         try:
-            return await self._on_command(command)
+            code = await self._judge(command)
+            return code or await self._handler.obey(command)
         except CellError as error:
             _log.exception("line command failed", seq=command.seq, fault=str(error))
             return RejectCode.DEVICE_NOT_READY
+
+    async def _judge(self, command: LineCommand) -> RejectCode:
+        if command.ends_motion:
+            return RejectCode.NONE
+        if not self._watch.alive:
+            return RejectCode.LINE_HEARTBEAT_MISSING
+        return command.judge() or await self._judge_unless_overtaken(command)
+
+    async def _judge_unless_overtaken(self, command: LineCommand) -> RejectCode:
+        judging = asyncio.create_task(self._handler.judge(command), name="line command")
+        urgent = asyncio.create_task(self._intake.urgent(), name="stop of the line")
+        try:
+            await asyncio.wait({judging, urgent}, return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            overtaken = urgent.done()
+            for task in (judging, urgent):
+                task.cancel()
+            await asyncio.gather(judging, urgent, return_exceptions=True)
+        return RejectCode.SUPERSEDED if overtaken else judging.result()
 
     def _refresh(self) -> None:
         self._seq = (self._seq + 1) & 0xFFFF

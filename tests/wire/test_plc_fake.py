@@ -28,13 +28,16 @@ class FakelessCell:
     def __init__(self, execute: Action, result: Result, initial: State = State.ABORTED) -> None:
         self.machine = PackMLMachine({State.EXECUTE: execute}, initial=initial)
         self.commands: list[LineCommand] = []
-        self.port = PlcPort(Plc(port=0), self._obey, lambda: None, previous_seq=1)
+        self.port = PlcPort(Plc(port=0), self, lambda: None, previous_seq=1)
         self.coupling = LineCoupling(self.machine, self.port.finish, lambda: result)
         self.machine.on_change.append(lambda _before, _after: self.publish())
         self.status = CellStatus()
         self.beat: asyncio.Task[None] | None = None
 
-    async def _obey(self, command: LineCommand) -> RejectCode:
+    async def judge(self, _command: LineCommand) -> RejectCode:
+        return RejectCode.NONE
+
+    async def obey(self, command: LineCommand) -> RejectCode:
         self.commands.append(command)
         return await self.coupling.obey(command)
 

@@ -21,13 +21,20 @@ class Line:
 
     def __init__(self) -> None:
         self.commands: list[LineCommand] = []
+        """As they were obeyed."""
         self.answer: Callable[[LineCommand], RejectCode] = lambda _command: RejectCode.NONE
+        self.disk = asyncio.Event()
+        self.disk.set()
         self.lost = asyncio.Event()
         self.ports: list[PlcPort] = []
         self.clients: list[AsyncModbusTcpClient] = []
         self.beat = 0
 
-    async def on_command(self, command: LineCommand) -> RejectCode:
+    async def judge(self, command: LineCommand) -> RejectCode:
+        await self.disk.wait()
+        return RejectCode.NONE
+
+    async def obey(self, command: LineCommand) -> RejectCode:
         self.commands.append(command)
         return self.answer(command)
 
@@ -35,7 +42,7 @@ class Line:
         self, *, previous_seq: int | None = None, timeout_s: float = 5.0
     ) -> tuple[PlcPort, AsyncModbusTcpClient]:
         config = Plc(port=0, heartbeat_timeout_s=timeout_s)
-        port = PlcPort(config, self.on_command, self.lost.set, previous_seq=previous_seq)
+        port = PlcPort(config, self, self.lost.set, previous_seq=previous_seq)
         await port.start()
         self.ports.append(port)
         return port, await self.connect(port)
@@ -147,16 +154,14 @@ async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> No
 
 
 async def test_a_heartbeat_that_stands_still_is_lost_and_comes_back(line: Line) -> None:
-    port, client = await line.open(timeout_s=0.5)
+    _, client = await line.open(timeout_s=0.5)
     await line.heartbeat(client)
-    assert port.line_alive
     async with asyncio.timeout(3):
         while not line.lost.is_set():
             await client.write_register(40, line.beat)  # written, but the same value
     assert (await inputs(client))[STATUS] & LOST
     await line.heartbeat(client)
     assert not (await inputs(client))[STATUS] & LOST
-    assert port.line_alive
 
 
 async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:
@@ -203,25 +208,82 @@ async def test_blocks_are_never_torn(line: Line) -> None:
     await publishing
 
 
-async def test_commands_come_in_order_though_deciding_takes_time(line: Line) -> None:
+async def test_commands_come_in_order_though_judging_takes_time(line: Line) -> None:
     _, client = await line.open()
-    await line.heartbeat(client)
+    line.disk.clear()
     for seq in range(1, 6):
-        await client.write_registers(0, [1, Command.STOP, *[0] * 25, seq])
+        await line.command(client, seq, Command.RESET)
+    assert line.commands == []
+    line.disk.set()
     await until(client, lambda b: b[ACK] == 5)
     assert [command.seq for command in line.commands] == [1, 2, 3, 4, 5]
 
 
+@pytest.mark.parametrize("end", [Command.STOP, Command.ABORT])
+async def test_stop_and_abort_wait_for_no_command_and_nothing_older_follows(
+    line: Line, end: Command
+) -> None:
+    port, client = await line.open()
+    answers = answered(port)
+    line.disk.clear()
+    await line.command(client, 1, Command.RESET)
+    await line.command(client, 2, Command.UNHOLD)
+    await line.command(client, 3, end)
+    block = await until(client, lambda b: b[ACK] == 3)
+    assert block[REJECT] == 0
+    superseded = RejectCode.SUPERSEDED
+    assert answers == [(1, superseded), (2, superseded), (3, RejectCode.NONE)]
+    line.disk.set()
+    await line.command(client, 4, Command.HOLD)
+    await until(client, lambda b: b[ACK] == 4)
+    assert [command.seq for command in line.commands] == [3, 4]
+
+
+async def test_a_flood_of_commands_drops_the_oldest_with_an_answer_but_no_abort(
+    line: Line,
+) -> None:
+    port, client = await line.open()
+    answers = answered(port)
+    line.disk.clear()
+    for seq in range(1, 21):
+        await line.command(client, seq, Command.HOLD)
+    assert answers == [(seq, RejectCode.SUPERSEDED) for seq in (2, 3, 4)]
+    await line.command(client, 21, Command.ABORT)
+    for seq in range(22, 42):
+        await line.command(client, seq, Command.HOLD)
+    line.disk.set()
+    await until(client, lambda b: b[ACK] == 41)
+    assert sorted({seq for seq, _ in answers}) == list(range(1, 42))
+    assert line.commands[0].cntrl_cmd == Command.ABORT
+
+
+def answered(port: PlcPort) -> list[tuple[int, RejectCode]]:
+    """Every number with its answer, in order, however short it stands in the registers."""
+    answers: list[tuple[int, RejectCode]] = []
+    latch = port._latch
+    accept, reject, supersede = latch.accept, latch.reject, latch.supersede
+
+    def accepted(seq: int) -> None:
+        answers.append((seq, RejectCode.NONE))
+        accept(seq)
+
+    def rejected(seq: int, code: RejectCode) -> None:
+        answers.append((seq, code))
+        reject(seq, code)
+
+    def superseded(seq: int) -> None:
+        answers.append((seq, RejectCode.SUPERSEDED))
+        supersede(seq)
+
+    latch.accept, latch.reject, latch.supersede = accepted, rejected, superseded  # type: ignore[method-assign]
+    return answers
+
+
 async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
     machine = PackMLMachine({}, initial=State.ABORTED)
-    coupling: list[LineCoupling] = []
-    config = Plc(port=0)
-
-    async def obey(command: LineCommand) -> RejectCode:
-        return await coupling[0].obey(command)
-
-    port = PlcPort(config, obey, line.lost.set)
-    coupling.append(LineCoupling(machine, port.finish, lambda: Result.GOOD))
+    port = PlcPort(Plc(port=0), line, line.lost.set)
+    coupling = LineCoupling(machine, port.finish, lambda: Result.GOOD)
+    line.obey = coupling.obey  # type: ignore[method-assign]
     machine.on_change.append(
         lambda _before, after: port.publish(
             CellStatus(state=after, state_requested=machine.state_requested, mode=machine.mode)
@@ -247,4 +309,6 @@ async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
     await line.command(client, 7, Command.UNDEFINED, mode=2)
     block = await until(client, lambda b: b[DONE] == 7)
     assert (block[3], block[RESULT]) == (2, Result.GOOD)
+    await line.command(client, 8, Command.UNDEFINED, mode=2)
+    assert (await until(client, lambda b: b[DONE] == 8))[RESULT] == Result.GOOD
     await machine.close()

@@ -1,11 +1,13 @@
 """What the line may ask for, and what becomes of its numbers and alarms."""
 
+import threading
 from datetime import timedelta
 from typing import Any
 
 import pytest
 from sqlalchemy import select
 
+from cellctl.daemon import line
 from cellctl.errors.force import SensorSilent
 from cellctl.errors.link import LinkLost
 from cellctl.errors.records import RecordNotWritten
@@ -99,6 +101,22 @@ async def test_a_number_that_cannot_be_noted_stops_motion_but_not_stop(
     await rig.to(State.STOPPED)
 
 
+async def test_a_disk_that_hangs_refuses_what_may_move_and_holds_nothing_up(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = threading.Event()
+    monkeypatch.setattr(RunStore, "note_line_seq", lambda *_: disk.wait(10))
+    monkeypatch.setattr(line, "DISK_TIMEOUT_S", 0.05)
+    try:
+        assert await rig.take(Command.RESET) is RejectCode.RECORDS_NOT_READY
+        assert rig.unit.machine.state is State.STOPPED
+        assert rig.shown().alarms == (809,)
+        assert await rig.take(Command.ABORT) is RejectCode.NONE
+        await rig.to(State.ABORTED)
+    finally:
+        disk.set()
+
+
 async def test_alarms_live_until_they_are_acknowledged(rig: DaemonRig) -> None:
     await rig.idle()
     await rig.unit.machine.fail(LinkLost("aux_1"))
@@ -139,7 +157,9 @@ async def test_stop_is_obeyed_whatever_else_it_asks_for(rig: DaemonRig) -> None:
 
 
 async def test_the_mode_changes_without_a_command(rig: DaemonRig) -> None:
-    assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
+    for _ in range(2):
+        assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
+        assert rig.port.ended[rig._seq] is Result.GOOD
     assert rig.unit.machine.mode is Mode.MANUAL
     await rig.idle()
     assert not rig.shown().ready
