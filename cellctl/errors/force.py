@@ -1,7 +1,5 @@
 """5xx: force sensor (50x), guard (51x), mating (52x–53x), payload and commissioning (54x)."""
 
-from collections.abc import Sequence
-
 from cellctl.errors.base import CellError, Reaction
 
 
@@ -65,7 +63,7 @@ class SensorSetupWrong(ForceError):
     number = 506
     text = "Force sensor box has an unexpected configuration"
     cause = "Another box, a reset to factory settings, or a wrong cell file."
-    remedy = "See the setting in the detail; correct the box or the cell file."
+    remedy = "See the setting in the detail; correct the box, then Clear and Reset."
     reaction = Reaction.STOP
 
 
@@ -75,7 +73,7 @@ class GuardDied(ForceError):
     number = 510
     text = "Force guard is not running"
     cause = "The guard process crashed, was killed, or hangs."
-    remedy = "See the guard's log; Clear restarts it. Motion is impossible without it."
+    remedy = "See the guard's log; Reset restarts it. Motion is impossible without it."
 
 
 class GuardRefused(ForceError):
@@ -226,20 +224,6 @@ class PosesDegenerate(ForceError):
     cause = "Gravity hardly moves in the sensor: turns about the vertical or one tilt axis only."
     remedy = "Tilt about two horizontal axes of the base, 10° to 15° each way."
     reaction = Reaction.STOP
-
-
-class PayloadRejected(ForceError):
-    """The identified payload failed its acceptance tests."""
-
-    number = 543
-    text = "Payload identification failed its acceptance"
-    cause = "Hoses that pull, a loose deck, sensor drift, or another payload than expected."
-    remedy = "See the failed checks in the detail; correct and record again."
-    reaction = Reaction.STOP
-
-    def __init__(self, failed: Sequence[str]) -> None:
-        super().__init__("; ".join(failed))
-        self.failed = tuple(failed)
 
 
 class CommissioningFailed(ForceError):

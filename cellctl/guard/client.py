@@ -10,8 +10,8 @@ from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.force import GuardDied, SensorSilent
-from cellctl.errors.link import LinkLost
 from cellctl.force.compensation import Compensation
+from cellctl.guard import vitals
 from cellctl.guard.child import GuardChild
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import Message, fault_from_json, limits_to_json, trip_from_json
@@ -20,18 +20,13 @@ from cellctl.guard.requests import Requests
 
 _log = log.get(__name__)
 
-_HUNG_S = 1.0
-"""A guard whose status is older hangs; the robot's dead man has long acted by then."""
-_SILENT_S = 1.0
-"""Silence that is a fault even while nothing is armed."""
-
 
 class GuardClient:
     """Starts, supervises and asks the guard process.
 
     Requests raise ``GuardRefused`` with the guard's reason or ``GuardDied``. When the guard dies,
-    ``trip`` becomes ``GUARD_DIED`` and stays until ``acknowledge``, which starts a new guard and
-    gives it the last compensation and deck frame, but no tare.
+    ``trip`` becomes ``GUARD_DIED`` and stays until ``acknowledge``. That starts a new guard in the
+    place of one that is of no use, and gives it the last compensation and deck frame, but no tare.
     """
 
     def __init__(
@@ -52,7 +47,8 @@ class GuardClient:
         self._stopping = self._ready = False
         self._requests = Requests(settings.reply_timeout_s)
         self._trip: GuardTrip | None = None
-        self._tripped = asyncio.Event()
+        self._fault: CellError | None = None
+        """Why the guard could not start, or gave up its sensor."""
         self._serial = ""
         self._degraded: tuple[str, ...] = ()
         self._channel_up = False
@@ -70,18 +66,15 @@ class GuardClient:
             return
         await self.stop()
         self._stopping = self._ready = False
+        self._fault = None
         self._started = asyncio.get_running_loop().create_future()
         self._child = GuardChild(self._settings.ring_slots, self._take, self._died)
         try:
             self._child.send(self._set_up())
-            async with asyncio.timeout(self._settings.start_timeout_s):
-                await self._started
-        except TimeoutError:
+            await self._until_started(self._started)
+        except BaseException as error:
             await self.stop()
-            timeout_s = self._settings.start_timeout_s
-            raise GuardDied(f"not ready within {timeout_s:g} s after its start") from None
-        except BaseException:
-            await self.stop()
+            self._fault = error if isinstance(error, CellError) else None
             raise
         for measure in self._degraded:
             _log.warning("guard runs degraded", measure=measure)
@@ -142,8 +135,13 @@ class GuardClient:
         await self._request("disarm")
 
     async def acknowledge(self) -> None:
-        """Release the latch; disarms. Starts a new guard when the old one has died or hangs."""
-        if self.running and self.health().alive:
+        """Release the latch; disarms.
+
+        Starts a new guard when the old one has died, hangs or has given up its sensor; raises as
+        ``start`` does when that fails.
+        """
+        health = self.health()
+        if health.alive and health.sensor_open:
             await self._request("acknowledge")
         else:
             await self.stop()
@@ -153,22 +151,12 @@ class GuardClient:
             if self._deck_frame is not None:
                 await self._request("deck_frame", **self._deck_frame)
         self._trip = None
-        self._tripped.clear()
 
     # --- what the guard has seen
 
     @property
     def trip(self) -> GuardTrip | None:
         """The latched trip, or None."""
-        return self._trip
-
-    async def wait_trip(self, timeout_s: float) -> GuardTrip | None:
-        """The trip that is latched or comes within ``timeout_s``; None without one."""
-        try:
-            async with asyncio.timeout(timeout_s):
-                await self._tripped.wait()
-        except TimeoutError:
-            return None
         return self._trip
 
     def newest(self) -> GuardSample | None:
@@ -190,38 +178,27 @@ class GuardClient:
         """How the guard is doing; never raises."""
         child = self._child
         status = child.reader.status() if child is not None and child.alive else None
-        if status is None:
-            return GuardHealth(alive=False, degraded=self._degraded)
-        time_s = now_s()
-        return GuardHealth(
-            alive=time_s - status.time_s < _HUNG_S,
-            armed=bool(status.armed),
-            latched=bool(status.latched),
-            stop_channel_up=bool(status.channel_up),
-            degraded=self._degraded,
-            sensor_serial=self._serial,
-            sensor=status.sensor,
-            sample_age_s=time_s - status.sample_time_s,
-            flange_age_s=time_s - status.flange_time_s,
-            late_wakeups=status.late_wakeups,
-            peak_raw=status.peak_raw,
-            peak_filtered=status.peak_filtered,
-            resident_peak_bytes=status.resident_peak_bytes,
-        )
+        return vitals.health(status, self._serial, self._degraded)
 
     def check(self) -> None:
         """Raise the fault of a guard that is dead or hangs, or has lost sensor or robot."""
-        if not self.running:
-            raise GuardDied("no guard process")
         health = self.health()
-        if not health.alive:
-            raise GuardDied(f"its status is more than {_HUNG_S:g} s old")
-        if not health.stop_channel_up:
-            raise LinkLost("the guard's stop channel to the robot is down")
-        if health.sample_age_s > _SILENT_S:
-            raise SensorSilent(f"no sample for {health.sample_age_s:.1f} s")
+        fault = vitals.fault(health) if self.running else GuardDied("no guard process")
+        given_up = not self.running or (health.alive and not health.sensor_open)
+        if given_up and self._fault is not None:
+            fault = self._fault.with_traceback(None)  # or it would grow each time it is raised
+        if fault is not None:
+            raise fault
 
     # --- inside
+
+    async def _until_started(self, started: asyncio.Future[None]) -> None:
+        timeout_s = self._settings.start_timeout_s
+        try:
+            async with asyncio.timeout(timeout_s):
+                await started
+        except TimeoutError:
+            raise GuardDied(f"not ready within {timeout_s:g} s after its start") from None
 
     def _set_up(self) -> Message:
         settings = self._settings
@@ -259,9 +236,9 @@ class GuardClient:
             fault = message["fault"]
             self._channel(up=message["up"], fault=fault and fault_from_json(fault))
         else:
-            fault = fault_from_json(message)
-            _log.error("guard reports a fault", fault=str(fault))
-            self._settle_start(fault)
+            self._fault = fault_from_json(message)
+            _log.error("guard reports a fault", fault=str(self._fault))
+            self._settle_start(self._fault)
 
     def _channel(self, *, up: bool, fault: CellError | None) -> None:
         if up:
@@ -282,12 +259,12 @@ class GuardClient:
     def _latch(self, trip: GuardTrip) -> None:
         if self._trip is None or self._trip.reason is not TripReason.GUARD_DIED:
             self._trip = trip
-        self._tripped.set()
         _log.warning("guard has stopped the robot", trip=str(trip))
 
     def _died(self, how: str) -> None:
         self._fail(GuardDied(how))
         if self._ready and not self._stopping:
+            self._fault = None
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))
 
     def _fail(self, fault: GuardDied) -> None:

@@ -92,6 +92,7 @@ class GuardLoop:
         except CellError as fault:
             self._sensor_fault = fault
             self._sensor.close()
+            self._publish_status(now_s())  # who hears the news must not find the old status
             self._monitor.stop(TripReason.SENSOR_INVALID, now_s(), str(fault))
             self.event("sensor_fault", **fault_to_json(fault))
             return
@@ -170,6 +171,7 @@ class GuardLoop:
                 int(monitor.armed),
                 int(monitor.trip is not None),
                 int(self._line.up),
+                int(self._sensor_fault is None),
                 self._late_wakeups,
                 resident_peak_bytes(),
                 monitor.sample_time_s,

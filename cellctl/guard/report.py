@@ -141,6 +141,8 @@ class GuardHealth:
     latched: bool = False
     stop_channel_up: bool = False
     """Also True when the guard runs without a stop channel."""
+    sensor_open: bool = False
+    """False after a fault of the sensor that only a new guard ends, such as another set-up."""
     degraded: tuple[str, ...] = ()
     """Real-time measures that this PC did not permit."""
     sensor_serial: str = ""

@@ -25,7 +25,7 @@ STATUS_OFFSET = 256
 
 SLOT = struct.Struct("=Q3dQ12d")
 """Index, sample time, receive time, flange age, packet number, wrench (6), raw (6)."""
-_STATUS = struct.Struct("=d5Q2d8Qd12d")
+_STATUS = struct.Struct("=d6Q2d8Qd12d")
 
 
 class Status(NamedTuple):
@@ -35,6 +35,7 @@ class Status(NamedTuple):
     armed: int = 0
     latched: int = 0
     channel_up: int = 0
+    sensor_open: int = 0
     late_wakeups: int = 0
     resident_peak_bytes: int = 0
     sample_time_s: float = float("-inf")
@@ -49,7 +50,7 @@ class Status(NamedTuple):
         _STATUS.pack_into(
             memory,
             STATUS_OFFSET,
-            *self[:8],
+            *self[:9],
             *(sensor.samples, sensor.lost, sensor.checksum_errors, sensor.resynchronised_bytes),
             *(sensor.invalid, sensor.saturated, sensor.reconnects, sensor.rate_deviations),
             sensor.rate_hz,
@@ -61,7 +62,7 @@ class Status(NamedTuple):
     def unpack_from(cls, memory: mmap.mmap) -> "Status":
         """Read all fields; may be torn unless the status number says otherwise."""
         values = _STATUS.unpack_from(memory, STATUS_OFFSET)
-        numbers, sensor, peaks = values[:8], values[8:17], values[17:]
+        numbers, sensor, peaks = values[:9], values[9:18], values[18:]
         return cls._make([*numbers, FtHealth(*sensor), peaks[:6], peaks[6:]])
 
 

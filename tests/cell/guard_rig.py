@@ -14,6 +14,7 @@ import numpy as np
 from cellctl.force.compensation import Compensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits, GuardSettings
+from cellctl.guard.report import GuardTrip
 from fakes.wire.sri_box import SriBox
 from tests.ports import free_ports
 from tests.wire.siasun_peer import Peer
@@ -83,6 +84,13 @@ async def until(condition: Any, timeout_s: float = 2.0) -> None:
     async with asyncio.timeout(timeout_s):
         while not condition():  # noqa: ASYNC110 - what is waited for lies in other processes
             await asyncio.sleep(0.002)
+
+
+async def tripped(client: GuardClient, timeout_s: float = 2.0) -> GuardTrip:
+    """The trip that is latched or comes; ``TimeoutError`` without one."""
+    await until(lambda: client.trip is not None, timeout_s)
+    assert client.trip is not None
+    return client.trip
 
 
 def noisy(force: list[float]) -> list[float]:

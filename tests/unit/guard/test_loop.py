@@ -129,6 +129,9 @@ def test_a_sensor_that_comes_back_as_another_one(bench: Bench) -> None:
     assert (told["number"], told["detail"]) == (506, "rate is 5")
     assert "invalid" in str(event(bench, "trip"))
     assert bench.sensor.closed
+    status = bench.reader.status()
+    assert status is not None
+    assert not status.sensor_open
     bench.daemon.close()
     ended(bench, thread)
 

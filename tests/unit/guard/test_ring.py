@@ -89,6 +89,7 @@ def test_status(ends: tuple[RingWriter, RingReader]) -> None:
         armed=1,
         latched=0,
         channel_up=1,
+        sensor_open=1,
         late_wakeups=3,
         resident_peak_bytes=4096,
         sample_time_s=1.4,
