@@ -79,6 +79,11 @@ class PlcPort:
         return self._server.port
 
     @property
+    def line_alive(self) -> bool:
+        """True while the PLC's heartbeat changes in time."""
+        return self._watch.alive
+
+    @property
     def counters(self) -> dict[str, int]:
         """Connections, requests and why connections ended, for the log."""
         return dict(self._server.counters)
