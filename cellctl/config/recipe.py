@@ -1,10 +1,12 @@
 """What to assemble and within which bounds (mission A2-A4)."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from cellctl.config.base import Section, WrittenPose
+
+Length = Annotated[float, Field(gt=0, le=5000)]
 
 
 class Compensation(Section):
@@ -44,14 +46,19 @@ class Mating(Section):
     """Force-limited mating (paper 2.4.2, mission A4)."""
 
     target_force_n: Annotated[float, Field(ge=5, le=200)] = 35.0
-    """F_t of the paper."""
+    """F_t of the paper: also the predicted peak of the touch and the least force of a seat."""
     limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
     """Never to be exceeded."""
     touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
     release_force_n: Annotated[float, Field(ge=6, le=100)] = 15.0
     """Left on the joint for fastening after the hold."""
     max_lateral_force_n: Annotated[float, Field(gt=0, le=500)] = 25.0
+    """Across the approach, at any moment; the seated deck may keep four fifths of it."""
     max_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 25.0
+    max_untared_force_n: Annotated[float, Field(gt=0, le=500)] = 80.0
+    """What the compensation may leave at the stand-off before the tare, about 4 % of the weight;
+    more is another payload or a deck that touches. The defaults fit 200 kg."""
+    max_untared_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 40.0
     max_past_contact_mm: Annotated[float, Field(gt=0, le=2)] = 0.5
     contact_window_mm: Annotated[float, Field(gt=0, le=3)] = 0.3
     """Contact earlier or later than expected by more than this is a fault."""
@@ -68,6 +75,12 @@ class Mating(Section):
     pins: Pins | None = None
     """None: no pins are met while mating."""
 
+    @model_validator(mode="after")
+    def _forces_rise(self) -> Self:
+        if not self.release_force_n < self.target_force_n < self.limit_force_n:
+            raise ValueError("must be so: release_force_n < target_force_n < limit_force_n")
+        return self
+
 
 class Recipe(Section):
     """One product: parts, distances, thresholds."""
@@ -79,6 +92,8 @@ class Recipe(Section):
     deck_features: str
     deck_thickness_mm: Annotated[float, Field(gt=0, le=200)]
     """D1 of the paper."""
+    face_mm: tuple[Length, Length] = (1000.0, 500.0)
+    """Length along x and width along y of the mating face: a tilted deck touches with an edge."""
     stand_off_mm: Annotated[float, Field(gt=0, le=100)]
     """D2 of the paper."""
     over_travel_mm: Annotated[float, Field(gt=0, le=100)]

@@ -1,11 +1,12 @@
 """From a record of poses to an accepted payload: the one function behind procedure and command."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from cellctl.errors.force import PayloadRejected
+from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.force.acceptance import (
     Check,
     PayloadLimits,
@@ -37,12 +38,6 @@ class PayloadResult:
     def accepted(self) -> bool:
         """True when every test was passed."""
         return all(check.passed for check in self.checks)
-
-    def require_accepted(self) -> None:
-        """Raise ``PayloadRejected`` with the failed tests, if any."""
-        failed = [str(check) for check in self.checks if not check.passed]
-        if failed:
-            raise PayloadRejected(failed)
 
 
 def evaluate_payload(
@@ -133,3 +128,11 @@ def compensation_from_document(document: dict[str, Any]) -> Compensation:
         float(affine["residual_rms_nm"]),
         (x, y, z),
     )
+
+
+def mass_kg(document: Mapping[str, Any]) -> float:
+    """Mass on the sensor in a document; raises ``CalibrationRecordInvalid`` when there is none."""
+    try:
+        return float(document["rigid12"]["mass_kg"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise CalibrationRecordInvalid(f"payload: no mass, {error!r}") from error

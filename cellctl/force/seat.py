@@ -7,6 +7,11 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 
+EDGE_MARGIN_N_M = 2.75, 1.5
+"""What tare, friction and the lever of the side force may add to a moment about x and y."""
+REST_RATIO = 0.8
+"""Share of the side load allowed on the way that a seated deck may keep."""
+
 
 class SeatFinding(Enum):
     """One way in which a seat can be wrong."""
@@ -23,14 +28,42 @@ class SeatFinding(Enum):
 class SeatLimits:
     """Bounds of a good seat."""
 
-    force_low_n: float = 35.0
-    force_high_n: float = 45.0
+    force_low_n: float
+    force_high_n: float
+    lateral_n: float
+    moment_n_m: tuple[float, float, float]
+    """About x, y and z of the deck."""
     depth_m: float = 1e-4
     """Greatest distance between reached and expected depth, elastic travel taken off."""
-    lateral_n: float = 20.0
-    moment_n_m: tuple[float, float, float] = (14.0, 24.0, 8.0)
-    """About x, y and z of the deck. A deck that is tilted within its tolerance may rest on an edge:
-    the force times half the width or length must be allowed, and no more."""
+
+
+def seat_limits(
+    *,
+    target_force_n: float,
+    abort_force_n: float,
+    max_lateral_n: float,
+    half_size_m: tuple[float, float],
+) -> SeatLimits:
+    """Bounds of the seat of a mating that is complete at a force and aborted at another.
+
+    A deck that is tilted within its tolerance may rest on an edge: the force times half the width
+    or length (``half_size_m``: along x, along y) must be allowed, and little more. A deck at rest
+    has no reason for the whole side force that is allowed on the way, nor for the moment about z
+    that it would have at an end.
+    """
+    half_x_m, half_y_m = half_size_m
+    margin_x_n_m, margin_y_n_m = EDGE_MARGIN_N_M
+    lateral_n = REST_RATIO * max_lateral_n
+    return SeatLimits(
+        force_low_n=target_force_n,
+        force_high_n=abort_force_n,
+        lateral_n=lateral_n,
+        moment_n_m=(
+            abort_force_n * half_y_m + margin_x_n_m,
+            abort_force_n * half_x_m + margin_y_n_m,
+            REST_RATIO * lateral_n * half_x_m,
+        ),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,11 +82,6 @@ class SeatVerdict:
     def seated(self) -> bool:
         """True when nothing was found wrong."""
         return not self.findings
-
-    @property
-    def false_seat(self) -> bool:
-        """True when force is there but the deck stands above its seat: measure again."""
-        return SeatFinding.HIGH in self.findings
 
 
 def judge_seat(

@@ -5,7 +5,7 @@ import math
 from cellctl.cell.commissioned import Commissioned
 from cellctl.cell.measuring import require_unmoved
 from cellctl.config.cell import CellConfig
-from cellctl.config.recipe import Mating, Pins
+from cellctl.config.recipe import Pins, Recipe
 from cellctl.force.approach import planned_stiffness
 from cellctl.force.detectors import Cusum
 from cellctl.geometry.pose import MM, pose_from_xyzabc
@@ -35,20 +35,23 @@ def contact_plan(run: AssemblyRun, commissioned: Commissioned) -> MatingPlan:
         M_T_D=run.M_T_D,
         deck_thickness_m=recipe.deck_thickness_mm * MM,
         over_travel_m=recipe.over_travel_mm * MM,
-        settings=mating_settings(config, recipe.mating, commissioned),
+        settings=mating_settings(config, recipe, commissioned, run.payload_kg),
     )
 
 
 def mating_settings(
-    config: CellConfig, mating: Mating, commissioned: Commissioned
+    config: CellConfig, recipe: Recipe, commissioned: Commissioned, payload_kg: float
 ) -> MatingSettings:
     """The recipe's figures in SI; its bounds where nothing was commissioned."""
+    mating = recipe.mating
+    length_mm, width_mm = recipe.face_mm
     latency_s, stiffness_n_m = commissioned.stop_latency_s, mating.stiffness_n_per_mm / MM
     return MatingSettings(
         stop_latency_s=mating.stop_latency_ms / 1e3 if latency_s is None else latency_s,
         stiffness_n_m=planned_stiffness(
             stiffness_n_m, commissioned.stiffness_n_m, mating.part_spread_ratio
         ),
+        moving_mass_kg=payload_kg,
         target_force_n=mating.target_force_n,
         limit_force_n=mating.limit_force_n,
         abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
@@ -61,6 +64,8 @@ def mating_settings(
         acceleration_m_s2=mating.acceleration_mm_s2 * MM,
         greatest_past_m=mating.max_past_contact_mm * MM,
         window_m=mating.contact_window_mm * MM,
+        half_size_m=(length_mm / 2 * MM, width_mm / 2 * MM),
+        plausible=(mating.max_untared_force_n, mating.max_untared_moment_n_m),
         max_lateral_n=mating.max_lateral_force_n,
         max_moment_n_m=mating.max_moment_n_m,
         pins=_pin_settings(mating.pins) if mating.pins else None,

@@ -14,6 +14,7 @@ from cellctl.cell.measuring import HeadGeometry, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.step import Step
 from cellctl.config.recipe import Recipe
+from cellctl.force.payload_result import mass_kg
 from cellctl.steps.journal import Journal
 from cellctl.steps.positions import heads_to_measuring_poses, main_to_home
 from cellctl.steps.run import AssemblyRun
@@ -34,6 +35,8 @@ class Preparation:
     calibrations: Calibrations
     stored: list[StoredCalibration]
     commissioned: Commissioned
+    payload_kg: float
+    """Everything that hangs on the force sensor, as identified."""
     frame_features: FeatureFile
     deck_features: FeatureFile
 
@@ -52,9 +55,10 @@ async def prepare(cell: Cell, folder: CalibrationFolder, recipe: Recipe) -> Prep
         calibrations.require_instrument(head.name, await head.camera.serial_number())
     calibrations.require_instrument(PAYLOAD, cell.guard.health().sensor_serial)
     stored = await asyncio.to_thread(folder.stored)
+    payload_kg = next(mass_kg(item.record) for item in stored if item.kind == PAYLOAD)
     commissioned = await asyncio.to_thread(folder.commissioned, recipe.id, PLANNED)
     stored += commissioned.records
-    return Preparation(recipe, calibrations, stored, commissioned, frame, deck)
+    return Preparation(recipe, calibrations, stored, commissioned, payload_kg, frame, deck)
 
 
 async def to_the_beginning(cell: Cell, board: ProgressBoard) -> None:
@@ -100,6 +104,7 @@ def _new_run(
         recipe=prepared.recipe,
         calibrations=prepared.calibrations,
         commissioned=prepared.commissioned,
+        payload_kg=prepared.payload_kg,
         frame_features=prepared.frame_features,
         deck_features=prepared.deck_features,
         board=board,

@@ -33,6 +33,8 @@ class AssemblyRun:
     recipe: Recipe
     calibrations: Calibrations
     commissioned: Commissioned
+    payload_kg: float
+    """Everything that hangs on the force sensor, as identified."""
     frame_features: FeatureFile
     deck_features: FeatureFile
     board: ProgressBoard

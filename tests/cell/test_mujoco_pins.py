@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.force.seat import SeatFinding, SeatLimits, SeatVerdict, judge_seat
+from cellctl.force.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
 from fakes.scenario import Pins
 from fakes.world.payload import STEP_S
 from tests.cell.mujoco_rig import DT_S, MASS_KG, RADIUS_M, Oracle, Rig, carry, mujoco, rig
@@ -31,6 +31,9 @@ PINS = Pins(
 )
 ABOVE_M = 4e-3
 """Of the deck above its seat at the beginning."""
+LIMITS = seat_limits(
+    target_force_n=35.0, abort_force_n=45.0, max_lateral_n=25.0, half_size_m=(0.5, 0.25)
+)
 SPRINGS = np.array([1e6, 1e6, 1e6, 4e5, 4e5, 3e5])
 
 
@@ -57,7 +60,7 @@ class Rest:
             travel_m=self.way_m,
             expected_m=ABOVE_M,
             stiffness_n_m=series,
-            limits=SeatLimits(),
+            limits=LIMITS,
         )
 
 

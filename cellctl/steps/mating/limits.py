@@ -13,7 +13,8 @@ _ALONG = 2
 
 def travel_limits(settings: MatingSettings) -> GuardLimits:
     """Fast travel: nothing but inertia may be felt, in any direction."""
-    return _limits(settings, settings.fast_limit_n, min(settings.fast_limit_n, 25.0))
+    along_n = min(settings.fast_limit_n, settings.abort_force_n)
+    return _limits(settings, along_n, min(along_n, settings.max_lateral_n))
 
 
 def touch_limits(settings: MatingSettings) -> GuardLimits:

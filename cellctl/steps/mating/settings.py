@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cellctl.force.detectors import Cusum
-from cellctl.force.seat import SeatLimits
+from cellctl.force.seat import SeatLimits, seat_limits
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,10 @@ class PinSettings:
 
 @dataclass(frozen=True, slots=True)
 class MatingSettings:
-    """Constants of a mating. Measured figures have no default."""
+    """Constants of a mating; the defaults are those of the shipped recipe.
+
+    Measured figures have none. What follows from another figure is a property.
+    """
 
     stop_latency_s: float
     """Upper bound from the stop-latency procedure."""
@@ -47,8 +50,6 @@ class MatingSettings:
     """Filtered force at which the guard stops the robot."""
     limit_force_n: float = 50.0
     """True contact force that must never be exceeded."""
-    touch_peak_n: float = 35.0
-    """Predicted peak of the first touch at the chosen approach speed."""
     tare_uncertainty_n: float = 1.5
     force_sigma_n: float = 0.3
     """Standard deviation of a reading at standstill."""
@@ -107,10 +108,24 @@ class MatingSettings:
     release_high_n: float = 20.0
 
     pins: PinSettings | None = None
-    seat: SeatLimits = field(default_factory=SeatLimits)
     max_lateral_n: float = 25.0
     max_moment_n_m: float = 25.0
     back_off_m: float = 2e-3
     back_off_speed_m_s: float = 1e-3
     stand_off_tolerance: tuple[float, float] = (2e-4, float(np.deg2rad(0.02)))
     """Distance (m) and angle (rad) the robot may be away from the planned stand-off."""
+
+    @property
+    def touch_peak_n(self) -> float:
+        """Predicted peak of the touch at the approach speed; the creep does the rest."""
+        return self.target_force_n
+
+    @property
+    def seat(self) -> SeatLimits:
+        """What the deck is judged by while the force is held."""
+        return seat_limits(
+            target_force_n=self.target_force_n,
+            abort_force_n=self.abort_force_n,
+            max_lateral_n=self.max_lateral_n,
+            half_size_m=self.half_size_m,
+        )

@@ -2,12 +2,13 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from cellctl.errors.force import PayloadRejected
+from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.force.acceptance import PayloadLimits
 from cellctl.force.payload import fit_affine24, fit_rigid12, identify_payload
 from cellctl.force.payload_result import (
     compensation_from_document,
     evaluate_payload,
+    mass_kg,
     payload_document,
 )
 from tests.unit.force.world import LoadedSensor, cone, imperfect, record, rotations
@@ -119,8 +120,14 @@ def test_a_good_record_is_accepted_and_read_back(seed: int) -> None:
 def test_identifying_without_the_deck_is_rejected_by_mass() -> None:
     rng = np.random.default_rng(8)
     result = evaluate_payload(record(LoadedSensor(mass_kg=150.0), rng), expected_mass_kg=200.0)
-    with pytest.raises(PayloadRejected, match="mass against CAD"):
-        result.require_accepted()
+    assert [check.name for check in result.checks if not check.passed] == ["mass against CAD"]
+
+
+def test_the_mass_is_read_back_from_the_record() -> None:
+    result = evaluate_payload(record(LoadedSensor(), np.random.default_rng(3)))
+    assert mass_kg(payload_document(result)) == result.identification.rigid.mass_kg
+    with pytest.raises(CalibrationRecordInvalid, match="no mass"):
+        mass_kg({"accepted": True})
 
 
 def test_drift_between_first_and_last_pose_is_rejected() -> None:

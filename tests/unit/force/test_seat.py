@@ -1,10 +1,13 @@
 import numpy as np
 import pytest
 
-from cellctl.force.seat import SeatFinding, SeatLimits, judge_seat
+from cellctl.force.seat import SeatFinding, judge_seat, seat_limits
 
 GOOD = np.array([0.5, -0.3, 38.0, 2.0, 9.0, 0.1])
 STIFFNESS = 7.5e5
+SHIPPED = seat_limits(
+    target_force_n=35.0, abort_force_n=45.0, max_lateral_n=25.0, half_size_m=(0.5, 0.25)
+)
 
 
 def judge(wrench: np.ndarray, gap_m: float = 0.0) -> tuple[SeatFinding, ...]:
@@ -14,7 +17,7 @@ def judge(wrench: np.ndarray, gap_m: float = 0.0) -> tuple[SeatFinding, ...]:
         travel_m=travel_m,
         expected_m=0.010,
         stiffness_n_m=STIFFNESS,
-        limits=SeatLimits(),
+        limits=SHIPPED,
     ).findings
 
 
@@ -42,10 +45,9 @@ def test_each_component_alone_spoils_it(index: int, value: float, finding: SeatF
 
 def test_force_without_depth_is_a_false_seat() -> None:
     found = judge_seat(
-        GOOD, travel_m=0.004, expected_m=0.010, stiffness_n_m=STIFFNESS, limits=SeatLimits()
+        GOOD, travel_m=0.004, expected_m=0.010, stiffness_n_m=STIFFNESS, limits=SHIPPED
     )
     assert found.findings == (SeatFinding.HIGH,)
-    assert found.false_seat
     assert not found.seated
     assert found.gap_m == pytest.approx(0.006 + 38.0 / STIFFNESS)
 
@@ -58,3 +60,18 @@ def test_resting_on_the_long_edge_within_tolerance_is_allowed() -> None:
     wrench = GOOD.copy()
     wrench[4] = 45.0 * 0.5
     assert judge(wrench) == ()
+
+
+def test_the_shipped_recipe_has_the_bounds_of_the_paper_s_deck() -> None:
+    assert (SHIPPED.force_low_n, SHIPPED.force_high_n) == (35.0, 45.0)
+    assert SHIPPED.lateral_n == 20.0
+    assert SHIPPED.moment_n_m == (14.0, 24.0, 8.0)
+
+
+def test_an_edge_of_another_deck_has_another_moment() -> None:
+    small = seat_limits(
+        target_force_n=60.0, abort_force_n=75.0, max_lateral_n=40.0, half_size_m=(0.2, 0.1)
+    )
+    assert small.lateral_n == 32.0
+    assert small.moment_n_m[0] == pytest.approx(75.0 * 0.1 + 2.75)
+    assert small.moment_n_m[1] == pytest.approx(75.0 * 0.2 + 1.5)

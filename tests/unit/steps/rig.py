@@ -60,6 +60,7 @@ class RunRig:
             "recipe": self.bench.cell.config.recipes[0],
             "calibrations": self.calibrations,
             "commissioned": Commissioned(),
+            "payload_kg": 200.0,
             "frame_features": frame,
             "deck_features": deck,
             "board": self.board,

@@ -1,5 +1,8 @@
 """What a contact is planned with: the recipe's bounds, or what commissioning has measured."""
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -8,6 +11,7 @@ from cellctl.config.recipe import Pins
 from cellctl.steps.compensate import compensate
 from cellctl.steps.contact_plan import contact_plan, mating_settings
 from cellctl.steps.mating.plan import MatingPlan
+from cellctl.steps.mating.settings import MatingSettings
 from tests.unit.steps.rig import RunRig
 from tests.unit.steps.test_steps import at_the_stand_off
 
@@ -16,6 +20,13 @@ async def plan_of(rig: RunRig, commissioned: Commissioned) -> MatingPlan:
     run = await at_the_stand_off(rig)
     await compensate(run)
     return contact_plan(run, commissioned)
+
+
+def settings_of(rig: RunRig, payload_kg: float = 200.0, **recipe: Any) -> MatingSettings:
+    """Of the shipped recipe with changes."""
+    config = rig.bench.cell.config
+    changed = config.recipes[0].model_copy(update=recipe)
+    return mating_settings(config, changed, Commissioned(), payload_kg)
 
 
 async def test_without_commissioning_the_bounds_of_the_recipe_count(rig: RunRig) -> None:
@@ -39,7 +50,7 @@ def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
     config = rig.bench.cell.config
     pins = Pins(engagement_mm=3.0, max_yaw_deg=0.02, max_travel_mm=0.1)
     mating = config.recipes[0].mating.model_copy(update={"pins": pins})
-    settings = mating_settings(config, mating, Commissioned()).pins
+    settings = settings_of(rig, mating=mating).pins
     assert settings is not None
     assert settings.engagement_m == pytest.approx(3e-3)
     assert settings.greatest_travel_m == pytest.approx(1e-4)
@@ -51,5 +62,32 @@ def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
 def test_no_measurement_goes_beyond_the_bound(rig: RunRig) -> None:
     config = rig.bench.cell.config
     stiff = Commissioned(stiffness_n_m=9e5)
-    settings = mating_settings(config, config.recipes[0].mating, stiff)
+    settings = mating_settings(config, config.recipes[0], stiff, 200.0)
     assert settings.stiffness_n_m == config.recipes[0].mating.stiffness_n_per_mm * 1e3
+
+
+def test_the_shipped_recipe_is_what_the_settings_default_to(rig: RunRig) -> None:
+    shipped = settings_of(rig)
+    default = MatingSettings(shipped.stop_latency_s, shipped.stiffness_n_m)
+    assert shipped == replace(default, stale_s=shipped.stale_s, flange_age_s=shipped.flange_age_s)
+
+
+def test_force_and_side_force_of_the_recipe_reach_the_seat_and_the_speed(rig: RunRig) -> None:
+    mating = rig.run().recipe.mating
+    forces = {"target_force_n": 60.0, "limit_force_n": 90.0, "max_lateral_force_n": 40.0}
+    settings = settings_of(rig, mating=mating.model_copy(update=forces))
+    assert settings.touch_peak_n == 60.0
+    assert settings.seat.force_low_n == 60.0
+    assert settings.seat.force_high_n == settings.abort_force_n == 85.0
+    assert settings.seat.lateral_n == 32.0
+
+
+def test_another_deck_has_its_own_size_mass_and_zero(rig: RunRig) -> None:
+    mating = rig.run().recipe.mating.model_copy(
+        update={"max_untared_force_n": 30.0, "max_untared_moment_n_m": 12.0}
+    )
+    settings = settings_of(rig, 70.0, face_mm=(600.0, 400.0), mating=mating)
+    assert settings.half_size_m == pytest.approx((0.3, 0.2))
+    assert settings.moving_mass_kg == 70.0
+    assert settings.plausible == (30.0, 12.0)
+    assert settings.seat.moment_n_m == pytest.approx((45.0 * 0.2 + 2.75, 45.0 * 0.3 + 1.5, 4.8))

@@ -60,6 +60,21 @@ def test_a_good_deck_is_seated_below_the_limit() -> None:
     ]
 
 
+@pytest.mark.parametrize(("target_n", "limit_n"), [(25.0, 40.0), (60.0, 80.0)])
+def test_a_recipe_with_another_force_seats_too(target_n: float, limit_n: float) -> None:
+    cell = cell_of(seed=6, stiffness_n_m=1e6)
+    settings = replace(
+        nominal_settings(LATENCY_S),
+        target_force_n=target_n,
+        limit_force_n=limit_n,
+        abort_force_n=limit_n - 5.0,
+    )
+    result = mated(cell, plan_for(cell, settings))
+    assert result.outcome is MatingOutcome.SEATED, result.verdict.findings
+    assert target_n <= result.verdict.force_n
+    assert cell.world.payload.peak_contact_force_n < limit_n
+
+
 def test_the_record_holds_formula_curve_and_stiffness() -> None:
     cell = cell_of(seed=2, stiffness_n_m=1e6)
     plan = plan_for(cell, nominal_settings(LATENCY_S))
