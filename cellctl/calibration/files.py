@@ -18,9 +18,11 @@ from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.calibration.board_transfer import TransferResult
 from cellctl.calibration.checks import require_passed
 from cellctl.calibration.stereo_result import StereoResult
+from cellctl.durable import write_durably
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
+    CalibrationNotStored,
     CalibrationRecordInvalid,
 )
 from cellctl.geometry.uncertain import UncertainPose
@@ -104,7 +106,10 @@ def write_calibration(
     valid_until: datetime,
     serial_number: str = "",
 ) -> StoredCalibration:
-    """Write ``<kind>.json`` whole or not at all. Raises ``ResultOutOfLimits`` if not passed."""
+    """Write ``<kind>.json`` whole or not at all.
+
+    Raises ``ResultOutOfLimits`` if not passed, ``CalibrationNotStored`` if it cannot be written.
+    """
     require_passed(result.checks)
     stored = StoredCalibration(
         kind, result.to_record(), made, valid_until, f"cellctl {__version__}", serial_number
@@ -114,7 +119,7 @@ def write_calibration(
 
 
 def write_stored(folder: Path, stored: StoredCalibration) -> None:
-    """Write ``<kind>.json`` whole or not at all."""
+    """Write ``<kind>.json`` whole or not at all; raises ``CalibrationNotStored``."""
     envelope = {
         "kind": stored.kind,
         "id": stored.id,
@@ -124,10 +129,16 @@ def write_stored(folder: Path, stored: StoredCalibration) -> None:
         "serial_number": stored.serial_number,
         "record": stored.record,
     }
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f".{stored.kind}.json.new"
-    draft.write_text(json.dumps(envelope, indent=1, allow_nan=False) + "\n", encoding="utf-8")
-    draft.replace(folder / f"{stored.kind}.json")
+    text = json.dumps(envelope, indent=1, allow_nan=False) + "\n"
+    write_file(folder / f"{stored.kind}.json", text.encode())
+
+
+def write_file(path: Path, data: bytes) -> None:
+    """A file of the folder, durably; raises ``CalibrationNotStored``."""
+    try:
+        write_durably(path, data)
+    except OSError as error:
+        raise CalibrationNotStored(f"{path}: {error.strerror or error}") from error
 
 
 def read_calibration(folder: Path, kind: str) -> StoredCalibration:

@@ -16,15 +16,18 @@ from cellctl.calibration.files import (
     StoredCalibration,
     read_calibration,
     read_calibration_set,
+    write_file,
     write_stored,
 )
 from cellctl.calibration.stereo_result import StereoResult
 from cellctl.cell.commissioned import Commissioned, read_commissioned
 from cellctl.clock import utc_now
+from cellctl.durable import require_writable
 from cellctl.errors import CellError
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
+    CalibrationNotStored,
     CalibrationRecordInvalid,
 )
 from cellctl.force.compensation import Compensation
@@ -110,7 +113,8 @@ class CalibrationFolder:
     ) -> StoredCalibration:
         """Put a record that passed into the folder, in place of the one before.
 
-        A head that is calibrated anew makes its placement of the target board worthless.
+        A head that is calibrated anew makes its placement of the target board worthless. Raises
+        ``CalibrationNotStored``.
         """
         now = utc_now()
         plain = json.loads(json.dumps(record))  # as it will be read back
@@ -119,20 +123,29 @@ class CalibrationFolder:
         )
         write_stored(self.path, stored)
         if picture_png is not None:
-            (self.path / f"{kind}.png").write_bytes(picture_png)
+            write_file(self.path / f"{kind}.png", picture_png)
         self.placements.pop(kind, None)
         self._seen = None
         return stored
 
     def put_aside(self, kind: str, record: Mapping[str, Any], picture_png: bytes | None) -> Path:
-        """Keep a result that did not pass where nothing reads it; the folder."""
+        """Keep a result that did not pass where nothing reads it; the folder.
+
+        Raises ``CalibrationNotStored``.
+        """
         folder = self.path / "rejected"
-        folder.mkdir(parents=True, exist_ok=True)
         text = json.dumps(record, indent=1) + "\n"
-        (folder / f"{kind}.json").write_text(text, encoding="utf-8")
+        write_file(folder / f"{kind}.json", text.encode())
         if picture_png is not None:
-            (folder / f"{kind}.png").write_bytes(picture_png)
+            write_file(folder / f"{kind}.png", picture_png)
         return folder
+
+    def require_writable(self) -> None:
+        """Raise ``CalibrationNotStored`` when no result could be stored here."""
+        try:
+            require_writable(self.path)
+        except OSError as error:
+            raise CalibrationNotStored(f"{self.path}: {error.strerror or error}") from error
 
     def stored(self) -> list[StoredCalibration]:
         """Every record that production demands; raises when one is missing or damaged."""

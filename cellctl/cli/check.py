@@ -7,6 +7,7 @@ import typer
 from rich.console import Console
 
 from cellctl.config import load_cell, problems
+from cellctl.durable import may_write
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
@@ -26,3 +27,10 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
         console.print(f"  {key:20} {device.driver}")
     for recipe in cell.recipes:
         console.print(f"  recipe {recipe.id:<13} {recipe.name}")
+    calibrations = cell_file.parent / cell.calibration_dir
+    if not may_write(calibrations):
+        console.print(
+            f"  calibration_dir {calibrations}: this user may not write it, the daemon's must",
+            style="yellow",
+            markup=False,
+        )

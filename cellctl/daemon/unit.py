@@ -65,7 +65,12 @@ class Unit:
         """Good parts since installation."""
 
     async def open(self) -> None:
-        """Close runs that an earlier process left open, as interrupted; take over its alarms."""
+        """Close runs that an earlier process left open, as interrupted; take over its alarms.
+
+        Raises the faults of the store, and ``CalibrationNotStored`` while no procedure could keep
+        its result.
+        """
+        await asyncio.to_thread(self.desk.calibrations.require_writable)
         interrupted = await self._archive.do(RunStore.mark_interrupted)
         if interrupted:
             _log.warning("an earlier process left runs open", runs=interrupted)

@@ -8,7 +8,9 @@ CalibrationError
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
 ├── PosesNotDiverse, RobotCameraMismatch                             623 624  hand-eye, tool
-└── CalibrationRecordInvalid, CalibrationMissing, CalibrationExpired 631–633  stored results
+└── CalibrationRecordInvalid, CalibrationMissing, CalibrationExpired,
+    CalibrationNotStored, CalibrationInvalidated, ClockNotTrusted,
+    HeadPoseChanged                                                  631–637  stored results
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -177,9 +179,48 @@ class CalibrationMissing(CalibrationError):
 
 
 class CalibrationExpired(CalibrationError):
-    """A calibration is past its date or was invalidated."""
+    """A calibration is past its date."""
 
     number = 633
     text = "A needed calibration is no longer valid"
-    cause = "Its validity has ended, or an event such as a collision invalidated it."
+    cause = "Its validity has ended, or would end during the run."
     remedy = "Run the calibration named in the detail in Maintenance mode."
+
+
+class CalibrationNotStored(CalibrationError):
+    """A calibration, or word that one is invalid, did not reach the disk."""
+
+    number = 634
+    text = "Calibration could not be stored"
+    cause = "calibration_dir is read-only, belongs to somebody else, or its disk is full."
+    remedy = (
+        "Give the daemon's user a calibration_dir that it may write, such as "
+        "/var/lib/cellctl/calibration; restart the daemon and repeat the procedure."
+    )
+
+
+class CalibrationInvalidated(CalibrationError):
+    """An event has made a calibration worthless before its date."""
+
+    number = 635
+    text = "A needed calibration was invalidated"
+    cause = "The event in the detail may have moved what was calibrated."
+    remedy = "Look at what happened; then run the calibration in Maintenance mode."
+
+
+class ClockNotTrusted(CalibrationError):
+    """The clock of the PC is behind something that it has stamped before."""
+
+    number = 636
+    text = "Clock of the PC cannot be trusted"
+    cause = "The clock was set back, or it was ahead when the record in the detail was written."
+    remedy = "Set the clock, see that it is synchronised, and start again."
+
+
+class HeadPoseChanged(CalibrationError):
+    """A head's measuring pose is not the one at which it was calibrated."""
+
+    number = 637
+    text = "A head measures from another pose than it was calibrated at"
+    cause = "measuring_joints_deg of the cell file was taught anew after procedures 104 and 105."
+    remedy = "Restore the joints in the detail, or run procedures 104 and 105."

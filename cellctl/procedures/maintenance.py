@@ -13,7 +13,7 @@ from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.step import Step
 from cellctl.errors import CellError
-from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
 from cellctl.plc.commands import LineCommand
 from cellctl.procedures.base_frame import calibrate_base
 from cellctl.procedures.contact_stiffness import measure_contact_stiffness_on_cell
@@ -108,15 +108,15 @@ class Maintenance(Job):
         return self._command.order or "line"
 
     async def _keep(self, outcome: ProcedureOutcome) -> None:
-        """Store a result that passed; put a bad one aside for whoever looks for the reason."""
+        """Store a result that passed; put a bad one aside for whoever looks for the reason.
+
+        Raises ``CalibrationNotStored``, ``ResultOutOfLimits`` or ``RecordNotWritten``.
+        """
         for warning in outcome.warnings:
             _log.warning("calibration", item=outcome.item, warning=warning)
         if not outcome.passed:
-            folder = await asyncio.to_thread(
-                self._calibrations.put_aside, outcome.item, outcome.record, outcome.picture_png
-            )
             reasons = "; ".join(_failed_checks(outcome)) or "see the record"
-            raise ResultOutOfLimits(f"{outcome.item}: {reasons}; kept in {folder}")
+            raise ResultOutOfLimits(f"{outcome.item}: {reasons}; {await self._put_aside(outcome)}")
         days = self._cell.config.procedures.validity_days
         stored = await asyncio.to_thread(
             self._calibrations.store,
@@ -130,6 +130,15 @@ class Maintenance(Job):
         detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
         await self._archive.do(RunStore.audit, self._who, "calibration stored", detail)
         _log.info("calibration stored", item=outcome.item, id=stored.id)
+
+    async def _put_aside(self, outcome: ProcedureOutcome) -> str:
+        try:
+            folder = await asyncio.to_thread(
+                self._calibrations.put_aside, outcome.item, outcome.record, outcome.picture_png
+            )
+        except CalibrationNotStored as error:
+            return f"and not kept: {error.detail}"
+        return f"kept in {folder}"
 
 
 def _failed_checks(outcome: ProcedureOutcome) -> list[str]:

@@ -1,9 +1,9 @@
 """Files beside the database, each under the SHA-256 of its bytes: written once, never changed."""
 
 import hashlib
-import os
 from pathlib import Path
 
+from cellctl.durable import write_durably
 from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
 
 
@@ -23,7 +23,7 @@ class ArtefactFolder:
         path = self.path(sha256)
         try:
             if not (path.exists() and path.stat().st_size == len(data)):
-                _write_durably(path, data)
+                write_durably(path, data)
         except OSError as error:
             raise RecordNotWritten(f"{path.name}: {error.strerror}") from error
         return sha256
@@ -37,20 +37,3 @@ class ArtefactFolder:
         if hashlib.sha256(data).hexdigest() != sha256:
             raise ArtefactDamaged(f"{sha256[:12]}: content does not match its name")
         return data
-
-
-def _write_durably(path: Path, data: bytes) -> None:
-    """All or nothing, also over a power cut: file, then name, then directory."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_suffix(".part")
-    with draft.open("wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())
-    draft.replace(path)
-    for folder in (path.parent, path.parent.parent):
-        descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(descriptor)
-        finally:
-            os.close(descriptor)

@@ -1,16 +1,20 @@
 """The folder of calibrations: what production gets, and what the line is told."""
 
 import json
+import os
+import stat
 from datetime import timedelta
+from pathlib import Path
 
 import pytest
 
 from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import read_calibration
-from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD
+from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD, CalibrationFolder
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
+    CalibrationNotStored,
     CalibrationRecordInvalid,
 )
 from tests.unit.cell.bench import Bench, renew_calibrations, spoil
@@ -88,3 +92,43 @@ def test_a_bad_result_is_kept_where_nothing_reads_it(bench: Bench) -> None:
     folder = bench.calibrations.put_aside("head_1", {"verdict": "fail"}, b"picture")
     assert json.loads((folder / "head_1.json").read_text()) == {"verdict": "fail"}
     assert bench.calibrations.read(HOUR).ids == before
+
+
+def test_a_folder_that_cannot_be_written_is_a_numbered_fault(tmp_path: Path) -> None:
+    (tmp_path / "calibration").write_text("a file, no folder")
+    folder = CalibrationFolder(tmp_path / "calibration")
+    for attempt in (
+        folder.require_writable,
+        lambda: folder.store("head_1", {}, "FH-0001", HOUR),
+        lambda: folder.put_aside("head_1", {}, None),
+    ):
+        with pytest.raises(CalibrationNotStored, match="F634"):
+            attempt()
+
+
+def test_the_probe_leaves_nothing(tmp_path: Path) -> None:
+    CalibrationFolder(tmp_path / "new" / "calibration").require_writable()
+    assert list((tmp_path / "new" / "calibration").iterdir()) == []
+
+
+def test_a_calibration_is_on_the_disk_before_it_has_its_name(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Bytes, then name, then the folder's entry."""
+    done: list[str] = []
+    fsync, replace = os.fsync, Path.replace
+
+    def synced(descriptor: int) -> None:
+        done.append("folder" if stat.S_ISDIR(os.fstat(descriptor).st_mode) else "file")
+        fsync(descriptor)
+
+    def named(draft: Path, target: Path) -> Path:
+        done.append("name")
+        return replace(draft, target)
+
+    monkeypatch.setattr(os, "fsync", synced)
+    monkeypatch.setattr(Path, "replace", named)
+    record = read_calibration(bench.calibrations.path, "head_1").record
+    bench.calibrations.store("head_1", record, "FH-0001", HOUR)
+    assert done == ["file", "name", "folder"]
+    assert not list(bench.calibrations.path.glob("*.part"))

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
+from cellctl.cli import check
 from cellctl.cli.app import app
 from cellctl.config import load_cell, problems
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
@@ -17,6 +18,14 @@ CONFIG = Path(__file__).parents[3] / "config"
 @pytest.mark.parametrize("name", ["cell.fake.toml", "cell.toml"])
 def test_the_shipped_cell_files_are_good(name: str):
     assert problems(CONFIG / name) == []
+
+
+def test_the_template_keeps_its_data_where_the_unit_lets_the_daemon_write():
+    cell = load_cell(CONFIG / "cell.toml")
+    unit = (CONFIG.parent / "systemd" / "cellctl.service").read_text()
+    assert "StateDirectory=cellctl\n" in unit
+    for folder in (cell.data_dir, cell.calibration_dir):
+        assert Path("/var/lib/cellctl") in (Path(folder), *Path(folder).parents)
 
 
 def changed(tmp_path: Path, **replacements: str) -> Path:
@@ -101,3 +110,15 @@ def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
     assert result.exit_code == 1
     assert "recipes.0.compensation" in result.output
     assert CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")]).exit_code == 0
+
+
+def test_check_tells_of_calibrations_that_this_user_may_not_write(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    path = changed(tmp_path, folder=("demo-calibration", "calibration"))
+    assert "may not write" not in CliRunner().invoke(app, ["check", str(path)]).output
+    monkeypatch.setattr(check, "may_write", lambda _: False)
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert result.exit_code == 0
+    assert "may not write" in result.output
+    assert not (tmp_path / "calibration").exists()

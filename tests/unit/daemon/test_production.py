@@ -1,10 +1,12 @@
 """Whole runs through unit and line: good parts, stops, aborts, holds, and what is on record."""
 
 import asyncio
+from pathlib import Path
 
 import pytest
 
 from cellctl.cell.step import Step
+from cellctl.errors.calibration import CalibrationNotStored
 from cellctl.errors.force import ContactEarly, GuardDied
 from cellctl.errors.link import LinkLost
 from cellctl.errors.records import RecordNotWritten
@@ -15,6 +17,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.plc.result import Result
 from cellctl.records.store import RunStore
+from tests.unit.cell.bench import Bench
 from tests.unit.daemon.rig import DaemonRig
 
 GOOD_RUN = [
@@ -357,3 +360,13 @@ async def test_closing_aborts_and_seals(rig: DaemonRig) -> None:
     assert await rig.take(Command.CLEAR) is RejectCode.NONE
     await rig.to(State.STOPPED)
     assert await rig.take(Command.RESET) is RejectCode.DEVICE_NOT_READY
+
+
+async def test_a_daemon_that_could_not_keep_a_calibration_does_not_start(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.cell.config = bench.cell.config.model_copy(update={"calibration_dir": "/dev/null/x"})
+    rig = DaemonRig(bench, tmp_path / "store", monkeypatch)
+    with pytest.raises(CalibrationNotStored):
+        await rig.open()
+    await rig.close()

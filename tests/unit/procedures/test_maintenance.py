@@ -87,6 +87,15 @@ async def test_a_bad_result_is_put_aside_with_its_reason(
     assert "F614" in (await rig.audit())[-1][2]["fault"]
 
 
+async def test_a_bad_result_keeps_its_reason_when_it_cannot_be_put_aside(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    (rig.bench.calibrations.path / "rejected").write_text("a file, no folder")
+    procedure.append(outcome(rig, passed=False))
+    with pytest.raises(ResultOutOfLimits, match=r"rms 0\.31, limit 0\.2 px; and not kept"):
+        await rig.job(101).execute(rig.pauses)
+
+
 async def test_a_procedure_that_was_held_begins_again(
     rig: ProcedureRig, procedure: list[object]
 ) -> None:

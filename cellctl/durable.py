@@ -1,0 +1,55 @@
+"""Files that are there whole or not at all, also after a power cut."""
+
+import os
+import tempfile
+from pathlib import Path
+
+
+def write_durably(path: Path, data: bytes) -> None:
+    """Draft, its bytes to the disk, its name, then the folder's entry; raises ``OSError``."""
+    made = make_folder(path.parent)
+    draft = path.with_name(f"{path.name}.part")
+    with draft.open("wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+    draft.replace(path)
+    sync_folder(path.parent)
+    if made:
+        sync_folder(path.parent.parent)
+
+
+def remove_durably(path: Path) -> None:
+    """Remove a file if it is there; raises ``OSError``."""
+    if path.exists():
+        path.unlink()
+        sync_folder(path.parent)
+
+
+def make_folder(folder: Path) -> bool:
+    """Make a folder with those above it; True when it was not there. Raises ``OSError``."""
+    missing = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    return missing
+
+
+def require_writable(folder: Path) -> None:
+    """Raise ``OSError`` when no file can be made in a folder, which is made if need be."""
+    make_folder(folder)
+    with tempfile.TemporaryFile(dir=folder):
+        pass  # permissions alone say nothing of a file system that is mounted read-only
+
+
+def may_write(folder: Path) -> bool:
+    """True when this user seems to be allowed to make files in a folder; makes nothing."""
+    nearest = next(path for path in (folder, *folder.absolute().parents) if path.exists())
+    return os.access(nearest, os.W_OK | os.X_OK)
+
+
+def sync_folder(folder: Path) -> None:
+    """Names of the folder to the disk; raises ``OSError``."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
