@@ -23,6 +23,7 @@ from cellctl.interfaces import StereoPair
 from cellctl.plc.commands import LineCommand
 from cellctl.vision.features import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.misfit import Misfit
 from cellctl.vision.part_pose import PartPose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
@@ -91,7 +92,9 @@ class CellInMemory:
         self.tracker = InProcessTracker("tracker", {})
         self.guard = TinyGuard()
         self.workers = InlineWorkers()
+        self.connected = True
         self.base_T_frame: RigidTransform | None = None
+        self.awaits_trips = False
 
     @property
     def heads(self) -> tuple[HeadStation, HeadStation]:
@@ -209,7 +212,7 @@ def measurement(
     names = tuple(hole.name for hole in features.holes)
     pose = PartPose(
         UncertainPose(c1_T_part, covariance), covariance, names,
-        np.zeros((len(names), 3)), (), 1.0, 12,
+        np.zeros((len(names), 3)), (), Misfit(12.0, 12),
     )  # fmt: skip
     image = np.zeros((4, 6), np.uint8)
     pair = StereoPair(image, image, now_s(), 1)

@@ -15,6 +15,7 @@ from cellctl.errors.vision import HoleMissing, UncertaintyTooLarge
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.misfit import Misfit
 from cellctl.vision.part_pose import PartPose
 from tests.unit.cell.bench import Bench
 
@@ -50,7 +51,7 @@ class Eyes:
         assert one.frames == two.frames
         covariance = np.diag(SIGMA**2) / one.frames
         return PartPose(
-            UncertainPose(PLACE, covariance), covariance, (), np.zeros((0, 3)), (), 1.0, 6
+            UncertainPose(PLACE, covariance), covariance, (), np.zeros((0, 3)), (), Misfit(6.0, 6)
         )
 
 

@@ -34,6 +34,7 @@ class PaperPort:
         self.status = CellStatus()
         self.ended: dict[int, Result] = {}
         self.beats = 0
+        self.line_alive = False
 
     def publish(self, status: CellStatus) -> None:
         self.status = status
@@ -77,7 +78,7 @@ class DaemonRig:
         self.bench = bench
         self.contact = Contact()
         self.measurers: list[TruthMeasurer] = []
-        bench.cell.workers.answers["draw"] = lambda *_: b"picture"
+        bench.cell.workers.answers["draw"] = lambda *_: (b"picture", b"image")
         monkeypatch.setattr(preparation, "PartMeasurer", self._measurer)
         monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
         self._store = store
@@ -91,7 +92,7 @@ class DaemonRig:
         self.port = PaperPort()
         self.line.attach(cast(PlcPort, self.port))
         await self.unit.open()
-        self.unit.live = True
+        await self.unit.come_up()
         self.states: list[State] = []
         self.unit.machine.on_change.append(self._changed)
 
@@ -108,6 +109,11 @@ class DaemonRig:
         self._seq += 1
         fields = {"recipe_id": 1, "unit_mode": 0} | fields
         return await self.line.take(start_command(self._seq, cntrl_cmd=command, **fields))
+
+    async def ask(self, command: Command, by: str = "terminal:anna", **fields: Any) -> RejectCode:
+        """A command of the terminal."""
+        fields = {"recipe_id": 1, "unit_mode": 0} | fields
+        return await self.line.take(start_command(0, cntrl_cmd=command, by=by, **fields))
 
     async def to(self, *states: State) -> State:
         return await self.unit.machine.wait_for(*states, timeout_s=WAIT_S)
