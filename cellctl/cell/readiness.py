@@ -3,8 +3,11 @@
 from collections.abc import Iterable
 
 from cellctl.errors import CellError
-from cellctl.errors.robot import RobotNotReady
+from cellctl.errors.robot import RobotNotReady, SpeedOverridden
 from cellctl.interfaces import Robot, RobotState
+
+OVERRIDE_BAND_PERCENT = 0.5
+"""Controllers report whole percents."""
 
 
 def require_ready(robots: Iterable[Robot]) -> None:
@@ -12,6 +15,17 @@ def require_ready(robots: Iterable[Robot]) -> None:
     reasons = [f"{robot.name}: {why}" for robot in robots for why in _reasons(robot)]
     if reasons:
         raise RobotNotReady("; ".join(reasons))
+
+
+def require_full_speed(robot: Robot) -> None:
+    """Raise ``SpeedOverridden`` when the robot moves slower than it is told to.
+
+    Then it would overrun less while its stop is measured than with the override at 100 %, and
+    nothing that is planned on times would hold.
+    """
+    percent = 100.0 * robot.state().speed_override_ratio
+    if not abs(percent - 100.0) < OVERRIDE_BAND_PERCENT:
+        raise SpeedOverridden(f"{robot.name}: {percent:.0f} %")
 
 
 def _reasons(robot: Robot) -> list[str]:

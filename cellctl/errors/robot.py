@@ -78,3 +78,13 @@ class HeadMoved(RobotError):
     cause = "Brake slip, a manual jog, or a collision."
     remedy = "Start the run again; if it recurs check the auxiliary robot."
     reaction = Reaction.STOP
+
+
+class SpeedOverridden(RobotError):
+    """The speed override on the panel is not at 100 %."""
+
+    number = 309
+    text = "Robot's speed override is not 100 %"
+    cause = "Somebody turned it on the panel; measured stops and planned contacts count on it."
+    remedy = "Set the override on the robot's panel to 100 %, then start again."
+    reaction = Reaction.STOP

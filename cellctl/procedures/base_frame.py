@@ -6,19 +6,24 @@ from cellctl.calibration.axis_fit import AxisStop
 from cellctl.calibration.base_frame import ArmGeometry, calibrate_base_frame
 from cellctl.calibration.base_frame_picture import base_frame_picture
 from cellctl.geometry.pose import MM, Array
+from cellctl.procedures.beginning import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.steps.positions import main_to_home
 
 
 async def calibrate_base(context: ProcedureContext) -> ProcedureOutcome:
-    """Turn A1 alone, then A2 alone, and measure the flange's targets at every stop."""
+    """Turn A1 alone, then A2 alone, and measure the flange's targets at every stop.
+
+    From home, with both heads retracted; each turn is entered from the middle of its arc.
+    """
     cell = context.cell
     settings, main = cell.config.procedures, cell.config.robots.main
     start_rad = np.radians(settings.base_frame_joints_deg)
-    stops = settings.circle_stops
-    a1_stops = await _turn(context, 0, _angles(start_rad, 0, settings.circle_arc_deg, stops))
-    a2_stops = await _turn(context, 1, _angles(start_rad, 1, settings.circle_arc_deg, stops))
+    await clear_the_cell(context)
+    a1_stops = await _turn(context, 0, start_rad)
+    a2_stops = await _turn(context, 1, start_rad)
     await _move(context, start_rad)
-    await _move(context, np.radians(main.home_joints_deg))
+    await main_to_home(cell)
     arm = ArmGeometry(d1_m=main.d1_mm * MM, a1_m=main.a1_mm * MM)
     result = await cell.workers.run(calibrate_base_frame, a1_stops, a2_stops, arm)
     return ProcedureOutcome(
@@ -41,13 +46,15 @@ def _angles(start_rad: Array, axis: int, arc_deg: float, stops: int) -> list[Arr
     return targets
 
 
-async def _turn(context: ProcedureContext, axis: int, targets: list[Array]) -> list[AxisStop]:
-    frames = context.cell.config.procedures.tracker_frames
+async def _turn(context: ProcedureContext, axis: int, start_rad: Array) -> list[AxisStop]:
+    settings = context.cell.config.procedures
+    targets = _angles(start_rad, axis, settings.circle_arc_deg, settings.circle_stops)
+    await _move(context, start_rad)
     stops = []
     for number, joints_rad in enumerate(targets, start=1):
         await context.progress(number, len(targets), f"axis A{axis + 1}: stop")
         await _move(context, joints_rad)
-        seen = await context.cell.tracker.measure(frames)
+        seen = await context.cell.tracker.measure(settings.tracker_frames)
         flange = tuple(target for target in seen if target.name.startswith("F"))
         stops.append(AxisStop(context.cell.main.state().joints_rad, flange))
     return stops

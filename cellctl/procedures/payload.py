@@ -13,6 +13,7 @@ from cellctl.force.poses import PoseRole, plan_identification
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.report import Curve, GuardSample
 from cellctl.interfaces import Robot
+from cellctl.procedures.beginning import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload_picture import residual_picture
 
@@ -47,9 +48,7 @@ async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcom
     """
     cell = context.cell
     settings, main = cell.config.procedures, cell.config.robots.main
-    await cell.main.move_joint(
-        np.radians(main.home_joints_deg), speed_ratio=main.speed_percent / 100
-    )
+    await clear_the_cell(context)
     flange_T_sensor = pose_from_xyzabc(main.flange_T_sensor)
     poses = plan_identification(
         cell.main.state().base_T_flange,

@@ -10,6 +10,7 @@ from cellctl.calibration.stereo_picture import stereo_picture
 from cellctl.cell.head_station import HeadStation
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.procedures.beginning import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.views import stereo_views
 
@@ -21,10 +22,7 @@ async def calibrate_head(context: ProcedureContext, station: HeadStation) -> Pro
     settings = context.cell.config.procedures
     columns, rows = (int(number) for number in settings.board.split("x"))
     board = CalibrationBoard(columns, rows, settings.square_mm * MM)
-    await station.robot.move_joint(
-        np.radians(station.config.measuring_joints_deg),
-        speed_ratio=station.config.speed_percent / 100,
-    )
+    await clear_the_cell(context, measuring=station)
     poses = _flange_poses(station, settings.stereo_views)
     views: list[BoardView] = []
     image_size = (0, 0)

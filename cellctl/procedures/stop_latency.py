@@ -1,6 +1,7 @@
 """Procedure 107: how long the main robot takes to stop at the speeds of mating."""
 
 import asyncio
+from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,11 +10,13 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Check, Checks, all_passed, evidence_to_record
 from cellctl.cell.commissioned import STOP_LATENCY
+from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
+from cellctl.procedures.beginning import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.pictures import latency_picture
 
@@ -43,11 +46,12 @@ class StopLatency:
 async def measure_stop_latency_on_cell(context: ProcedureContext) -> ProcedureOutcome:
     """Stop the main robot on its way up from home, at several speeds."""
     cell = context.cell
-    main = cell.config.robots.main
-    await cell.main.move_joint(
-        np.radians(main.home_joints_deg), speed_ratio=main.speed_percent / 100
-    )
-    measured = await measure_stop_latency(cell.main, np.array([0.0, 0.0, 1.0]))
+    await clear_the_cell(context)
+
+    async def safe_point(number: int, total: int) -> None:
+        await context.progress(number, total, "stop")
+
+    measured = await measure_stop_latency(cell.main, np.array([0.0, 0.0, 1.0]), safe_point)
     bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.config.recipes)
     checks = _checks(measured.estimate, bound_ms)
     data = measured.estimate, measured.speeds_m_s, measured.overruns_m
@@ -87,18 +91,22 @@ def _record(measured: StopLatency, checks: Checks) -> dict[str, Any]:
 async def measure_stop_latency(
     robot: Robot,
     direction: Array,
+    safe_point: Callable[[int, int], Awaitable[None]],
+    *,
     speeds_m_s: tuple[float, ...] = SPEEDS_M_S,
     repeats: int = REPEATS,
 ) -> StopLatency:
     """Start, request a stop on the way, and measure how far the arm still goes; return each time.
 
-    ``direction``: unit vector in the base that is free for 30 mm. Raises ``CommissioningFailed``
-    and what the robot raises.
+    ``direction``: unit vector in the base that is free for 30 mm; ``safe_point`` is awaited at
+    standstill before each stop with its number and how many there are. Raises
+    ``SpeedOverridden``, ``CommissioningFailed`` and what the robot and ``safe_point`` raise.
     """
     home = robot.state().base_T_flange
     speeds = [speed for speed in speeds_m_s for _ in range(repeats)]
     overruns = []
-    for speed_m_s in speeds:
+    for number, speed_m_s in enumerate(speeds, start=1):
+        await safe_point(number, len(speeds))
         overruns.append(await _overrun(robot, direction, speed_m_s))
         await robot.rearm()
         await robot.move_linear(home, speed_m_s=0.01, acceleration_m_s2=ACCELERATION_M_S2)
@@ -107,6 +115,7 @@ async def measure_stop_latency(
 
 
 async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
+    require_full_speed(robot)
     start = robot.state().base_T_flange
     target = RigidTransform.from_translation(direction * TRAVEL_M) * start
     motion = asyncio.create_task(
@@ -123,6 +132,7 @@ async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
     finally:
         motion.cancel()
         await asyncio.gather(motion, return_exceptions=True)
+    require_full_speed(robot)
     end_m = float((await _at_rest(robot) - start.translation) @ direction)
     if end_m > TRAVEL_M - speed_m_s * 0.1:
         raise CommissioningFailed(

@@ -1,7 +1,5 @@
 """Procedures 104, 105: the target board before head I, then II (paper fig. 3, eq. 1 to 3)."""
 
-import numpy as np
-
 from cellctl.calibration.board_pose import (
     BoardPoint,
     BoardPose,
@@ -17,6 +15,7 @@ from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.cell.head_station import HeadStation
 from cellctl.cell.together import together
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.procedures.beginning import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.vision.average import average
 from cellctl.vision.features import Hole
@@ -36,12 +35,9 @@ async def measure_board(context: ProcedureContext, station: HeadStation) -> Proc
     seen an hour ago, before something else was calibrated, must not meet what is seen now.
     """
     calibrations = context.calibrations
-    await station.robot.move_joint(
-        np.radians(station.config.measuring_joints_deg),
-        speed_ratio=station.config.speed_percent / 100,
-    )
+    await clear_the_cell(context, measuring=station)
     model = calibrations.head(station.name)
-    context.board.update(message=f"{station.name}: target board")
+    await context.progress(1, 1, f"{station.name}: target board")
     in_head, in_large_field = await together(
         _in_head(context, station, model), _in_large_field(context)
     )

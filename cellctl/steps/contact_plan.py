@@ -4,6 +4,7 @@ import math
 
 from cellctl.cell.commissioned import Commissioned
 from cellctl.cell.measuring import require_unmoved
+from cellctl.cell.readiness import require_full_speed
 from cellctl.config.cell import CellConfig
 from cellctl.config.recipe import Pins, Recipe
 from cellctl.force.approach import planned_stiffness
@@ -21,12 +22,14 @@ RELEASE_BAND_N = 5.0
 def contact_plan(run: AssemblyRun, commissioned: Commissioned) -> MatingPlan:
     """From the pose that was measured, which must still be the present one.
 
-    Raises ``HeadMoved`` when it is not, ``MatingPlanInvalid`` when no plan is safe.
+    Raises ``HeadMoved`` when it is not, ``SpeedOverridden`` when the robot would not move as
+    planned, ``MatingPlanInvalid`` when no plan is safe.
     """
     assert run.flange_T_deck is not None
     assert run.M_T_D is not None
     assert run.measured_at is not None
     require_unmoved("the main robot", run.cell.main, run.measured_at)
+    require_full_speed(run.cell.main)
     recipe, config = run.recipe, run.cell.config
     return plan_mating(
         base_T_flange=run.cell.main.state().base_T_flange,

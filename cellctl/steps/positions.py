@@ -7,6 +7,7 @@ from cellctl import log
 from cellctl.cell.devices import Cell
 from cellctl.cell.head_station import HeadStation
 from cellctl.cell.together import together
+from cellctl.config.base import JointsDeg
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.interfaces import RobotState
@@ -28,11 +29,21 @@ NEAR_STATION_M = 0.8
 
 async def heads_to_measuring_poses(cell: Cell) -> None:
     """Both heads at once; a head that is there already does not move."""
-    await together(*(_head_to_measuring_pose(head) for head in cell.heads))
+    await together(*(head_to_measuring_pose(head) for head in cell.heads))
 
 
-async def _head_to_measuring_pose(head: HeadStation) -> None:
-    target_rad = np.radians(head.config.measuring_joints_deg)
+async def head_to_measuring_pose(head: HeadStation) -> None:
+    """One head; it does not move when it is there already."""
+    await _head_to(head, head.config.measuring_joints_deg)
+
+
+async def head_to_retracted_pose(head: HeadStation) -> None:
+    """One head out of the way; it does not move when it is there already."""
+    await _head_to(head, head.config.retracted_joints_deg)
+
+
+async def _head_to(head: HeadStation, joints_deg: JointsDeg) -> None:
+    target_rad = np.radians(joints_deg)
     if not _is_at(head.robot.state(), target_rad):
         await head.robot.move_joint(target_rad, speed_ratio=head.config.speed_percent / 100)
 

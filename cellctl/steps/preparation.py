@@ -12,6 +12,7 @@ from cellctl.cell.devices import Cell
 from cellctl.cell.job import HeldMeanwhile, SafePoint
 from cellctl.cell.measuring import HeadGeometry, PartMeasurer
 from cellctl.cell.progress import ProgressBoard
+from cellctl.cell.readiness import require_full_speed
 from cellctl.cell.step import Step
 from cellctl.config.recipe import Recipe
 from cellctl.force.payload_result import mass_kg
@@ -47,7 +48,11 @@ class Preparation:
 
 
 async def prepare(cell: Cell, folder: CalibrationFolder, recipe: Recipe) -> Preparation:
-    """Read and check everything; raises the faults of calibrations and feature files."""
+    """Read and check everything; raises the faults of calibrations and feature files.
+
+    Also ``SpeedOverridden``: better now than with the deck over its seat.
+    """
+    require_full_speed(cell.main)
     calibrations = await asyncio.to_thread(folder.read, PLANNED)
     frame = read_features(cell.folder / recipe.frame_features)
     deck = read_features(cell.folder / recipe.deck_features)

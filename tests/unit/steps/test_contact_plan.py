@@ -8,10 +8,12 @@ import pytest
 
 from cellctl.cell.commissioned import Commissioned
 from cellctl.config.recipe import Pins
+from cellctl.errors.robot import SpeedOverridden
 from cellctl.steps.compensate import compensate
 from cellctl.steps.contact_plan import contact_plan, mating_settings
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.settings import MatingSettings
+from cellctl.steps.preparation import prepare
 from tests.unit.steps.rig import RunRig
 from tests.unit.steps.test_steps import at_the_stand_off
 
@@ -91,3 +93,17 @@ def test_another_deck_has_its_own_size_mass_and_zero(rig: RunRig) -> None:
     assert settings.moving_mass_kg == 70.0
     assert settings.plausible == (30.0, 12.0)
     assert settings.seat.moment_n_m == pytest.approx((45.0 * 0.2 + 2.75, 45.0 * 0.3 + 1.5, 4.8))
+
+
+async def test_a_robot_that_was_slowed_down_meanwhile_gets_no_plan(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    await compensate(run)
+    rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
+    with pytest.raises(SpeedOverridden):
+        contact_plan(run, Commissioned())
+
+
+async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig) -> None:
+    rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
+    with pytest.raises(SpeedOverridden):
+        await prepare(rig.bench.as_cell, rig.bench.calibrations, rig.run().recipe)
