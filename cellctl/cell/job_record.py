@@ -83,7 +83,7 @@ class JobRecord:
             config_hash=content_hash(self._cell.config),
             calibration_ids=used,
             simulated=self._cell.config.simulated,
-            operator=self._command.order,
+            operator=self._command.order or self._command.by,
         )
 
 

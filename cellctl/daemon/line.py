@@ -1,9 +1,12 @@
 """The unit and its line: takes commands, shows the status."""
 
 import asyncio
+import math
 
 from cellctl import log
 from cellctl.cell.archive import Archive
+from cellctl.clock import now_s
+from cellctl.daemon.authority import judge_authority
 from cellctl.daemon.unit import MAY_MOVE, Unit
 from cellctl.errors.records import DiskSilent, RecordsError
 from cellctl.packml.command import COMMANDS, Command
@@ -22,13 +25,27 @@ DISK_TIMEOUT_S = 3.0
 
 
 class Line:
-    """Judges and obeys the commands that the port hands over."""
+    """Judges and obeys the commands of the line, and those of the terminal.
+
+    A command that was given before a Stop or an Abort, or before a command of the other side was
+    obeyed, is not obeyed after it: who gave it did not know.
+    """
 
     def __init__(self, unit: Unit, archive: Archive) -> None:
         self._unit = unit
         self._archive = archive
         self._port: PlcPort | None = None
         self._coupling: LineCoupling | None = None
+        self._turn = asyncio.Lock()
+        self._stopped_s = -math.inf
+        """When the last Stop or Abort arrived."""
+        self._obeyed_s = {False: -math.inf, True: -math.inf}
+        """When a command of the line, and one of the terminal, was obeyed last."""
+
+    @property
+    def alive(self) -> bool:
+        """True while the PLC's heartbeat changes in time."""
+        return self._port is not None and self._port.line_alive
 
     def attach(self, port: PlcPort) -> None:
         """Give the unit its port; once, before the port starts."""
@@ -50,22 +67,32 @@ class Line:
         """
         try:
             async with asyncio.timeout(DISK_TIMEOUT_S):
-                code = await self._note(command) or await self._acknowledge(command)
+                code = self._judge_standing(command) or await self._note(command)
+                code = code or await self._acknowledge(command)
                 return code or await self._judge_start(command)
         except TimeoutError:
-            late = DiskSilent(f"{DISK_TIMEOUT_S:g} s for command {command.seq} of the line")
+            late = DiskSilent(f"{DISK_TIMEOUT_S:g} s for command {command.seq} of {command.who}")
             await self._unit.machine.fail(late)
             return RejectCode.RECORDS_NOT_READY
 
     async def obey(self, command: LineCommand) -> RejectCode:
         """Begin a command that was judged; waits for nothing but the machine's turn."""
-        assert self._coupling is not None
         if command.ends_motion:
+            self._stopped_s = max(self._stopped_s, command.arrived_s)
+            self._obeyed_s[command.local] = now_s()
             self._note_soon(command)
-        code = await self._coupling.obey(command)
-        if code is RejectCode.NONE:
-            self._audit(command)
-        return code
+            return await self._begin(command)
+        async with self._turn:
+            code = self._judge_standing(command)
+            if code is not RejectCode.NONE:
+                return code
+            mode = self._mode_to_start_in(command)
+            if mode is not None:
+                self._unit.desk.place(command, mode)
+            code = await self._begin(command)
+            if code is RejectCode.NONE and (command.cntrl_cmd or command.unit_mode):
+                self._obeyed_s[command.local] = now_s()
+            return code
 
     def publish(self) -> None:
         """Show the line what is going on."""
@@ -73,12 +100,25 @@ class Line:
         if self._port is not None:
             self._port.publish(unit.view.snapshot(unit.work.shown, unit.work.result, unit.parts))
 
+    def _judge_standing(self, command: LineCommand) -> RejectCode:
+        """Whether it is still its giver's turn; asked again right before it is obeyed."""
+        if command.arrived_s < max(self._stopped_s, self._obeyed_s[not command.local]):
+            return RejectCode.SUPERSEDED
+        return judge_authority(command, self._unit.machine.mode, line_alive=self.alive)
+
+    async def _begin(self, command: LineCommand) -> RejectCode:
+        assert self._coupling is not None
+        code = await self._coupling.obey(command)
+        if code is RejectCode.NONE:
+            self._audit(command)
+        return code
+
     async def _note(self, command: LineCommand) -> RejectCode:
         """After a restart the number must be known as old, so what may move waits for the disk.
 
         Everything else does no harm a second time.
         """
-        if command.cntrl_cmd not in MAY_MOVE:
+        if command.local or command.cntrl_cmd not in MAY_MOVE:
             self._note_soon(command)
             return RejectCode.NONE
         try:
@@ -89,34 +129,38 @@ class Line:
         return RejectCode.NONE
 
     def _note_soon(self, command: LineCommand) -> None:
-        self._unit.background.start(self._archive.do(RunStore.note_line_seq, command.seq))
+        if not command.local:
+            self._unit.background.start(self._archive.do(RunStore.note_line_seq, command.seq))
 
     async def _acknowledge(self, command: LineCommand) -> RejectCode:
         if not command.alarm_ack_id:
             return RejectCode.NONE
         try:
-            known = await self._unit.alarms.acknowledge(
-                command.alarm_ack_id, command.order or "line"
-            )
+            known = await self._unit.alarms.acknowledge(command.alarm_ack_id, command.who)
         except RecordsError as error:
             _log.error("alarm not acknowledged", number=error.number, fault=str(error))
             return RejectCode.RECORDS_NOT_READY
         return RejectCode.NONE if known else RejectCode.ALARM_UNKNOWN
 
     async def _judge_start(self, command: LineCommand) -> RejectCode:
-        """What the tables cannot know; they refuse Start in other states and unknown modes."""
+        mode = self._mode_to_start_in(command)
+        return RejectCode.NONE if mode is None else await self._unit.desk.judge(command, mode)
+
+    def _mode_to_start_in(self, command: LineCommand) -> Mode | None:
+        """None unless it is a Start that the tables take; they refuse other states and modes."""
         machine = self._unit.machine
         if command.cntrl_cmd != Command.START or machine.state is not State.IDLE:
-            return RejectCode.NONE
+            return None
         try:
-            mode = Mode(command.unit_mode or machine.mode)
+            return Mode(command.unit_mode or machine.mode)
         except ValueError:
-            return RejectCode.NONE
-        return await self._unit.desk.judge(command, mode)
+            return None
 
     def _audit(self, command: LineCommand) -> None:
         names = {int(known): known.name.lower() for known in COMMANDS}
-        detail = {"seq": command.seq, "mode": self._unit.machine.mode.name.lower()}
+        detail: dict[str, int | str] = {"mode": self._unit.machine.mode.name.lower()}
+        if not command.local:
+            detail["seq"] = command.seq
         if command.cntrl_cmd == Command.START:
             detail |= {
                 "recipe": command.recipe_id,
@@ -128,7 +172,7 @@ class Line:
         self._unit.background.start(
             self._archive.do(
                 RunStore.audit,
-                command.order or "line",
+                command.who,
                 names.get(command.cntrl_cmd, "set"),
                 detail,
             )

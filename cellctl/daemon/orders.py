@@ -32,16 +32,20 @@ class OrderDesk:
         self.calibrations = CalibrationFolder(cell.folder / cell.config.calibration_dir)
 
     async def judge(self, command: LineCommand, mode: Mode) -> RejectCode:
-        """Why Start is refused in Idle; remembers the order when it is not.
+        """Why Start is refused in Idle.
 
         The state machine itself refuses modes without Start, in other states the whole command.
         """
-        code = await self._judge_order(command, mode)
-        if code is RejectCode.NONE:
-            code = self._judge_cell()
-        if code is RejectCode.NONE:
-            self._order = mode, command
-        return code
+        return await self._judge_order(command, mode) or _refused(*self._judge_cell())
+
+    def ready(self, mode: Mode) -> bool:
+        """Whether some order in this mode would be taken; cheap."""
+        allowed = mode is not Mode.PRODUCTION or self.calibrations.all_valid(PLANNED)
+        return allowed and self._judge_cell()[0] is RejectCode.NONE
+
+    def place(self, command: LineCommand, mode: Mode) -> None:
+        """Remember an order that was judged well, right before the unit starts."""
+        self._order = mode, command
 
     def job(self) -> Job:
         """A new job for the order that was last accepted."""
@@ -75,15 +79,16 @@ class OrderDesk:
                 return RejectCode.OPTIONS_UNKNOWN  # a procedure is neither dry nor in steps
         return RejectCode.NONE
 
-    def _judge_cell(self) -> RejectCode:
+    def _judge_cell(self) -> tuple[RejectCode, CellError | None]:
+        """Why no order at all is taken now."""
         if self._archive.fault is not None:
-            return _refused(RejectCode.RECORDS_NOT_READY, self._archive.fault)
+            return RejectCode.RECORDS_NOT_READY, self._archive.fault
         try:
             require_ready(self._cell.robots)
             self._cell.guard.check()
         except CellError as error:
-            return _refused(RejectCode.DEVICE_NOT_READY, error)
-        return RejectCode.NONE
+            return RejectCode.DEVICE_NOT_READY, error
+        return RejectCode.NONE, None
 
 
 def _refused(code: RejectCode, fault: CellError | None) -> RejectCode:

@@ -24,6 +24,7 @@ class RejectCode(IntEnum):
     RECORDS_NOT_READY = 0x108
     ALARM_UNKNOWN = 0x109
     SUPERSEDED = 0x10A
+    LINE_IN_CONTROL = 0x10B
 
     @property
     def text(self) -> str:
@@ -50,4 +51,5 @@ _TEXT = {
     RejectCode.RECORDS_NOT_READY: "the run store cannot take a run",
     RejectCode.ALARM_UNKNOWN: "no active alarm with this number",
     RejectCode.SUPERSEDED: "a newer command arrived before this one was taken",
+    RejectCode.LINE_IN_CONTROL: "to the terminal only: the line PLC is in control",
 }

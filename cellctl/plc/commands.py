@@ -7,8 +7,9 @@ begins anew, is taken, and not even 1 when that was the last number before the s
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from cellctl.clock import now_s
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.plc.image import WordOrder, decode
@@ -16,12 +17,16 @@ from cellctl.plc.register_map import item
 from cellctl.plc.result import Result
 
 _CHARSET = re.compile(r"[A-Z0-9._-]*")
-_KNOWN_OPTIONS = 0b11
+DRY_RUN, SINGLE_STEP = 0b01, 0b10
+"""Bits of the options."""
 
 
 @dataclass(frozen=True, slots=True)
 class LineCommand:
-    """What the PLC asked for, as it stood when it was committed. Numbers are not yet judged."""
+    """What the PLC asked for, as it stood when it was committed. Numbers are not yet judged.
+
+    An operator at the cell's terminal asks in the same form, without a number.
+    """
 
     seq: int
     unit_mode: int
@@ -31,16 +36,30 @@ class LineCommand:
     serial: str
     order: str
     alarm_ack_id: int
+    by: str = ""
+    """Who asks at the terminal; empty for the line."""
+    arrived_s: float = field(default_factory=now_s, compare=False)
+    """Monotonic."""
+
+    @property
+    def local(self) -> bool:
+        """True for a command of the terminal."""
+        return bool(self.by)
+
+    @property
+    def who(self) -> str:
+        """Who asks, for the audit log."""
+        return self.by or self.order or "line"
 
     @property
     def dry_run(self) -> bool:
         """Option bit 0."""
-        return bool(self.options & 1)
+        return bool(self.options & DRY_RUN)
 
     @property
     def single_step(self) -> bool:
         """Option bit 1."""
-        return bool(self.options & 2)
+        return bool(self.options & SINGLE_STEP)
 
     @property
     def ends_motion(self) -> bool:
@@ -56,7 +75,7 @@ class LineCommand:
             return RejectCode.SERIAL_INVALID
         if not _CHARSET.fullmatch(self.order):
             return RejectCode.ORDER_INVALID
-        if self.options & ~_KNOWN_OPTIONS:
+        if self.options & ~(DRY_RUN | SINGLE_STEP):
             return RejectCode.OPTIONS_UNKNOWN
         return RejectCode.NONE
 

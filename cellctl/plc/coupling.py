@@ -49,7 +49,8 @@ class LineCoupling:
     async def obey(self, command: LineCommand) -> RejectCode:
         """Change the mode if asked, then command the unit. Stop and Abort change no mode.
 
-        A mode that is set already counts as reached.
+        A mode that is set already counts as reached. A command of the terminal may end one of the
+        line, and takes the place of none.
         """
         machine = self._machine
         changes_mode = command.unit_mode not in (0, machine.mode) and not command.ends_motion
@@ -60,6 +61,8 @@ class LineCoupling:
         if command.cntrl_cmd == Command.UNDEFINED and (command.unit_mode or command.alarm_ack_id):
             self._finish(command.seq, Result.GOOD)
             return RejectCode.NONE
+        if command.local:
+            return await machine.command(command.cntrl_cmd)
         before, self._pursued = self._pursued, None
         if command.cntrl_cmd in _GOAL:
             self._pursued = command.seq, Command(command.cntrl_cmd)

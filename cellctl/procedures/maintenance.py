@@ -105,7 +105,7 @@ class Maintenance(Job):
 
     @property
     def _who(self) -> str:
-        return self._command.order or "line"
+        return self._command.who
 
     async def _keep(self, outcome: ProcedureOutcome) -> None:
         """Store a result that passed; put a bad one aside for whoever looks for the reason.
