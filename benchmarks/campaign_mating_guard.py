@@ -10,7 +10,7 @@ from cellctl.force.compensation import Compensation
 from cellctl.geometry.pose import Array
 from cellctl.guard.limits import GuardLimits
 from cellctl.guard.monitor import Monitor
-from cellctl.guard.report import Curve, GuardSample, GuardTrip, TareResult
+from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
 from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 from cellctl.interfaces.stop_channel import FlangeState
 
@@ -86,6 +86,13 @@ class WorldGuard:
     @property
     def trip(self) -> GuardTrip | None:
         return self._monitor.trip
+
+    @property
+    def compensated(self) -> bool:
+        return True
+
+    def health(self) -> GuardHealth:
+        return GuardHealth(alive=True, stop_channel_up=True, sensor=self._health)
 
     def latest(self) -> GuardSample:
         assert self._last is not None

@@ -54,6 +54,8 @@ class Cell:
         self.workers = VisionWorkers()
         self.base_T_frame: RigidTransform | None = None
         """The frame as measured last: only for leaving the station straight."""
+        self.awaits_trips = False
+        """True while a move deals with the trips of the guard itself."""
 
     @property
     def heads(self) -> tuple[HeadStation, HeadStation]:

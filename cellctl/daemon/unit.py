@@ -22,7 +22,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
-from cellctl.steps.positions import lift_off
+from cellctl.steps.lift_off import lift_off
 
 _log = log.get(__name__)
 
@@ -87,8 +87,8 @@ class Unit:
 
     @property
     def expects_trips(self) -> bool:
-        """True while a step deals with the trips of the guard itself."""
-        return self.board.current.step in _IN_CONTACT
+        """True while a step or a move deals with the trips of the guard itself."""
+        return self._cell.awaits_trips or self.board.current.step in _IN_CONTACT
 
     def line_lost(self) -> None:
         """The line's heartbeat stopped: hold at the next safe point."""

@@ -196,6 +196,15 @@ class MatingPlanInvalid(MatingFault):
     reaction = Reaction.STOP
 
 
+class LiftOffHeld(MatingFault):
+    """The force changed too much while a deck was lifted off the station."""
+
+    number = 529
+    text = "Something holds the deck while lifting off"
+    cause = "Deck fastened and gripper still shut, a pin that catches, or a hose that pulls."
+    remedy = "Open the gripper or loosen the deck and free what catches; then Clear and Reset."
+
+
 class PayloadFileInvalid(ForceError):
     """A file of poses and wrenches cannot be read."""
 

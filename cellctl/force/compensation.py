@@ -5,6 +5,7 @@ form absorbs gain, cross-talk and mounting errors around the orientation it was 
 """
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -28,7 +29,7 @@ class Compensation:
     b: Array
     """Shape (6,): offset in N and N·m."""
     method: str
-    """``affine24`` or ``rigid12``."""
+    """``affine24``, ``rigid12`` or ``none``."""
     residual_n: float = 0.0
     """Root mean square of the force residuals of the identification, a component."""
     residual_n_m: float = 0.0
@@ -39,6 +40,11 @@ class Compensation:
     def __post_init__(self) -> None:
         if self.A.shape != (6, 3) or self.b.shape != (6,):
             raise ValueError(f"A is (6, 3) and b (6,), got {self.A.shape} and {self.b.shape}")
+
+    @classmethod
+    def none(cls) -> Self:
+        """Takes nothing off: enough below a tare while the orientation does not change."""
+        return cls(np.zeros((6, 3)), np.zeros(6), "none")
 
     def load(self, base_R_sensor: Rotation) -> Array:
         """Wrench of the load at one orientation, shape (6,), or at n, shape (n, 6)."""

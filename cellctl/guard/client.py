@@ -152,6 +152,11 @@ class GuardClient:
                 await self._request("deck_frame", **self._deck_frame)
         self._trip = None
 
+    @property
+    def compensated(self) -> bool:
+        """True once a compensation was set; without one nothing can be armed."""
+        return self._load is not None
+
     # --- what the guard has seen
 
     @property

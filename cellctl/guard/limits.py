@@ -17,6 +17,8 @@ UNLIMITED: Six = (math.inf,) * 6
 DEFAULT_FILTER_S = 5e-3
 """A slower one lets hard contacts grow past the force limit before it notices them."""
 
+DEFAULT_RATE_WINDOW_S = 0.5
+
 
 @dataclass(frozen=True, slots=True)
 class CusumTouch:
@@ -66,7 +68,7 @@ class GuardLimits:
     bad_frames_window_s: float = 0.1
     rate_hz: tuple[float, float] = (0.0, math.inf)
     """Allowed sample rate, averaged over ``rate_window_s``."""
-    rate_window_s: float = 0.5
+    rate_window_s: float = DEFAULT_RATE_WINDOW_S
 
     def __post_init__(self) -> None:
         thresholds = (*self.raw, *self.filtered)

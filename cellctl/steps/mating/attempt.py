@@ -5,20 +5,18 @@ this platform are the same monotonic clock that stamps samples and poses.
 """
 
 import asyncio
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.base import CellError
 from cellctl.errors.force import SensorFrozen, SensorSilent
-from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.compliance import STRAIGHT, Sideways
 from cellctl.geometry.pose import Array
 from cellctl.guard.report import GuardTrip
-from cellctl.interfaces import Robot, RobotState
+from cellctl.interfaces import Robot
+from cellctl.steps.guarding import Motion, guarded
 from cellctl.steps.mating.limits import fault_of
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.ports import GuardPort
@@ -26,8 +24,6 @@ from cellctl.steps.mating.recorder import Recorder
 from cellctl.steps.mating.result import GivingWay, MatingPhase, MatingProgress, Reading
 
 POLL_S = 0.01
-REPORT_WAIT_S = 0.5
-"""How long the guard's report of a trip may lag behind the robot's stop."""
 READING_TIMEOUT_S = 1.0
 
 Report = Callable[[MatingProgress], None]
@@ -58,54 +54,9 @@ class Attempt:
         force_n = reading.force_n if reading else float("nan")
         self.report(MatingProgress(phase, travel_m, force_n, message))
 
-    async def move(self, motion: Coroutine[Any, Any, RobotState]) -> GuardTrip | None:
-        """Run a robot move; None at its target, the trip when the guard stopped it.
-
-        The guard has sent its own stop before it reports; the stop sent here is the second one
-        and waits for standstill. Faults of the robot and its link are raised as they are.
-        """
-        moving = asyncio.create_task(motion)
-        watching = asyncio.create_task(self._tripped())
-        try:
-            await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
-            if watching.done():
-                await self._second_stop()
-            return await self._outcome(moving)
-        finally:
-            watching.cancel()
-            moving.cancel()
-            await asyncio.gather(moving, watching, return_exceptions=True)
-
-    async def _outcome(self, moving: asyncio.Task[RobotState]) -> GuardTrip | None:
-        try:
-            await moving
-        except (MotionAborted, NotRearmed):
-            trip = await self._late_trip()
-            if trip is None:
-                raise
-            await self._second_stop()
-            return trip
-        return self.guard.trip
-
-    async def _second_stop(self) -> None:
-        """The daemon's own stop; a robot that does not confirm it must not hide the trip."""
-        try:
-            await self.robot.stop()
-        except CellError as fault:
-            fault.add_note(f"the guard had stopped the robot: {self.guard.trip}")
-            raise
-
-    async def _late_trip(self) -> GuardTrip | None:
-        try:
-            async with asyncio.timeout(REPORT_WAIT_S):
-                await self._tripped()
-        except TimeoutError:
-            return None
-        return self.guard.trip
-
-    async def _tripped(self) -> None:
-        while self.guard.trip is None:  # noqa: ASYNC110 - set by another process
-            await asyncio.sleep(POLL_S)
+    async def move(self, motion: Motion) -> GuardTrip | None:
+        """Run a robot move; None at its target, the trip when the guard stopped it."""
+        return await guarded(self.robot, self.guard, motion)
 
     async def read(self, duration_s: float, settle_s: float = 0.0) -> Reading:
         """Mean wrench over ``duration_s`` at standstill, after ``settle_s`` of calming down.

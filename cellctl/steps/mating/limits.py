@@ -2,12 +2,11 @@
 
 from cellctl.errors.base import CellError
 from cellctl.errors.force import LateralLoad, MatingOverforce
-from cellctl.guard.limits import CusumTouch, GuardLimits, Six
+from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip
+from cellctl.steps.guard_limits import Sensing, guard_limits
 from cellctl.steps.mating.settings import MatingSettings
 
-RAW_MARGIN_N = 12.0
-"""A single sample may exceed a filtered limit by its noise."""
 _ALONG = 2
 
 
@@ -41,21 +40,9 @@ def _limits(
     settings: MatingSettings, along_n: float, across_n: float, touch: CusumTouch | None = None
 ) -> GuardLimits:
     moment_n_m = settings.max_moment_n_m
-    filtered: Six = (across_n, across_n, along_n, moment_n_m, moment_n_m, moment_n_m)
-    raw_moment_n_m = moment_n_m + RAW_MARGIN_N / 2.0
-    raw: Six = (
-        across_n + RAW_MARGIN_N,
-        across_n + RAW_MARGIN_N,
-        along_n + RAW_MARGIN_N,
-        raw_moment_n_m,
-        raw_moment_n_m,
-        raw_moment_n_m,
-    )
-    return GuardLimits(
-        raw=raw,
-        filtered=filtered,
+    return guard_limits(
+        (across_n, across_n, along_n, moment_n_m, moment_n_m, moment_n_m),
+        Sensing(1.0 / settings.sample_period_s, settings.stale_s, settings.flange_age_s),
         touch=touch,
         filter_s=settings.filter_delay_s,
-        stale_s=settings.stale_s,
-        flange_age_s=settings.flange_age_s,
     )

@@ -6,6 +6,7 @@ import numpy as np
 
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
+from cellctl.guard.limits import GuardLimits
 from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
 
 SENSOR = "M4347K-1"
@@ -17,6 +18,9 @@ class TinyGuard:
 
     serial: str = SENSOR
     trip: GuardTrip | None = None
+    compensated: bool = True
+    limits: list[GuardLimits] = field(default_factory=list)
+    """Of every arming."""
     asked: list[str] = field(default_factory=list)
     faults: dict[str, CellError] = field(default_factory=dict)
     raw: np.ndarray = field(
@@ -31,6 +35,7 @@ class TinyGuard:
 
     async def set_compensation(self, compensation: object) -> None:
         self._do("set_compensation")
+        self.compensated = True
 
     async def set_deck_frame(self, sensor_T_deck: object) -> None:
         self._do("set_deck_frame")
@@ -39,8 +44,9 @@ class TinyGuard:
         self._do("tare")
         return TareResult(np.zeros(6), np.ones(6), 100)
 
-    async def arm(self, limits: object) -> None:
+    async def arm(self, limits: GuardLimits) -> None:
         self._do("arm")
+        self.limits.append(limits)
 
     async def disarm(self) -> None:
         self._do("disarm")

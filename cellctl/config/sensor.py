@@ -1,0 +1,11 @@
+"""The rate of the force sensor, which the settings of its driver say."""
+
+from cellctl import plugins
+from cellctl.config.devices import Force
+
+
+def sensor_rate_hz(force: Force) -> float:
+    """Samples a second that the sensor is set to: every sensor's ``Config`` has ``rate_hz``."""
+    driver = plugins.load(plugins.FT_SENSOR, force.sensor.driver)
+    settings = driver.Config.model_validate(force.sensor.settings)  # type: ignore[attr-defined]
+    return float(settings.rate_hz)

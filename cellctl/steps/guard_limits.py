@@ -1,0 +1,61 @@
+"""Limits for the guard from filtered ones, with what noise and sample rate call for."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from cellctl.config.devices import Force
+from cellctl.config.sensor import sensor_rate_hz
+from cellctl.guard.limits import DEFAULT_FILTER_S, DEFAULT_RATE_WINDOW_S, GuardLimits, Six, Touch
+
+RAW_MARGIN_N = 12.0
+"""A single sample may exceed a filtered limit by its noise."""
+RAW_MARGIN_N_M = 6.0
+RATE_RATIO = 0.1
+"""What the pace of the sensor may be off, either way."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sensing:
+    """How often the guard hears from sensor and robot, and how long it waits for them."""
+
+    rate_hz: float
+    stale_s: float
+    flange_age_s: float
+
+    @classmethod
+    def of(cls, force: Force) -> Self:
+        """As the cell file has it."""
+        return cls(sensor_rate_hz(force), force.stale_ms / 1e3, force.flange_age_ms / 1e3)
+
+    @property
+    def rate_band_hz(self) -> tuple[float, float]:
+        """Rate that counts as right; a silence that is no fault yet may fall to either side."""
+        slack = RATE_RATIO + self.stale_s / DEFAULT_RATE_WINDOW_S
+        return max(0.0, 1.0 - slack) * self.rate_hz, (1.0 + slack) * self.rate_hz
+
+
+def guard_limits(
+    filtered: Six,
+    sensing: Sensing,
+    *,
+    touch: Touch | None = None,
+    filter_s: float = DEFAULT_FILTER_S,
+) -> GuardLimits:
+    """What the guard watches when the filtered wrench may be so great."""
+    fx, fy, fz, mx, my, mz = filtered
+    return GuardLimits(
+        raw=(
+            fx + RAW_MARGIN_N,
+            fy + RAW_MARGIN_N,
+            fz + RAW_MARGIN_N,
+            mx + RAW_MARGIN_N_M,
+            my + RAW_MARGIN_N_M,
+            mz + RAW_MARGIN_N_M,
+        ),
+        filtered=filtered,
+        touch=touch,
+        filter_s=filter_s,
+        stale_s=sensing.stale_s,
+        flange_age_s=sensing.flange_age_s,
+        rate_hz=sensing.rate_band_hz,
+    )
