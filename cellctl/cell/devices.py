@@ -52,6 +52,8 @@ class Cell:
             ),
         )
         self.workers = VisionWorkers()
+        self.connected = False
+        """True from a ``connect`` that reached every device until ``disconnect``."""
         self.base_T_frame: RigidTransform | None = None
         """The frame as measured last: only for leaving the station straight."""
         self.awaits_trips = False
@@ -76,22 +78,31 @@ class Cell:
         return checks
 
     async def connect(self) -> None:
-        """Connect everything at once; raises one fault that names every failing device."""
-        await _all(
-            {
-                "guard": self.guard.start(),
-                "robots.main": self.main.connect(),
-                "robots.aux_1": self.aux_1.connect(),
-                "robots.aux_2": self.aux_2.connect(),
-                "heads.head_1": self.head_1.camera.connect(),
-                "heads.head_2": self.head_2.camera.connect(),
-                "tracker": self.tracker.connect(),
-            }
-        )
+        """Connect everything at once, or nothing; raises one fault that names every failing device.
+
+        May be tried again.
+        """
+        try:
+            await _all(
+                {
+                    "guard": self.guard.start(),
+                    "robots.main": self.main.connect(),
+                    "robots.aux_1": self.aux_1.connect(),
+                    "robots.aux_2": self.aux_2.connect(),
+                    "heads.head_1": self.head_1.camera.connect(),
+                    "heads.head_2": self.head_2.camera.connect(),
+                    "tracker": self.tracker.connect(),
+                }
+            )
+        except BaseException:
+            await self.disconnect()
+            raise
+        self.connected = True
         _log.info("all devices connected", simulated=self.config.simulated)
 
     async def disconnect(self) -> None:
         """Stop the robots and drop all links; errors are logged, nothing is skipped."""
+        self.connected = False
         results = await asyncio.gather(
             *(robot.disconnect() for robot in self.robots),
             *(head.camera.disconnect() for head in self.heads),
@@ -107,8 +118,11 @@ class Cell:
         """Stop and latch all robots at once, then let the guard watch no more force limits.
 
         Raises the first fault after trying all; a guard that does not answer is only logged, its
-        own supervision reports it.
+        own supervision reports it. Does nothing while nothing is connected: whoever drops a link to
+        a robot has it stopped.
         """
+        if not self.connected:
+            return
         results = await asyncio.gather(
             *(robot.stop() for robot in self.robots), return_exceptions=True
         )

@@ -32,9 +32,9 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
     """Run one cell until a signal; returns the exit code.
 
-    Raises the numbered fault when the cell cannot be started, or when a part of the daemon dies.
-    However it ends, motion is stopped, an open run is closed as aborted and no child process is
-    left.
+    Raises the numbered fault when the daemon cannot be started, or when a part of it dies. Devices
+    that do not answer leave the unit Aborted, and Clear tries them again. However it ends, motion
+    is stopped, an open run is closed as aborted and no child process is left.
     """
     config = _with_port(load_cell(cell_file), modbus_port)
     stop = asyncio.Event()
@@ -58,12 +58,8 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         stack.push_async_callback(port.stop)
         await port.start()  # first of all: a second daemon must not take over the robots
         stack.push_async_callback(cell.disconnect)
-        if not await _connect(cell, stop):
-            return 0
         stack.push_async_exit(partial(_end, unit))
-        unit.live = True
-        _ready(config, port)
-        await until_told(stop, supervise(cell, unit, line, port))
+        await until_told(stop, _work(cell, unit, line, port))
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")
@@ -98,24 +94,25 @@ async def _end(
     await unit.close(error if isinstance(error, CellError) else None)
 
 
-async def _connect(cell: Cell, stop: asyncio.Event) -> bool:
-    """Connect the devices, unless a signal comes first."""
-    connecting = asyncio.create_task(cell.connect())
-    stopping = asyncio.create_task(stop.wait())
-    await asyncio.wait({connecting, stopping}, return_when=asyncio.FIRST_COMPLETED)
-    stopping.cancel()
-    if not connecting.done():
-        connecting.cancel()
-        await asyncio.gather(connecting, return_exceptions=True)
-        return False
-    connecting.result()
-    return True
+async def _work(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
+    """Everything that goes on until the end, with the devices or without."""
+    async with asyncio.TaskGroup() as tasks:
+        tasks.create_task(supervise(cell, unit, line, port))
+        await unit.come_up()
+        notify("READY=1")
+        if not unit.live:
+            _tell(cell, port, ready=False, error=str(unit.machine.fault or "aborted"))
+            await unit.until_live()
+        _tell(cell, port, ready=True)
 
 
-def _ready(config: CellConfig, port: PlcPort) -> None:
-    _log.info("ready", cell=config.name, modbus_port=port.port)
-    notify(f"READY=1\nSTATUS=ready, Modbus TCP on port {port.port}")
-    json.dump({"ready": True, "cell": config.name, "modbus_port": port.port}, sys.stdout)
+def _tell(cell: Cell, port: PlcPort, **how: bool | str) -> None:
+    """Systemd, the log, and whoever started the daemon."""
+    name = cell.config.name
+    status = "ready" if how["ready"] else f"waits for Clear: {how['error']}"
+    _log.info(status, cell=name, modbus_port=port.port)
+    notify(f"STATUS={status}, Modbus TCP on port {port.port}")
+    json.dump({**how, "cell": name, "modbus_port": port.port}, sys.stdout)
     print(flush=True)
 
 

@@ -1,18 +1,17 @@
 """The snapshot that the line sees."""
 
-from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
 from cellctl.cell.job import Job
 from cellctl.cell.progress import ProgressBoard
 from cellctl.daemon.alarms import Alarms
+from cellctl.daemon.orders import OrderDesk
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
+from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
-from cellctl.packml.mode import Mode
-from cellctl.packml.state import State
+from cellctl.packml.reject import RejectCode
 from cellctl.plc.result import Result
 from cellctl.plc.status import NO_VALUE, CellStatus
-from cellctl.steps.preparation import PLANNED
 
 
 class StatusView:
@@ -23,13 +22,14 @@ class StatusView:
         cell: Cell,
         machine: PackMLMachine,
         board: ProgressBoard,
-        calibrations: CalibrationFolder,
+        desk: OrderDesk,
         alarms: Alarms,
     ) -> None:
         self._cell = cell
         self._machine = machine
         self._board = board
-        self._calibrations = calibrations
+        self._desk = desk
+        self._calibrations = desk.calibrations
         self._alarms = alarms
 
     def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
@@ -43,7 +43,7 @@ class StatusView:
             mode=machine.mode,
             step=progress.step,
             iteration=progress.iteration,
-            ready=machine.state is State.IDLE and self._may_start(),
+            ready=self._may_start(),
             error=bool(faults),
             warning=bool(alarms) and not faults,
             calibration_ok=self._calibrations.all_valid(),
@@ -66,10 +66,9 @@ class StatusView:
         )
 
     def _may_start(self) -> bool:
-        return {
-            Mode.PRODUCTION: self._calibrations.all_valid(PLANNED),
-            Mode.MAINTENANCE: True,
-        }.get(self._machine.mode, False)
+        machine = self._machine
+        taken = machine.judge(Command.START) is RejectCode.NONE
+        return taken and self._desk.ready(machine.mode)
 
     def _any_manual(self) -> bool:
         for robot in self._cell.robots:

@@ -54,7 +54,13 @@ class LinkWatch:
         self._trip: GuardTrip | None = None
 
     async def look(self) -> None:
-        """Look at every device once; its fault goes to the machine."""
+        """Look at every device once; its fault goes to the machine.
+
+        Devices that were never reached are the matter of Clear.
+        """
+        if not self._unit.live:
+            self._broken.clear()
+            return
         for name, check in self._cell.health_checks().items():
             try:
                 check()

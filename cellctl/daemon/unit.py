@@ -19,7 +19,7 @@ from cellctl.errors.line import LineLost
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
-from cellctl.packml.state import State
+from cellctl.packml.state import STATES, State
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
 from cellctl.steps.lift_off import lift_off
@@ -30,6 +30,7 @@ ABORT_TIMEOUT_S = 20.0
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
 _IN_CONTACT = frozenset({Step.MATE, Step.MEASURE_CONTACT_STIFFNESS})
+_AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
 _AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 
 
@@ -46,6 +47,7 @@ class Unit:
         self.desk = OrderDesk(cell, archive, self.board)
         self.machine = PackMLMachine(
             {
+                State.CLEARING: self._clearing,
                 State.RESETTING: self._resetting,
                 State.STARTING: self._starting,
                 State.EXECUTE: self._execute,
@@ -53,14 +55,12 @@ class Unit:
                 State.STOPPING: self._stopping,
                 State.ABORTING: self._aborting,
             },
-            initial=State.STOPPED,
             gate=self._gate,
         )
-        self.live = False
-        """True while all devices are connected and the daemon does not end: robots may move."""
+        self._ending = False
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
-        self.view = StatusView(cell, self.machine, self.board, self.desk.calibrations, self.alarms)
+        self.view = StatusView(cell, self.machine, self.board, self.desk, self.alarms)
         self.parts = 0
         """Good parts since installation."""
 
@@ -79,6 +79,20 @@ class Unit:
         self.parts = sum(
             head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
         )
+
+    async def come_up(self) -> None:
+        """Connect the devices, as Clear does; then the unit is Stopped, else Aborted by a fault."""
+        await self.machine.command(Command.CLEAR)
+        await self.machine.wait_for(*_AT_WORK, State.ABORTED)
+
+    async def until_live(self) -> None:
+        """Wait until a Clear has connected the devices."""
+        await self.machine.wait_for(*_AT_WORK)
+
+    @property
+    def live(self) -> bool:
+        """True while all devices are connected and the daemon does not end: robots may move."""
+        return self._cell.connected and not self._ending
 
     @property
     def work(self) -> Work:
@@ -100,7 +114,7 @@ class Unit:
         Nothing begins to move any more, whatever the line asks for. Gives up after a while: the
         links are dropped next, and robots without a link stop.
         """
-        self.live = False
+        self._ending = True
         try:
             async with asyncio.timeout(ABORT_TIMEOUT_S):
                 if fault is not None:
@@ -114,6 +128,10 @@ class Unit:
             _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
         await self.machine.close()
         await self.background.drain()
+
+    async def _clearing(self) -> None:
+        if not self._cell.connected:
+            await self._cell.connect()
 
     async def _resetting(self) -> None:
         await self._cell.rearm()

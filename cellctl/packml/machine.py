@@ -98,12 +98,17 @@ class PackMLMachine:
         """All latched faults, oldest first."""
         return tuple(self._faults)
 
+    def judge(self, command: int) -> RejectCode:
+        """Why a command would be refused now."""
+        code = judge_command(self.state, self._mode, command)
+        return code or self._gate(self.state, Command(command))
+
     async def command(self, command: int) -> RejectCode:
         """Take a command; returns once the state has changed or Hold is noted, or refuses."""
-        code = self._judge(command)
+        code = self.judge(command)
         if code is RejectCode.NONE:
             async with self._turn:
-                code = self._judge(command)  # the state may have changed while it waited its turn
+                code = self.judge(command)  # the state may have changed while it waited its turn
                 if code is RejectCode.NONE:
                     await self._obey(Command(command))
         if code is not RejectCode.NONE:
@@ -156,8 +161,11 @@ class PackMLMachine:
             self._latch(error)
             await self._fire(command)
 
-    async def wait_for(self, *states: State, timeout_s: float) -> State:
-        """Wait until the unit is in one of the states; raises ``TimeoutError``."""
+    async def wait_for(self, *states: State, timeout_s: float | None = None) -> State:
+        """Wait until the unit is in one of the states; raises ``TimeoutError``.
+
+        None waits for ever.
+        """
         async with asyncio.timeout(timeout_s):
             while self.state not in states:
                 await self._changed.wait()
@@ -176,10 +184,6 @@ class PackMLMachine:
         for reaction in self._reactions:
             reaction.cancel()
         await asyncio.gather(*self._reactions, return_exceptions=True)
-
-    def _judge(self, command: int) -> RejectCode:
-        code = judge_command(self.state, self._mode, command)
-        return code or self._gate(self.state, Command(command))
 
     async def _obey(self, command: Command) -> None:
         if command in _RELEASES_FAULTS:

@@ -12,4 +12,4 @@ class Mode(IntEnum):
     MAINTENANCE = 2
     """Calibration, identification, verification: the recipe number selects the procedure."""
     MANUAL = 3
-    """Set-up at the robots' own panels; nothing runs."""
+    """Set-up at the robots' own panels; this cell arms and moves nothing."""

@@ -47,9 +47,9 @@ MODE_CHANGE_IN = frozenset({State.STOPPED, State.IDLE, State.ABORTED})
 NOT_IN_MODE: dict[Mode, frozenset[State]] = {
     Mode.PRODUCTION: frozenset(),
     Mode.MAINTENANCE: frozenset({State.SUSPENDING, State.UNSUSPENDING, State.SUSPENDED}),
-    Mode.MANUAL: frozenset({State.STARTING}),
+    Mode.MANUAL: frozenset({State.RESETTING, State.STARTING, State.UNHOLDING, State.UNSUSPENDING}),
 }
-"""States that a command may not lead to in a mode."""
+"""States that a command may not lead to in a mode. In Manual: whatever arms or moves a robot."""
 
 
 def requested(state: State) -> State:

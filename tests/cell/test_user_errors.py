@@ -8,10 +8,12 @@ from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from shutil import copytree
+from typing import Any
 
 import pytest
 
 from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
+from tests.cell.outside_plc import OutsidePlc
 from tests.cell.own_cell import ROOT, OwnCell, Program, cellctl
 
 pytestmark = pytest.mark.timeout(120)
@@ -27,6 +29,19 @@ def refuses(program: Program, *words: str, code: int = 1, timeout_s: float = 40)
         assert word in said
     assert "remedy: " in said
     return said
+
+
+def waits(daemon: Program, *words: str, timeout_s: float = 40) -> str:
+    """It stays, Aborted, and says these words; the fault."""
+    said: dict[str, Any] = daemon.until(
+        "what is missing",
+        lambda: next((m for m in daemon.messages if m.get("ready") is False), None),
+        timeout_s,
+    )
+    for word in words:
+        assert word in said["error"]
+    assert "Traceback" not in daemon.stderr
+    return str(said["error"])
 
 
 @contextmanager
@@ -79,16 +94,29 @@ def test_modbus_port_is_taken(own: OwnCell) -> None:
 def test_port_of_a_robot_is_taken(visited: OwnCell, shipped: int) -> None:
     port = visited.ports[shipped]
     with taken(port):
-        refuses(visited.daemon(), "F206", str(port))
+        waits(visited.daemon(), "F206", str(port))
 
 
-def test_nothing_answers(own: OwnCell) -> None:
-    """The fake cell was not started: every device that failed is named, not the first."""
+def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
+    """Every device that is missing is named, for the line too; Clear finds them once they are."""
     own.change('robot_name = "SR500A"', 'robot_name = "SR500A"\nconnect_timeout_s = 2.0', count=1)
-    said = refuses(own.daemon(), "F201")
+    daemon = own.daemon()
+    said = waits(daemon, "F201")
     for device in ("robots.main", "robots.aux_1", "robots.aux_2", "head_1", "head_2", "tracker"):
         assert device in said, device
     assert "guard" in said
+    with OutsidePlc(own.modbus_port) as plc:
+        plc.start_heartbeat()
+        assert (plc.state, plc.value("first_out_alarm")) == ("Aborted", 201)
+        assert plc.command("Clear") == 0
+        assert plc.done().startswith("ended in Aborted")
+        assert plc.command("Reset") == 0x84
+        own.fake().ready()
+        for name in ("Clear", "Reset"):
+            assert plc.command(name) == 0
+            assert plc.done(60).startswith("done")
+        assert plc.state == "Idle"
+    daemon.ready()
 
 
 @pytest.mark.parametrize(
@@ -104,7 +132,7 @@ def test_one_device_is_silent_or_strange(
 ) -> None:
     with visited.control() as control:
         control.request("inject", device=device, name=fault)
-    said = refuses(visited.daemon(), *words)
+    said = waits(visited.daemon(), *words)
     assert "T90A-2" not in said  # which is well
 
 

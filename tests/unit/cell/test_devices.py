@@ -23,6 +23,11 @@ async def test_one_device_that_fails_is_named_by_its_own_fault(bench: Bench) -> 
     bench.cell.aux_1.faults["connect"] = ConnectTimeout("aux_1 on 7011")
     with pytest.raises(ConnectTimeout, match="7011"):
         await bench.cell.connect()
+    assert not bench.cell.connected
+    assert bench.cell.guard.asked == ["start", "stop"], "the others are let go"
+    bench.cell.aux_1.faults.clear()
+    await bench.cell.connect()
+    assert bench.cell.connected
 
 
 async def test_all_devices_that_fail_are_named(bench: Bench) -> None:
@@ -48,6 +53,12 @@ async def test_stop_reaches_every_robot_though_one_fails(bench: Bench) -> None:
     assert [robot.stops for robot in bench.cell.robots] == [1, 1, 1]
     assert any("F202" in note for note in caught.value.__notes__)
     assert bench.cell.guard.asked == ["disarm"]
+
+
+async def test_nothing_is_stopped_that_was_never_connected(bench: Bench) -> None:
+    await bench.cell.disconnect()
+    await bench.cell.stop_motion()
+    assert [robot.stops for robot in bench.cell.robots] == [0, 0, 0]
 
 
 async def test_a_dead_guard_does_not_keep_the_robots_from_stopping(bench: Bench) -> None:

@@ -61,10 +61,13 @@ async def test_an_expiring_calibration_refuses_production_only(rig: DaemonRig) -
 
 async def test_devices_that_are_not_ready_refuse_a_start(rig: DaemonRig) -> None:
     await rig.idle()
+    assert rig.shown().ready
     rig.bench.cell.aux_1.looks["emergency_stop"] = True
+    assert not rig.shown().ready
     assert await rig.take(Command.START) is RejectCode.DEVICE_NOT_READY
     rig.bench.cell.aux_1.looks.clear()
     rig.bench.cell.guard.faults["check"] = SensorSilent("2 s")
+    assert not rig.shown().ready
     assert await rig.take(Command.START) is RejectCode.DEVICE_NOT_READY
     rig.bench.cell.guard.faults.clear()
     assert await rig.take(Command.START) is RejectCode.NONE
@@ -72,9 +75,9 @@ async def test_devices_that_are_not_ready_refuse_a_start(rig: DaemonRig) -> None
 
 
 async def test_nothing_moves_before_the_devices_are_connected(rig: DaemonRig) -> None:
-    rig.unit.live = False
+    rig.bench.cell.connected = False
     assert await rig.take(Command.RESET) is RejectCode.DEVICE_NOT_READY
-    rig.unit.live = True
+    rig.bench.cell.connected = True
     assert await rig.take(Command.RESET) is RejectCode.NONE
 
 
@@ -161,9 +164,21 @@ async def test_the_mode_changes_without_a_command(rig: DaemonRig) -> None:
         assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
         assert rig.port.ended[rig._seq] is Result.GOOD
     assert rig.unit.machine.mode is Mode.MANUAL
-    await rig.idle()
-    assert not rig.shown().ready
     assert await rig.take(Command.UNDEFINED, unit_mode=0) is RejectCode.COMMAND_UNDEFINED
+
+
+async def test_nothing_is_armed_or_moved_in_manual(rig: DaemonRig) -> None:
+    assert await rig.take(Command.RESET, unit_mode=3) is RejectCode.STATE_NOT_IN_MODE
+    assert rig.unit.machine.mode is Mode.PRODUCTION
+    await rig.idle()
+    assert await rig.take(Command.STOP) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+    moves = len(rig.bench.cell.main.moves)
+    assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
+    assert await rig.take(Command.RESET) is RejectCode.STATE_NOT_IN_MODE
+    assert rig.bench.cell.main.latched
+    assert len(rig.bench.cell.main.moves) == moves
+    assert not rig.shown().ready
 
 
 async def test_what_was_commanded_is_in_the_audit_log(rig: DaemonRig) -> None:

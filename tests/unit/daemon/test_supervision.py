@@ -11,8 +11,10 @@ from cellctl.daemon.supervision import LinkWatch, supervise
 from cellctl.errors.force import GuardDied
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.line import LineTaskDied
-from cellctl.errors.link import StaleData
+from cellctl.errors.link import ConnectTimeout, PortInUse, StaleData
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.plc.port import PlcPort
 from tests.unit.daemon.rig import DaemonRig, PaperPort
@@ -71,6 +73,34 @@ async def test_a_trip_nobody_waits_for_is_a_fault(rig: DaemonRig) -> None:
     rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 2.0, "Fx 40 N", 0, 40.0)
     await links.look()
     assert await alarms(rig) == [512, 512]
+
+
+async def test_devices_that_are_not_there_leave_the_unit_aborted_until_clear_finds_them(
+    rig: DaemonRig,
+) -> None:
+    await rig.bench.cell.disconnect()
+    await rig.unit.machine.command(Command.ABORT)
+    await rig.to(State.ABORTED)
+    rig.bench.cell.aux_1.faults = {
+        "connect": ConnectTimeout("aux_1"),
+        "state": StaleData("never"),
+    }
+    rig.bench.cell.main.faults["connect"] = PortInUse("7001")
+    for missing in ("ConnectTimeout of both", "PortInUse"):
+        await rig.unit.come_up()
+        await watch(rig).look()
+        status = rig.shown()
+        assert (status.state, status.error) == (State.ABORTED, True), missing
+        assert status.first_out_alarm == (201 if "both" in missing else 206)
+        assert await rig.take(Command.RESET) is not RejectCode.NONE
+        rig.bench.cell.aux_1.faults.clear()
+    rig.bench.cell.main.faults.clear()
+    assert await rig.take(Command.CLEAR) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+    assert rig.unit.live
+    assert await alarms(rig) == [201, 206]
+    assert not any(robot.moves for robot in rig.bench.cell.robots)
+    await rig.idle()
 
 
 @pytest.mark.parametrize("step", [Step.MATE, Step.MEASURE_CONTACT_STIFFNESS])
