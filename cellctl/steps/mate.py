@@ -4,7 +4,7 @@ from collections.abc import Awaitable, Callable
 
 from cellctl import log
 from cellctl.errors.base import CellError
-from cellctl.errors.force import FalseSeat, ForceError
+from cellctl.errors.force import FalseSeat
 from cellctl.force.commissioning import StiffnessEstimate
 from cellctl.force.curve import curve_statistics
 from cellctl.force.seat import SeatVerdict
@@ -27,6 +27,7 @@ from cellctl.steps.mating.result import (
     MatingResult,
     Reading,
 )
+from cellctl.steps.mating.retreat import retreat
 from cellctl.steps.mating.seating import back_off, creep_to, hold, stiffness_of
 
 _log = log.get(__name__)
@@ -37,7 +38,7 @@ async def mate(robot: Robot, guard: GuardPort, plan: MatingPlan, report: Report)
 
     Starts at the stand-off of the plan with both latches released. A seat that is not one comes
     back as ``MatingOutcome.FALSE_SEAT`` with the arm backed off: measure again before the next
-    attempt. Any violation stops the robot, backs off where the devices still allow it and raises
+    attempt. Any violation stops the robot, backs off where that is right (``retreat``) and raises
     its own fault; a ``ForceError`` carries the force curve, and ``report`` gets it in any case.
     """
     require_stand_off(robot, plan)
@@ -46,7 +47,7 @@ async def mate(robot: Robot, guard: GuardPort, plan: MatingPlan, report: Report)
         try:
             return await _run(attempt)
         except CellError as fault:
-            await _retreat(attempt, fault)
+            await retreat(attempt, fault)
             raise
         finally:
             report(_ended(recorder))
@@ -120,19 +121,6 @@ async def _leave(
     readings = await creep_to(attempt, law, MatingPhase.RELEASE, held, shown_n_m)
     await attempt.guard.disarm()
     return readings
-
-
-async def _retreat(attempt: Attempt, fault: CellError) -> None:
-    """Stop, attach the curve, back off. What fails here is noted on the first fault."""
-    if isinstance(fault, ForceError):
-        fault.curve = attempt.recorder.curve()
-    for action in (attempt.robot.stop, lambda: back_off(attempt)):
-        try:
-            await action()
-        except CellError as second:
-            fault.add_note(f"while retreating: {second}")
-            _log.warning("retreat incomplete", fault=str(fault), second=str(second))
-            return
 
 
 def _ended(recorder: Recorder) -> MatingProgress:

@@ -5,7 +5,7 @@ from typing import Protocol
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.report import Curve, GuardSample, GuardTrip, TareResult
+from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
 
 
 class GuardPort(Protocol):
@@ -22,6 +22,10 @@ class GuardPort(Protocol):
 
     def samples(self, since_s: float) -> Curve:
         """All samples after a time."""
+        ...
+
+    def health(self) -> GuardHealth:
+        """How the guard is doing; never raises."""
         ...
 
     async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:

@@ -85,13 +85,13 @@ async def back_off(attempt: Attempt) -> None:
     """Away from the frame along +Z_D from wherever the arm stands, at most to the stand-off.
 
     The guard is disarmed: this is the direction without contact, and a guard that has just tripped
-    on a dead sensor could not watch it anyway. Raises the robot's fault when it cannot move.
+    on a dead sensor could not watch it anyway. Releases no latch; raises the fault of a latched
+    trip and the robot's fault when it cannot move.
     """
     plan, settings = attempt.plan, attempt.plan.settings
-    await attempt.guard.acknowledge()
+    attempt.raise_trip()
     await attempt.guard.disarm()
     here = attempt.robot.state().base_T_flange
-    await attempt.robot.rearm()
     back_m = min(settings.back_off_m, plan.travel_of(here))
     if back_m <= settings.smallest_step_m:
         return
