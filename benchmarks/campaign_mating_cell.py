@@ -30,7 +30,7 @@ VISION_SIGMA = np.repeat([5e-6, np.deg2rad(0.0005)], 3)
 
 @dataclass(slots=True)
 class SensorFault:
-    """What is wrong with the sensor from a moment on: silent, frozen, saturated or damaged."""
+    """What is wrong from a moment on: silent, slow, frozen, saturated or damaged."""
 
     kind: str = ""
     from_s: float = np.inf
@@ -41,8 +41,10 @@ class SensorFault:
         if time_s < self.from_s or self.kind == "saturated":
             self.held = raw
             return raw
-        if self.kind == "silent":
+        if self.kind == "silent" or (self.kind == "slow" and round(time_s / TICK_S) % 2):
             return None
+        if self.kind == "slow":
+            return raw
         return self.held if self.kind == "frozen" else np.full(6, np.nan)
 
     def saturated(self, time_s: float) -> bool:

@@ -76,6 +76,7 @@ FAILURES: tuple[Failure, ...] = (
     Failure("sensor silent, creep", ("F501",), hook=_sensor("silent", _CREEP)),
     Failure("sensor frozen, guarded travel", ("F504",), hook=_sensor("frozen", _SLOW)),
     Failure("sensor frozen, creep", ("F504",), hook=_sensor("frozen", _CREEP)),
+    Failure("sensor at half its rate", ("F505",), hook=_sensor("slow", _SLOW)),
     Failure("sensor saturated", ("F502",), hook=_sensor("saturated", _SLOW)),
     Failure("NaN-like bytes", ("F503",), hook=_sensor("damaged", _SLOW)),
     Failure(

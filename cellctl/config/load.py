@@ -9,6 +9,8 @@ from pydantic import BaseModel, ValidationError
 
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
+from cellctl.config.devices import Force
+from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, MixedSimulation, UnknownDriver
 
 DRIVER_GROUPS = {
@@ -54,6 +56,8 @@ def _examine(path: Path) -> tuple[list[Problem], CellConfig | None]:
     except ValidationError as error:
         return _from_pydantic("", error), None
     found = _driver_problems(cell) + _feature_problems(cell, path.parent)
+    if not any(problem.key.startswith("force.sensor.") for problem in found):
+        found += _pace_problems(cell.force)
     flags = {device.simulated for device in cell.devices().values()}
     if len(flags) > 1:
         named = [key for key, device in cell.devices().items() if device.simulated]
@@ -82,6 +86,14 @@ def _driver_problems(cell: CellConfig) -> list[Problem]:
         except ValidationError as error:
             found += _from_pydantic(f"{key}.settings.", error)
     return found
+
+
+def _pace_problems(force: Force) -> list[Problem]:
+    least_ms = least_stale_ms(force)
+    if force.stale_ms >= least_ms:
+        return []
+    allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
+    return [Problem("force.stale_ms", f"{force.stale_ms:g}", allowed)]
 
 
 def _feature_problems(cell: CellConfig, folder: Path) -> list[Problem]:

@@ -9,3 +9,8 @@ def sensor_rate_hz(force: Force) -> float:
     driver = plugins.load(plugins.FT_SENSOR, force.sensor.driver)
     settings = driver.Config.model_validate(force.sensor.settings)  # type: ignore[attr-defined]
     return float(settings.rate_hz)
+
+
+def least_stale_ms(force: Force) -> float:
+    """Silence below this is the sensor's own pace: two samples."""
+    return 2e3 / sensor_rate_hz(force)

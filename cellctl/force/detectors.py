@@ -11,6 +11,16 @@ from scipy.signal import lfilter
 
 from cellctl.geometry.pose import Array
 
+TOUCH_IMPULSE_N_S = 0.12
+"""Excess that counts as a touch: 120 N over samples at 1 kHz, where it was chosen."""
+LEAST_THRESHOLD_N = 60.0
+"""A slow sensor has few samples to tell a touch from noise: the sum of a handful proves nothing."""
+
+
+def touch_threshold_n(rate_hz: float) -> float:
+    """Threshold of the sum over samples for the same touch at any sample rate."""
+    return max(TOUCH_IMPULSE_N_S * rate_hz, LEAST_THRESHOLD_N)
+
 
 @dataclass(frozen=True, slots=True)
 class Cusum:

@@ -26,7 +26,7 @@ class CusumTouch:
 
     drift_n: float = 4.0
     threshold_n: float = 120.0
-    """Sum over samples, chosen for 1 kHz."""
+    """Sum over samples, chosen for 1 kHz; another rate has another one."""
     axis: int = 2
     """Component of the deck-frame wrench, 0 … 5."""
     sign: float = 1.0

@@ -52,6 +52,8 @@ class FtHealth:
 class FtSensor(BlockingDevice):
     """Called by the guard process only; every method blocks no longer than it says.
 
+    The driver's ``Config`` has a field ``rate_hz``: samples a second that the device is set to.
+
     Methods may raise ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``.
     """
 

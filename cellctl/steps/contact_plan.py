@@ -7,8 +7,9 @@ from cellctl.cell.measuring import require_unmoved
 from cellctl.cell.readiness import require_full_speed
 from cellctl.config.cell import CellConfig
 from cellctl.config.recipe import Pins, Recipe
+from cellctl.config.sensor import sensor_rate_hz
 from cellctl.force.approach import planned_stiffness
-from cellctl.force.detectors import Cusum
+from cellctl.force.detectors import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.steps.mating.plan import MatingPlan, plan_mating
 from cellctl.steps.mating.settings import MatingSettings, PinSettings
@@ -48,6 +49,7 @@ def mating_settings(
     """The recipe's figures in SI; its bounds where nothing was commissioned."""
     mating = recipe.mating
     length_mm, width_mm = recipe.face_mm
+    rate_hz = sensor_rate_hz(config.force)
     latency_s, stiffness_n_m = commissioned.stop_latency_s, mating.stiffness_n_per_mm / MM
     return MatingSettings(
         stop_latency_s=mating.stop_latency_ms / 1e3 if latency_s is None else latency_s,
@@ -60,7 +62,8 @@ def mating_settings(
         abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
         release_low_n=mating.release_force_n - RELEASE_BAND_N,
         release_high_n=mating.release_force_n + RELEASE_BAND_N,
-        touch=Cusum(drift_n=mating.touch_force_n / 2),
+        touch=Cusum(mating.touch_force_n / 2, touch_threshold_n(rate_hz)),
+        sample_period_s=1.0 / rate_hz,
         stale_s=config.force.stale_ms / 1e3,
         flange_age_s=config.force.flange_age_ms / 1e3,
         fast_speed_m_s=mating.fast_speed_mm_s * MM,

@@ -44,6 +44,8 @@ def test_implements_its_interface(point: EntryPoint) -> None:
     assert issubclass(driver.Config, BaseModel)
     assert driver.Config.model_config["extra"] == "forbid"
     assert driver.Config.model_config["frozen"]
+    if point.group == "cellctl.ft_sensor":
+        assert driver.Config.model_fields["rate_hz"].annotation is float, "limits depend on it"
 
 
 @pytest.mark.parametrize("point", POINTS, ids=described)

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 
 from cellctl.cell.commissioned import Commissioned
+from cellctl.config.cell import CellConfig
 from cellctl.config.recipe import Pins
 from cellctl.errors.robot import SpeedOverridden
+from cellctl.force.detectors import Cusum, touch_threshold_n
 from cellctl.steps.compensate import compensate
 from cellctl.steps.contact_plan import contact_plan, mating_settings
+from cellctl.steps.mating.limits import contact_limits
 from cellctl.steps.mating.plan import MatingPlan
 from cellctl.steps.mating.settings import MatingSettings
 from cellctl.steps.preparation import prepare
@@ -107,3 +110,31 @@ async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig
     rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
     with pytest.raises(SpeedOverridden):
         await prepare(rig.bench.as_cell, rig.bench.calibrations, rig.run().recipe)
+
+
+def with_rate(config: CellConfig, rate_hz: float) -> CellConfig:
+    sensor = config.force.sensor
+    sensor = sensor.model_copy(update={"settings": {**sensor.settings, "rate_hz": rate_hz}})
+    return config.model_copy(update={"force": config.force.model_copy(update={"sensor": sensor})})
+
+
+@pytest.mark.parametrize(("rate_hz", "threshold_n"), [(500.0, 60.0), (200.0, 60.0), (4e3, 480.0)])
+def test_period_touch_and_band_follow_the_rate_of_the_sensor(
+    rig: RunRig, rate_hz: float, threshold_n: float
+) -> None:
+    config = with_rate(rig.bench.cell.config, rate_hz)
+    settings = mating_settings(config, config.recipes[0], Commissioned(), 200.0)
+    assert settings.sample_period_s == 1.0 / rate_hz
+    assert settings.touch.threshold_n == pytest.approx(threshold_n)
+    lowest_hz, highest_hz = contact_limits(settings).rate_hz
+    assert 0.5 * rate_hz < lowest_hz < 0.9 * rate_hz
+    assert 1.1 * rate_hz < highest_hz < 1.5 * rate_hz
+
+
+def test_a_touch_is_noticed_at_the_same_force_whatever_the_rate() -> None:
+    ramp_n_s = 100.0
+    felt = [
+        Cusum(4.0, touch_threshold_n(rate_hz)).force_at_alarm(ramp_n_s, 1.0 / rate_hz)
+        for rate_hz in (500.0, 1e3, 4e3)
+    ]
+    assert felt == pytest.approx([felt[0]] * 3)

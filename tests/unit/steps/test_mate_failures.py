@@ -7,6 +7,7 @@ from benchmarks.campaign_mating_failures import FAILURES, run_failure
 TRIED_HERE = (
     "sensor silent, creep",
     "sensor frozen, guarded travel",
+    "sensor at half its rate",
     "sensor saturated",
     "NaN-like bytes",
     "robot link lost, creep",

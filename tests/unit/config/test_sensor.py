@@ -1,0 +1,26 @@
+"""Staleness and rate of the force sensor must fit together before anything runs."""
+
+from pathlib import Path
+
+from cellctl.config import load_cell, problems
+from cellctl.config.sensor import sensor_rate_hz
+
+CONFIG = Path(__file__).parents[3] / "config"
+
+
+def slowed(tmp_path: Path, rate_hz: int) -> Path:
+    text = (CONFIG / "cell.fake.toml").read_text()
+    (tmp_path / "features").symlink_to(CONFIG / "features")
+    path = tmp_path / "cell.toml"
+    path.write_text(text.replace("rate_hz = 1000", f"rate_hz = {rate_hz}"))
+    return path
+
+
+def test_the_rate_is_the_one_in_the_settings_of_the_driver(tmp_path: Path) -> None:
+    assert sensor_rate_hz(load_cell(slowed(tmp_path, 250)).force) == 250.0
+
+
+def test_a_sensor_may_not_be_slower_than_its_silence(tmp_path: Path) -> None:
+    [problem] = problems(slowed(tmp_path, 10))
+    assert problem.key == "force.stale_ms"
+    assert problem.allowed == "at least 200, two samples at the sensor's rate"
