@@ -17,28 +17,51 @@ R = TypeVar("R")
 
 
 class VisionWorkers:
-    """A small pool of spawned processes; one OpenCV thread each, deaf to the terminal."""
+    """A small pool of spawned processes; one OpenCV thread each, deaf to the terminal.
+
+    The death of one makes all of them useless until ``revive``.
+    """
 
     def __init__(self, count: int = 2) -> None:
         # Read by the workers' numpy: threads of its own cost the small fits seven times the time.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        self._pool = ProcessPoolExecutor(
-            max_workers=count,
-            mp_context=multiprocessing.get_context("spawn"),
-            initializer=_initialise,
-        )
+        self._count = count
+        self._pool = _pool(count)
+        self._broken = False
+
+    async def check(self) -> None:
+        """Have a worker answer; raises ``WorkerDied``."""
+        await self.run(os.getpid)
+
+    def revive(self) -> None:
+        """New workers in the place of those that a death has made useless; else nothing."""
+        if self._broken:
+            self._pool.shutdown(wait=False, cancel_futures=True)
+            self._pool, self._broken = _pool(self._count), False
 
     async def run(self, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-        """Run a pure function in a worker; its exceptions come back unchanged."""
+        """Run a pure function in a worker; its exceptions come back unchanged.
+
+        Raises ``WorkerDied`` when a worker has died meanwhile or before.
+        """
         loop = asyncio.get_running_loop()
         try:
             return await loop.run_in_executor(self._pool, partial(function, *args, **kwargs))
         except BrokenProcessPool as error:
+            self._broken = True
             raise WorkerDied("a vision worker ended unexpectedly") from error
 
     def close(self) -> None:
         """End the workers; work that has not begun is dropped."""
         self._pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _pool(count: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(
+        max_workers=count,
+        mp_context=multiprocessing.get_context("spawn"),
+        initializer=_initialise,
+    )
 
 
 def _initialise() -> None:

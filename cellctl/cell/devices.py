@@ -54,6 +54,8 @@ class Cell:
         self.workers = VisionWorkers()
         self.connected = False
         """True from a ``connect`` that reached every device until ``disconnect``."""
+        self.unanswered: dict[str, CellError] = {}
+        """Heads and tracker that did not answer when they were asked last."""
         self.base_T_frame: RigidTransform | None = None
         """The frame as measured last: only for leaving the station straight."""
         self.awaits_trips = False
@@ -77,6 +79,19 @@ class Cell:
         checks["guard"] = self.guard.check
         return checks
 
+    async def ask_heads_and_tracker(self) -> None:
+        """Have each of them answer; fills ``unanswered``. Not while a run uses them."""
+        devices = {head.name: head.camera for head in self.heads} | {"tracker": self.tracker}
+        answers = await asyncio.gather(
+            *(device.serial_number() for device in devices.values()), return_exceptions=True
+        )
+        self.unanswered = {}
+        for name, answer in zip(devices, answers, strict=True):
+            if isinstance(answer, CellError):
+                self.unanswered[name] = answer
+            elif isinstance(answer, BaseException):
+                raise answer
+
     async def connect(self) -> None:
         """Connect everything at once, or nothing; raises one fault that names every failing device.
 
@@ -97,7 +112,7 @@ class Cell:
         except BaseException:
             await self.disconnect()
             raise
-        self.connected = True
+        self.connected, self.unanswered = True, {}
         _log.info("all devices connected", simulated=self.config.simulated)
 
     async def disconnect(self) -> None:

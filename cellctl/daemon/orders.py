@@ -86,6 +86,8 @@ class OrderDesk:
         try:
             require_ready(self._cell.robots)
             self._cell.guard.check()
+            for fault in self._cell.unanswered.values():
+                return RejectCode.DEVICE_NOT_READY, fault
         except CellError as error:
             return RejectCode.DEVICE_NOT_READY, error
         return RejectCode.NONE, None

@@ -6,6 +6,7 @@ from functools import partial
 from cellctl.cell.devices import Cell
 from cellctl.daemon.line import Line
 from cellctl.daemon.notify import Watchdog
+from cellctl.daemon.roll_call import RollCall
 from cellctl.daemon.unit import Unit
 from cellctl.errors import CellError
 from cellctl.guard.report import GuardTrip, TripReason
@@ -13,6 +14,7 @@ from cellctl.plc.port import PlcPort
 
 PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25
+ASK_PERIOD_S = 2.0
 
 
 async def supervise(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
@@ -23,6 +25,7 @@ async def supervise(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
         tasks.create_task(port.failed())
         tasks.create_task(_publish(line))
         tasks.create_task(_watch_links(cell, unit))
+        tasks.create_task(_call_the_roll(cell, unit))
 
 
 def _beat(port: PlcPort, watchdog: Watchdog) -> None:
@@ -42,6 +45,13 @@ async def _watch_links(cell: Cell, unit: Unit) -> None:
     while True:
         await watch.look()
         await asyncio.sleep(LINK_PERIOD_S)
+
+
+async def _call_the_roll(cell: Cell, unit: Unit) -> None:
+    roll_call = RollCall(cell, unit)
+    while True:
+        await roll_call.ask()
+        await asyncio.sleep(ASK_PERIOD_S)
 
 
 class LinkWatch:

@@ -31,7 +31,7 @@ MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSU
 """Commands after which a robot may move."""
 _IN_CONTACT = frozenset({Step.MATE, Step.MEASURE_CONTACT_STIFFNESS})
 _AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
-_AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
+AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 
 
 class Unit:
@@ -119,7 +119,7 @@ class Unit:
             async with asyncio.timeout(ABORT_TIMEOUT_S):
                 if fault is not None:
                     await self.machine.fail(fault)
-                if self.machine.state not in _AT_REST:
+                if self.machine.state not in AT_REST:
                     await self.machine.command(Command.ABORT)
                     await self.machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
         except TimeoutError:
@@ -130,6 +130,7 @@ class Unit:
         await self.background.drain()
 
     async def _clearing(self) -> None:
+        self._cell.workers.revive()
         if not self._cell.connected:
             await self._cell.connect()
 

@@ -22,7 +22,7 @@ class WorkerDied(InternalError):
     number = 902
     text = "A vision worker process died"
     cause = "Out of memory, or a defect in a native library."
-    remedy = "Restart the daemon; keep the log."
+    remedy = "Clear starts new workers; keep the log."
 
 
 class StateDidNotEnd(InternalError):

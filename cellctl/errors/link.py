@@ -78,3 +78,13 @@ class DeviceFault(LinkError):
     text = "Device reports a fault of its own"
     cause = "See the device's words in the detail."
     remedy = "Put the device in order as its maker says; then Clear and Reset."
+
+
+class DeviceAway(LinkError):
+    """A head or the tracker does not answer while the cell rests."""
+
+    number = 209
+    text = "A measuring device does not answer"
+    cause = "See the fault of the device in the detail."
+    remedy = "Bring the device back; Start is refused until it answers."
+    reaction = Reaction.WARN

@@ -17,6 +17,8 @@ from cellctl.cell.head_station import HeadStation
 from cellctl.cell.measuring import HeadGeometry, PartMeasurement
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
+from cellctl.errors import CellError
+from cellctl.errors.internal import WorkerDied
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
@@ -44,6 +46,7 @@ class Head(InProcessHead):
         self.serial = serial
 
     async def serial_number(self) -> str:
+        self._check()
         return self.serial
 
 
@@ -53,10 +56,18 @@ class InlineWorkers:
     def __init__(self) -> None:
         self.answers: dict[str, Callable[..., Any]] = {}
         self.ran: list[str] = []
+        self.died = False
 
     async def run(self, function: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
         self.ran.append(function.__name__)
         return self.answers.get(function.__name__, function)(*args, **kwargs)
+
+    async def check(self) -> None:
+        if self.died:
+            raise WorkerDied("killed")
+
+    def revive(self) -> None:
+        self.died = False
 
     def close(self) -> None:
         self.ran.append("closed")
@@ -79,6 +90,7 @@ class CellInMemory:
     stop_motion: Any = Cell.stop_motion
     rearm: Any = Cell.rearm
     health_checks: Any = Cell.health_checks
+    ask_heads_and_tracker: Any = Cell.ask_heads_and_tracker
     connect: Any = Cell.connect
     disconnect: Any = Cell.disconnect
 
@@ -93,6 +105,7 @@ class CellInMemory:
         self.guard = TinyGuard()
         self.workers = InlineWorkers()
         self.connected = True
+        self.unanswered: dict[str, CellError] = {}
         self.base_T_frame: RigidTransform | None = None
         self.awaits_trips = False
 
