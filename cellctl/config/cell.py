@@ -21,6 +21,16 @@ class Plc(Section):
     """Addresses that may connect; empty for any."""
 
 
+class LocalApi(Section):
+    """Operator commands on the cell's PC."""
+
+    socket: str = ""
+    """Relative to the working directory of the daemon; empty: `cellctl.sock` in the runtime
+    directory of the service, else in data_dir."""
+    group: str = ""
+    """Whose members may command the cell; empty for the group of the daemon."""
+
+
 class Procedures(Section):
     """Settings of the calibration procedures."""
 
@@ -49,6 +59,7 @@ class CellConfig(Section):
     calibration_dir: str = "calibration"
     """Relative to the cell file."""
     plc: Plc = Plc()
+    local_api: LocalApi = LocalApi()
     robots: Robots
     heads: Heads
     tracker: Device

@@ -16,6 +16,7 @@ from cellctl.cell.archive import Archive
 from cellctl.cell.devices import Cell
 from cellctl.config import CellConfig, load_cell
 from cellctl.daemon.line import Line
+from cellctl.daemon.local.api import local_server
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.unit import Unit
@@ -43,7 +44,8 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         loop.add_signal_handler(number, stop.set)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
-        archive = Archive(data_dir or Path(config.data_dir))
+        data_dir = data_dir or Path(config.data_dir)
+        archive = Archive(data_dir)
         stack.callback(archive.close)
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, stop.set)
@@ -57,6 +59,9 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         line.attach(port)
         stack.push_async_callback(port.stop)
         await port.start()  # first of all: a second daemon must not take over the robots
+        local = local_server(cell, unit, line, archive, data_dir)
+        stack.push_async_callback(local.stop)
+        await local.start()
         stack.push_async_callback(cell.disconnect)
         stack.push_async_exit(partial(_end, unit))
         await until_told(stop, _work(cell, unit, line, port))

@@ -8,11 +8,23 @@ CellError
 ├── ForceError        5xx   errors.force        sensor, guard, mating
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 ├── LineError         7xx   errors.line         line PLC and commands
+│   └── LocalError    71x   errors.local        operator commands on the cell's PC
 ├── RecordsError      8xx   errors.records      run store and artefacts
 └── InternalError     9xx   errors.internal     cellctl itself
 """
 
-from cellctl.errors import calibration, config, force, internal, line, link, records, robot, vision
+from cellctl.errors import (
+    calibration,
+    config,
+    force,
+    internal,
+    line,
+    link,
+    local,
+    records,
+    robot,
+    vision,
+)
 from cellctl.errors.base import CellError, Reaction, catalogue
 
 __all__ = [
@@ -25,6 +37,7 @@ __all__ = [
     "internal",
     "line",
     "link",
+    "local",
     "records",
     "robot",
     "vision",

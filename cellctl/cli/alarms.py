@@ -1,0 +1,36 @@
+"""`cellctl alarms`: the alarms that nobody has acknowledged yet."""
+
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cellctl.cli.daemon_client import DaemonClient, SocketOption
+from cellctl.daemon.local.messages import AcknowledgeCommand
+
+app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
+
+
+@app.callback(invoke_without_command=True)
+def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
+    """List the active alarms with what to do; `acknowledge` takes one off the list."""
+    if context.invoked_subcommand is not None:
+        return
+    console = Console(soft_wrap=True, highlight=False)
+    alarms = DaemonClient(socket).status().alarms
+    for alarm in alarms:
+        console.print(alarm.text, style="yellow", markup=False)
+        console.print(f"  cause:  {alarm.cause}", markup=False)
+        console.print(f"  remedy: {alarm.remedy}", markup=False)
+    if not alarms:
+        console.print("no alarms")
+
+
+@app.command()
+def acknowledge(
+    number: Annotated[int, typer.Argument(help="Number of the fault, without the F.")],
+    socket: SocketOption = None,
+) -> None:
+    """Acknowledge every alarm with this number; it releases no fault and moves nothing."""
+    DaemonClient(socket).command(AcknowledgeCommand(number=number))
+    typer.echo(f"F{number:03d} acknowledged")

@@ -1,0 +1,98 @@
+"""The other end of the local API: how commands of the operator reach the daemon."""
+
+import socket
+import time
+from collections.abc import Collection
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cellctl.clock import now_s
+from cellctl.daemon.local.messages import (
+    ANSWER_LIMIT,
+    Answer,
+    CommandRequest,
+    Failed,
+    Refused,
+    Request,
+    Status,
+    StatusRequest,
+    parse_answer,
+    to_line,
+)
+from cellctl.daemon.local.report import StatusReport
+from cellctl.errors.local import (
+    CommandMissedItsGoal,
+    CommandRefused,
+    DaemonNotReached,
+    MessageMalformed,
+)
+
+SERVICE = Path("/run/cellctl/cellctl.sock")
+"""Where the shipped systemd unit has it."""
+HERE = Path("runs/cellctl.sock")
+"""Where a daemon has it that was started from this folder with the default data_dir."""
+ANSWER_S = 10.0
+SETTLE_S = 60.0
+_POLL_S = 0.2
+
+SocketOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--socket",
+        envvar="CELLCTL_SOCKET",
+        help=f"The daemon's socket; default: {SERVICE}, else {HERE}.",
+    ),
+]
+
+
+class DaemonClient:
+    """Asks the daemon, one connection per question."""
+
+    def __init__(self, path: Path | None) -> None:
+        self._path = path or (SERVICE if SERVICE.exists() else HERE)
+
+    def status(self) -> StatusReport:
+        """The cell at this moment; raises ``DaemonNotReached`` or ``MessageMalformed``."""
+        answer = self._ask(StatusRequest())
+        if not isinstance(answer, Status):
+            raise MessageMalformed(f"no status: {answer}")
+        return answer.report
+
+    def command(self, request: CommandRequest) -> None:
+        """Have a command obeyed; raises ``CommandRefused`` with the reason."""
+        answer = self._ask(request)
+        if isinstance(answer, Refused):
+            raise CommandRefused(f"0x{answer.code:X} {answer.text} (state {answer.state})")
+
+    def settled(
+        self, states: Collection[str] = (), timeout_s: float | None = SETTLE_S
+    ) -> StatusReport:
+        """Wait until the unit is in one of the states, or, without any, on its way nowhere."""
+        end_s = None if timeout_s is None else now_s() + timeout_s
+        while True:
+            report = self.status()
+            there = report.state in states if states else report.state == report.state_requested
+            if there:
+                return report
+            if end_s is not None and now_s() > end_s:
+                raise CommandMissedItsGoal(f"still {report.state} after {timeout_s:g} s")
+            time.sleep(_POLL_S)
+
+    def _ask(self, request: Request) -> Answer:
+        try:
+            with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
+                connection.settimeout(ANSWER_S)
+                connection.connect(str(self._path))
+                connection.sendall(to_line(request))
+                with connection.makefile("rb") as lines:
+                    line = lines.readline(ANSWER_LIMIT)
+        except OSError as error:
+            raise DaemonNotReached(f"{self._path}: {error.strerror or error}") from error
+        if not line.endswith(b"\n"):
+            raise DaemonNotReached(f"{self._path}: it hung up")
+        answer = parse_answer(line)
+        if isinstance(answer, Failed):
+            raise MessageMalformed(answer.text)
+        return answer

@@ -1,0 +1,25 @@
+"""`cellctl --help` by what one wants to do."""
+
+from typing import Any
+
+from typer.core import TyperGroup
+
+_OTHERS = "Commands"
+
+
+class GroupedCommands(TyperGroup):
+    """Lists the commands under the panel that each was registered with."""
+
+    def format_commands(self, ctx: Any, formatter: Any) -> None:
+        """Write one section per panel, in the order of registration."""
+        sections: dict[str, list[tuple[str, str]]] = {}
+        for name in self.list_commands(ctx):
+            command = self.get_command(ctx, name)
+            if command is None or command.hidden:
+                continue
+            panel = getattr(command, "rich_help_panel", None)
+            title = panel if isinstance(panel, str) else _OTHERS
+            sections.setdefault(title, []).append((name, command.get_short_help_str(80)))
+        for title, rows in sections.items():
+            with formatter.section(title):
+                formatter.write_dl(rows)

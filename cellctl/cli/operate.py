@@ -1,0 +1,138 @@
+"""`cellctl clear|reset|start|…`: what an operator may ask of the running daemon."""
+
+from collections.abc import Collection
+from enum import StrEnum
+from typing import Annotated, Literal
+
+import typer
+
+from cellctl.cli.daemon_client import DaemonClient, SocketOption
+from cellctl.daemon.local.messages import (
+    CommandRequest,
+    ModeCommand,
+    PlainCommand,
+    ProcedureCommand,
+    StartCommand,
+)
+from cellctl.daemon.local.report import StatusReport
+from cellctl.errors.local import CommandMissedItsGoal
+
+_BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
+_ENDED = ("COMPLETED", "STOPPED", "ABORTED", "HELD")
+Wait = Annotated[
+    bool,
+    typer.Option("--wait", help="Until it has ended; exit code 0 only if good."),
+]
+
+
+class ModeName(StrEnum):
+    """Modes as they are typed."""
+
+    PRODUCTION = "production"
+    MAINTENANCE = "maintenance"
+    MANUAL = "manual"
+
+
+def clear(socket: SocketOption = None) -> None:
+    """Aborted to Stopped: release the fault, once its cause is removed. Nothing moves."""
+    _plain(socket, "clear", ("STOPPED",))
+
+
+def reset(socket: SocketOption = None) -> None:
+    """Stopped or Completed to Idle: robots are released; one inside the station lifts off."""
+    _plain(socket, "reset", ("IDLE",))
+
+
+def hold(socket: SocketOption = None) -> None:
+    """Pause at the next safe point."""
+    _plain(socket, "hold", ("HELD",))
+
+
+def unhold(socket: SocketOption = None) -> None:
+    """Go on after a Hold, beginning with new measurements."""
+    _plain(socket, "unhold", _BEGUN)
+
+
+def stop(socket: SocketOption = None) -> None:
+    """End motion and run; obeyed at any time, whoever is in control."""
+    _plain(socket, "stop", ("STOPPED",))
+
+
+def abort(socket: SocketOption = None) -> None:
+    """Stop and latch all robots at once; obeyed at any time, whoever is in control."""
+    _plain(socket, "abort", ("ABORTED",))
+
+
+def start(
+    serial: Annotated[str, typer.Option(help="Serial number of the part: A-Z 0-9 . _ -")],
+    recipe: Annotated[
+        str, typer.Option(help="Name or number; default: the only recipe of the cell.")
+    ] = "",
+    order: Annotated[str, typer.Option(help="Operator or order for the record.")] = "",
+    *,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="End before the mating.")] = False,
+    single_step: Annotated[
+        bool, typer.Option("--single-step", help="Hold before each step.")
+    ] = False,
+    wait: Wait = False,
+    socket: SocketOption = None,
+) -> None:
+    """Assemble a part, in Production mode."""
+    request = StartCommand(
+        serial=serial, recipe=recipe, order=order, dry_run=dry_run, single_step=single_step
+    )
+    _begin(DaemonClient(socket), request, wait=wait)
+
+
+def procedure(
+    number: Annotated[int, typer.Argument(help="101 to 108, see docs/commissioning.md.")],
+    serial: Annotated[str, typer.Option(help="For the record; default: PROCEDURE-NUMBER.")] = "",
+    *,
+    wait: Wait = False,
+    socket: SocketOption = None,
+) -> None:
+    """Calibrate, identify or verify, in Maintenance mode."""
+    request = ProcedureCommand(number=number, serial=serial or f"PROCEDURE-{number}")
+    _begin(DaemonClient(socket), request, wait=wait)
+
+
+def mode(
+    name: Annotated[ModeName, typer.Argument(help="The mode to change to.")],
+    socket: SocketOption = None,
+) -> None:
+    """Change the mode, in Stopped, Idle or Aborted."""
+    client = DaemonClient(socket)
+    client.command(ModeCommand(mode=name.value))
+    _tell(client.status())
+
+
+def _plain(
+    socket: SocketOption,
+    name: Literal["clear", "reset", "hold", "unhold", "stop", "abort"],
+    goal: Collection[str],
+) -> None:
+    client = DaemonClient(socket)
+    client.command(PlainCommand(request=name))
+    _tell(_arrived(client.settled(), goal))
+
+
+def _begin(client: DaemonClient, request: CommandRequest, *, wait: bool) -> None:
+    """Interrupting the wait does not end the run."""
+    client.command(request)
+    report = _arrived(client.settled(), _BEGUN)
+    if wait:
+        report = _arrived(client.settled(_ENDED, timeout_s=None), ("COMPLETED",))
+        if report.result != "good":
+            raise CommandMissedItsGoal(f"the result is {report.result}")
+    _tell(report)
+
+
+def _arrived(report: StatusReport, goal: Collection[str]) -> StatusReport:
+    if report.state in goal:
+        return report
+    why = f": {report.faults[0].text}" if report.faults else ""
+    raise CommandMissedItsGoal(f"{report.state}{why}")
+
+
+def _tell(report: StatusReport) -> None:
+    typer.echo(f"{report.state.lower()}, mode {report.mode.lower()}")

@@ -1,0 +1,40 @@
+"""`cellctl status`: the cell on one screen."""
+
+import time
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.live import Live
+
+from cellctl.cli.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.status_screen import screen
+from cellctl.clock import utc_now
+
+_PERIOD_S = 1.0
+
+
+def status(
+    *,
+    json: Annotated[bool, typer.Option("--json", help="For programs: one JSON object.")] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Follow it until Ctrl-C.")] = False,
+    socket: SocketOption = None,
+) -> None:
+    """State, faults with their remedy, calibrations, links and the last run."""
+    client = DaemonClient(socket)
+    if json:
+        typer.echo(client.status().model_dump_json(indent=1))
+    elif watch:
+        _follow(client)
+    else:
+        Console().print(screen(client.status(), utc_now()))
+
+
+def _follow(client: DaemonClient) -> None:
+    with Live(screen(client.status(), utc_now()), auto_refresh=False) as live:
+        try:
+            while True:
+                time.sleep(_PERIOD_S)
+                live.update(screen(client.status(), utc_now()), refresh=True)
+        except KeyboardInterrupt:
+            return

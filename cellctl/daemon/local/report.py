@@ -1,0 +1,79 @@
+"""What `cellctl status` is told."""
+
+from datetime import datetime
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+
+class Part(BaseModel):
+    """Strict, as the messages are."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class FaultReport(Part):
+    """A fault, latched in the machine or still on the list of alarms."""
+
+    number: int
+    text: str
+    """With the facts of this occurrence, where they are known."""
+    cause: str
+    remedy: str
+
+
+class CalibrationReport(Part):
+    """One calibration; without dates where none can be read."""
+
+    kind: str
+    made: datetime | None = None
+    valid_until: datetime | None = None
+    problem: str = ""
+    """Why production cannot use it; empty when it can."""
+
+
+class RunReport(Part):
+    """The newest run of the store."""
+
+    number: int
+    serial: str
+    recipe: str
+    mode: str
+    started: datetime
+    result: str
+    """Empty while it is open."""
+
+
+class StatusReport(Part):
+    """A snapshot of the cell."""
+
+    cell: str
+    simulated: bool
+    state: str
+    state_requested: str
+    mode: str
+    control: Literal["line", "shared"]
+    """Line: the PLC alone may do what moves the cell; see docs/operating.md."""
+    line_alive: bool
+    connected: bool
+    """All devices were connected and the daemon does not end."""
+    ready: bool
+    """Idle, and Start would be taken."""
+    hold_requested: bool
+    step: str
+    iteration: int
+    faults: tuple[FaultReport, ...]
+    """Latched ones, the first is what stopped the cell."""
+    alarms: tuple[FaultReport, ...]
+    """Not yet acknowledged, the oldest first."""
+    guard_trip: str
+    """What it has latched; empty when it has not."""
+    links: dict[str, str]
+    """Robots and guard by name; what is wrong with each, empty when it is well."""
+    calibrations: tuple[CalibrationReport, ...]
+    result: str
+    """Of the present or last job: ``none`` while it is open, else as the line's ``run_result``."""
+    last_run: RunReport | None
+    good_parts: int
+    records: str
+    """What is wrong with the run store; empty when it is well."""

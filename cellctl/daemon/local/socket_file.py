@@ -1,0 +1,85 @@
+"""The socket in the file system: who may use it, and what becomes of a dead daemon's."""
+
+import os
+import shutil
+import socket
+import stat
+from pathlib import Path
+
+from cellctl.errors.local import CannotServeLocally, LocalApiInUse
+
+MODE = 0o660
+_NAME = "cellctl.sock"
+
+
+def default_path(data_dir: Path) -> Path:
+    """In the runtime directory that systemd gives the service, else in ``data_dir``."""
+    runtime = os.environ.get("RUNTIME_DIRECTORY", "").split(":")[0]
+    return (Path(runtime) if runtime else data_dir) / _NAME
+
+
+class SocketFile:
+    """A listening socket that leaves nothing behind."""
+
+    def __init__(self, path: Path, group: str) -> None:
+        """``group``: name of the group that may connect; empty for the daemon's own."""
+        self.path = path
+        self._group = group
+        self._inode = 0
+
+    def open(self) -> socket.socket:
+        """Listen, in place of a dead daemon's file.
+
+        Raises ``LocalApiInUse`` while somebody listens there, else ``CannotServeLocally``.
+        """
+        if len(os.fsencode(self.path)) > 107:
+            raise CannotServeLocally(f"{self.path} is longer than 107 bytes")
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            self._make_room()
+            os.fchmod(listener.fileno(), 0o600)  # of the file to come: nobody connects too early
+            listener.bind(str(self.path))
+            self._inode = self.path.stat().st_ino
+            if self._group:
+                shutil.chown(self.path, group=self._group)
+            self.path.chmod(MODE)
+            listener.setblocking(False)  # noqa: FBT003 - the library's own signature
+        except (OSError, LookupError) as error:
+            listener.close()
+            self.remove()
+            raise CannotServeLocally(f"{self.path}: {error}") from error
+        except LocalApiInUse:
+            listener.close()
+            raise
+        return listener
+
+    def remove(self) -> None:
+        """Take the file away, unless it is another daemon's by now. Idempotent."""
+        try:
+            if self._inode and self.path.stat().st_ino == self._inode:
+                self.path.unlink()
+        except FileNotFoundError:
+            pass
+        self._inode = 0
+
+    def _make_room(self) -> None:
+        try:
+            found = self.path.lstat()
+        except FileNotFoundError:
+            return
+        if not stat.S_ISSOCK(found.st_mode):
+            raise FileExistsError("is no socket")
+        if _somebody_listens(self.path):
+            raise LocalApiInUse(str(self.path))
+        self.path.unlink()
+
+
+def _somebody_listens(path: Path) -> bool:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM | socket.SOCK_NONBLOCK) as probe:
+        try:
+            probe.connect(str(path))
+        except (ConnectionRefusedError, FileNotFoundError):
+            return False
+        except BlockingIOError:
+            return True  # its queue is full
+    return True

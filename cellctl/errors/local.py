@@ -1,0 +1,69 @@
+"""71x: the local API, by which operators at the cell's PC reach the daemon."""
+
+from cellctl.errors.base import Reaction
+from cellctl.errors.line import LineError
+
+
+class LocalError(LineError):
+    """Something between an operator's command and the daemon."""
+
+    reaction = Reaction.STOP
+
+
+class LocalApiInUse(LocalError):
+    """Another daemon listens on the socket."""
+
+    number = 711
+    text = "Another daemon serves the local API"
+    cause = "A second cellctl was started with the same socket."
+    remedy = "Stop the other daemon, or give this one its own data_dir or local_api.socket."
+
+
+class CannotServeLocally(LocalError):
+    """The socket cannot be made."""
+
+    number = 712
+    text = "The socket of the local API cannot be opened"
+    cause = "Folder missing or not writable, a path beyond 107 bytes, a file that is no socket in "
+    cause += "its place, or a group that does not exist or that the daemon does not belong to."
+    remedy = "Check local_api.socket and local_api.group in the cell file."
+
+
+class MessageMalformed(LocalError):
+    """A line is not one of the local API's messages; nothing was done."""
+
+    number = 713
+    text = "Message of the local API not understood"
+    cause = "Mistyped value, or command and daemon of different versions."
+    remedy = "See the detail; use the cellctl that the daemon was started with."
+    reaction = Reaction.WARN
+
+
+class DaemonNotReached(LocalError):
+    """Nobody answers on the socket."""
+
+    number = 714
+    text = "The daemon does not answer"
+    cause = "It is not running, uses another socket, or this user is not in its group."
+    remedy = "Start it, name its socket with --socket or CELLCTL_SOCKET, or ask for membership of "
+    remedy += "the group."
+
+
+class CommandRefused(LocalError):
+    """The daemon will not do it, and says why."""
+
+    number = 715
+    text = "The cell refuses the command"
+    cause = "See the detail; the codes are the line PLC's, docs/register-map.md."
+    remedy = "Look at `cellctl status`."
+    reaction = Reaction.WARN
+
+
+class CommandMissedItsGoal(LocalError):
+    """The command was taken, and the cell ended elsewhere, or not in time."""
+
+    number = 716
+    text = "The cell did not get where the command leads"
+    cause = "A fault, another command, or a state that takes longer than the command waits."
+    remedy = "Look at `cellctl status`: a fault is shown there with its remedy."
+    reaction = Reaction.WARN
