@@ -16,6 +16,7 @@ from cellctl.cell.settling import settle
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.steps.guarding import Change, watched
 from cellctl.steps.journal import Journal
 from cellctl.steps.units import in_mm_deg
 from cellctl.vision.compensation import Thresholds, target_M_T_D
@@ -23,6 +24,11 @@ from cellctl.vision.features import FeatureFile
 
 SHARE_OF_ONE_PART = 1 / np.sqrt(2)
 """Frame and deck contribute alike to the uncertainty of the deck in the frame."""
+
+SWING_RATIO = 2.0
+"""A load that hangs on a spring pulls twice its mass times the acceleration when that begins."""
+LEVER_M = 1.0
+"""No centre of mass lies farther from the middle of its deck."""
 
 
 @dataclass(slots=True)
@@ -91,13 +97,32 @@ class AssemblyRun:
         )
 
     async def move_flange(self, base_T_flange: RigidTransform) -> None:
-        """Straight move of the main robot, until the deck is still; raises ``NotSettled``."""
+        """Straight move of the main robot under the guard, until the deck is still.
+
+        Raises ``NotSettled``, and the fault of a trip: what the frame should be clear of is not.
+        """
         main = self.cell.config.robots.main
-        await self.cell.main.move_linear(
-            base_T_flange,
-            speed_m_s=main.linear_speed_mm_s * MM,
-            acceleration_m_s2=main.linear_acceleration_mm_s2 * MM,
-        )
+        await self._move(base_T_flange, main.linear_speed_mm_s, main.linear_acceleration_mm_s2)
+
+    async def lower_flange(self, base_T_flange: RigidTransform) -> None:
+        """The same at the pace of the mating's fast travel, with limits as tight as that allows."""
+        mating = self.recipe.mating
+        await self._move(base_T_flange, mating.fast_speed_mm_s, mating.acceleration_mm_s2)
+
+    async def _move(
+        self, base_T_flange: RigidTransform, speed_mm_s: float, acceleration_mm_s2: float
+    ) -> None:
+        assert self.flange_T_deck is not None
+        inertia_n = SWING_RATIO * self.payload_kg * acceleration_mm_s2 * MM
+        force_n = inertia_n + self.recipe.mating.limit_force_n
+        async with watched(self.cell, self.flange_T_deck, Change(force_n, force_n * LEVER_M)) as go:
+            await go(
+                self.cell.main.move_linear(
+                    base_T_flange,
+                    speed_m_s=speed_mm_s * MM,
+                    acceleration_m_s2=acceleration_mm_s2 * MM,
+                )
+            )
         await settle(self.cell.guard)
 
 

@@ -1,12 +1,13 @@
 """Steps 10 to 40 and 60 against a true world that the encoders do not see."""
 
+import asyncio
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cellctl.cell.job import HeldMeanwhile
-from cellctl.errors.force import NotSettled
+from cellctl.errors.force import ForceLimitExceeded, NotSettled
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.errors.vision import (
     CorrectionDiverging,
@@ -16,6 +17,7 @@ from cellctl.errors.vision import (
     SeatedOffPosition,
 )
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.steps.compensate import compensate
 from cellctl.steps.measure_deck import measure_deck
 from cellctl.steps.measure_frame import measure_frame
@@ -92,6 +94,40 @@ async def test_the_first_assembly_motion_leads_to_the_stand_off(rig: RunRig) -> 
     )  # the robot's error is the same at both poses here, so nothing is left
     assert len(run.commanded) == 1
     np.testing.assert_array_equal(run.commanded[0].as_matrix(), run.target_M_T_D.as_matrix())
+
+
+async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    above, down = rig.bench.cell.main.moves[-2:]
+    assert above.speed == pytest.approx(0.05)
+    assert down.speed == pytest.approx(run.recipe.mating.fast_speed_mm_s * 1e-3)
+    height_mm = (above.target.translation - down.target.translation)[2] * 1e3
+    assert height_mm == pytest.approx(run.recipe.station_tolerance_mm, rel=1e-4)
+    wide, tight = rig.bench.cell.guard.limits
+    assert wide.filtered[2] == pytest.approx(2 * 200.0 * 0.2 + 50.0)
+    assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 50.0)
+    assert rig.bench.cell.guard.asked.count("tare") == 2
+    assert rig.bench.cell.guard.asked[-1] == "disarm"
+
+
+async def test_what_is_met_over_the_station_stops_the_run(rig: RunRig) -> None:
+    run = rig.run()
+    await measure_frame(run)
+    await measure_deck(run)
+    main, guard = rig.bench.cell.main, rig.bench.cell.guard
+    moves = len(main.moves)
+    main.road_is_free = asyncio.Event()
+    going = asyncio.create_task(pre_assembly(run))
+    while len(main.moves) == moves:  # noqa: ASYNC110 - the arm is on its way then
+        await asyncio.sleep(0.001)
+    guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 143.00 N, limit 142.00 N", 2)
+    while not main.stops:  # noqa: ASYNC110 - the second stop, which ends the move
+        await asyncio.sleep(0.001)
+    main.road_is_free.set()
+    with pytest.raises(ForceLimitExceeded, match="Fz 143"):
+        await going
+    assert len(main.moves) == moves + 1
+    assert main.latched
 
 
 async def test_compensation_ends_within_the_thresholds(rig: RunRig) -> None:
