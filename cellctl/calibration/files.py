@@ -9,7 +9,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from cellctl import __version__
 from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.calibration.board_transfer import TransferResult
 from cellctl.calibration.checks import require_passed
+from cellctl.calibration.invalidation import require_not_invalidated
 from cellctl.calibration.stereo_result import StereoResult
 from cellctl.durable import write_durably
 from cellctl.errors.calibration import (
@@ -24,11 +25,14 @@ from cellctl.errors.calibration import (
     CalibrationMissing,
     CalibrationNotStored,
     CalibrationRecordInvalid,
+    ClockNotTrusted,
 )
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.stereo_head import StereoHead
 
 KINDS = ("head_1", "head_2", "base_frame", "board_transfer")
+CLOCK_STEP = timedelta(minutes=1)
+"""By so much a synchronised clock may be set back."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +51,10 @@ class StoredCalibration:
     def id(self) -> str:
         """SHA-256 of the record."""
         return record_id(self.record)
+
+    def require_past(self, now: datetime) -> None:
+        """Raise ``ClockNotTrusted`` when it was made later than ``now``."""
+        require_clock_after(self.made, now, self.kind)
 
     @property
     def passed(self) -> bool:
@@ -89,6 +97,15 @@ class CalibrationSet:
     def c1_T_c2(self) -> UncertainPose:
         """Head II in head I."""
         return self.transfer.c1_T_c2
+
+
+def require_clock_after(newest: datetime, now: datetime, what: str) -> None:
+    """Raise ``ClockNotTrusted`` when the clock is behind something that was stamped before.
+
+    With the clock set back, what has expired would count again.
+    """
+    if now + CLOCK_STEP < newest:
+        raise ClockNotTrusted(f"it says {now:%Y-%m-%d %H:%M:%S}, {what} {newest:%Y-%m-%d %H:%M:%S}")
 
 
 def record_id(record: Mapping[str, Any]) -> str:
@@ -142,7 +159,19 @@ def write_file(path: Path, data: bytes) -> None:
 
 
 def read_calibration(folder: Path, kind: str) -> StoredCalibration:
-    """Read one; raises ``CalibrationMissing`` or ``CalibrationRecordInvalid``."""
+    """Read one that nothing has invalidated.
+
+    Raises ``CalibrationMissing``, ``CalibrationInvalidated`` or ``CalibrationRecordInvalid``.
+    """
+    require_not_invalidated(folder, kind)
+    return read_stored(folder, kind)
+
+
+def read_stored(folder: Path, kind: str) -> StoredCalibration:
+    """Read one, also an invalidated one.
+
+    Raises ``CalibrationMissing`` or ``CalibrationRecordInvalid``.
+    """
     path = folder / f"{kind}.json"
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
@@ -170,7 +199,7 @@ def read_calibration(folder: Path, kind: str) -> StoredCalibration:
 def read_calibration_set(folder: Path, *, now: datetime | None = None) -> CalibrationSet:
     """Read all; with ``now`` also refuse what is no longer valid then.
 
-    Raises ``CalibrationMissing``, ``CalibrationRecordInvalid`` or ``CalibrationExpired``.
+    Raises what ``read_calibration`` raises, and ``CalibrationExpired``.
     """
     stored = {kind: read_calibration(folder, kind) for kind in KINDS}
     rejected = [kind for kind, one in stored.items() if not one.passed]

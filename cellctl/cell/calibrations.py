@@ -1,9 +1,9 @@
 """The cell's calibrations on disk: stored by procedures, demanded by production."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from datetime import timedelta
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +16,14 @@ from cellctl.calibration.files import (
     StoredCalibration,
     read_calibration,
     read_calibration_set,
+    read_stored,
+    require_clock_after,
     write_file,
     write_stored,
 )
+from cellctl.calibration.invalidation import lift_invalidation, mark_invalid, marker
 from cellctl.calibration.stereo_result import StereoResult
-from cellctl.cell.commissioned import Commissioned, read_commissioned
+from cellctl.cell.commissioned import CONTACT_STIFFNESS, Commissioned, read_commissioned
 from cellctl.clock import utc_now
 from cellctl.durable import require_writable
 from cellctl.errors import CellError
@@ -73,8 +76,11 @@ class CalibrationFolder:
     _seen: tuple[Stamp, dict[str, float]] | None = None
 
     def read(self, planned: timedelta) -> Calibrations:
-        """All calibrations; raises when one is missing, damaged or expires within ``planned``."""
-        until = utc_now() + planned
+        """All calibrations; raises when one is missing, damaged, invalidated, or not valid from
+        now until ``planned`` has passed.
+        """
+        now = utc_now()
+        until = now + planned
         geometry = read_calibration_set(self.path, now=until)
         payload = read_calibration(self.path, PAYLOAD)
         if not payload.record.get("accepted"):
@@ -85,13 +91,16 @@ class CalibrationFolder:
             compensation = compensation_from_document(dict(payload.record))
         except (KeyError, TypeError, ValueError) as error:
             raise CalibrationRecordInvalid(f"{PAYLOAD}: {error!r}") from error
-        serial_numbers = {stored.kind: stored.serial_number for stored in self.stored()}
+        stored = self.stored()
+        for one in stored:
+            one.require_past(now)
+        serial_numbers = {one.kind: one.serial_number for one in stored}
         ids = {**geometry.ids, PAYLOAD: payload.id}
         return Calibrations(geometry, compensation, ids, serial_numbers)
 
     def commissioned(self, recipe_id: int, planned: timedelta) -> Commissioned:
         """What commissioning has measured and stays valid for longer than ``planned``."""
-        return read_commissioned(self.path, recipe_id, utc_now() + planned)
+        return read_commissioned(self.path, recipe_id, utc_now(), planned)
 
     def head(self, name: str) -> StereoHead:
         """One stereo head, for procedures that need it before the set is complete."""
@@ -124,9 +133,34 @@ class CalibrationFolder:
         write_stored(self.path, stored)
         if picture_png is not None:
             write_file(self.path / f"{kind}.png", picture_png)
+        lift_invalidation(self.path, kind)
         self.placements.pop(kind, None)
         self._seen = None
         return stored
+
+    def invalidate(self, kinds: Iterable[str], reason: str) -> list[StoredCalibration]:
+        """Mark what there is of some kinds as worthless until it is made anew; what that was.
+
+        ``contact_stiffness`` means that of every recipe. What waits for its counterpart is
+        dropped too. Raises ``CalibrationNotStored``.
+        """
+        self.placements.clear()
+        found = [name for kind in kinds for name in self._names(kind)]
+        for name in found:
+            mark_invalid(self.path, name, reason, utc_now())
+        self._seen = None
+        return [one for name in found if (one := self._known(name)) is not None]
+
+    def _names(self, kind: str) -> list[str]:
+        pattern = f"{kind}_*.json" if kind == CONTACT_STIFFNESS else f"{kind}.json"
+        files = sorted(self.path.glob(pattern))
+        return [file.stem for file in files if not file.stem.endswith(".invalidated")]
+
+    def _known(self, kind: str) -> StoredCalibration | None:
+        try:
+            return read_stored(self.path, kind)
+        except CellError:
+            return None  # it is marked; what the file cannot tell needs no entry of its own
 
     def put_aside(self, kind: str, record: Mapping[str, Any], picture_png: bytes | None) -> Path:
         """Keep a result that did not pass where nothing reads it; the folder.
@@ -151,9 +185,11 @@ class CalibrationFolder:
         """Every record that production demands; raises when one is missing or damaged."""
         return [read_calibration(self.path, kind) for kind in ALL_KINDS]
 
-    def fault(self, planned: timedelta) -> CellError | None:
-        """Why production may not start, or None."""
+    def fault(self, planned: timedelta, newest: datetime | None = None) -> CellError | None:
+        """Why production may not start, or None; ``newest``: of all times that were recorded."""
         try:
+            if newest is not None:
+                require_clock_after(newest, utc_now(), "newest record")
             self.read(planned)
         except CellError as error:
             return error
@@ -180,11 +216,13 @@ class CalibrationFolder:
         return min(self.validity_h()) > planned.total_seconds() / 3600
 
     def _stamp(self) -> Stamp:
-        return tuple(_changed(self.path / f"{kind}.json") for kind in ALL_KINDS)
+        files = ((self.path / f"{kind}.json", marker(self.path, kind)) for kind in ALL_KINDS)
+        return tuple(_changed(file) for both in files for file in both)
 
     def _end(self, kind: str) -> float:
         try:
             stored = read_calibration(self.path, kind)
+            stored.require_past(utc_now())
         except CellError:
             return 0.0  # not valid is what the line is told; production raises the fault itself
         return stored.valid_until.timestamp() if stored.passed or kind == PAYLOAD else 0.0

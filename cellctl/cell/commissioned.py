@@ -5,7 +5,7 @@ of its bound while its record is there, passed and valid; otherwise the bound co
 """
 
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 
 from cellctl import log
@@ -17,6 +17,7 @@ _log = log.get(__name__)
 
 STOP_LATENCY = "stop_latency"
 CONTACT_STIFFNESS = "contact_stiffness"
+"""Of each recipe's parts one, see ``stiffness_kind``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +36,17 @@ class Commissioned:
         return {stored.kind: stored.id for stored in self.records}
 
 
-def read_commissioned(folder: Path, recipe_id: int, until: datetime) -> Commissioned:
-    """Figures whose records stay valid ``until`` then; stiffness only of the same recipe."""
-    latency = _usable(folder, STOP_LATENCY, until)
-    stiffness = _usable(folder, CONTACT_STIFFNESS, until)
-    if stiffness is not None and stiffness.record["recipe_id"] != recipe_id:
-        stiffness = None
+def stiffness_kind(recipe_id: int) -> str:
+    """Kind of the contact stiffness of one recipe's parts."""
+    return f"{CONTACT_STIFFNESS}_{recipe_id}"
+
+
+def read_commissioned(
+    folder: Path, recipe_id: int, now: datetime, planned: timedelta
+) -> Commissioned:
+    """Figures whose records are valid now and stay so for ``planned``; stiffness of one recipe."""
+    latency = _usable(folder, STOP_LATENCY, now, planned)
+    stiffness = _usable(folder, stiffness_kind(recipe_id), now, planned)
     return Commissioned(
         stop_latency_s=latency.record["upper_ms"] / 1e3 if latency else None,
         stiffness_n_m=stiffness.record["upper_n_per_mm"] * 1e3 if stiffness else None,
@@ -48,15 +54,16 @@ def read_commissioned(folder: Path, recipe_id: int, until: datetime) -> Commissi
     )
 
 
-def _usable(folder: Path, kind: str, until: datetime) -> StoredCalibration | None:
+def _usable(folder: Path, kind: str, now: datetime, planned: timedelta) -> StoredCalibration | None:
     try:
         stored = read_calibration(folder, kind)
+        stored.require_past(now)
     except CalibrationMissing:
         return None
     except CellError as error:
         _log.warning("commissioned figure not used", item=kind, reason=str(error))
         return None
-    if not stored.passed or stored.valid_until <= until:
+    if not stored.passed or stored.valid_until <= now + planned:
         reason = "expired or about to" if stored.passed else "its verdict is not a pass"
         _log.warning("commissioned figure not used", item=kind, reason=reason)
         return None

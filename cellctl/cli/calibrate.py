@@ -32,6 +32,7 @@ from cellctl.calibration.stereo import calibrate_stereo
 from cellctl.calibration.stereo_picture import stereo_picture
 from cellctl.calibration.tool import calibrate_tool
 from cellctl.calibration.transfer_picture import transfer_picture
+from cellctl.cli.invalidate import invalidate
 from cellctl.cli.measure import read_image
 from cellctl.cli.output import write_file
 from cellctl.errors.config import FileInvalid
@@ -42,6 +43,8 @@ NOT_PASSED = 3
 """Exit code when a figure of the result is beyond its limit."""
 
 app = typer.Typer(help="Calibrate from files.", no_args_is_help=True, rich_markup_mode=None)
+
+app.command("invalidate")(invalidate)
 
 InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/calibration.md.")]
 OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]

@@ -14,7 +14,9 @@ from cellctl.errors.internal import Unexpected
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.plc.commands import LineCommand
-from cellctl.procedures.maintenance import Maintenance, is_procedure
+from cellctl.procedures.maintenance import Maintenance
+from cellctl.procedures.numbers import procedure_order
+from cellctl.records.store import RunStore
 from cellctl.steps.assembly import Assembly
 from cellctl.steps.preparation import PLANNED
 
@@ -64,16 +66,27 @@ class OrderDesk:
                 recipe=recipe,
                 command=command,
             )
-        return Maintenance(self._cell, self._archive, self._board, self.calibrations, command)
+        order = procedure_order(command.recipe_id, self._cell.config)
+        if order is None:
+            raise Unexpected(f"procedure {command.recipe_id} vanished")
+        return Maintenance(
+            self._cell,
+            self._archive,
+            self._board,
+            self.calibrations,
+            order=order,
+            command=command,
+        )
 
     async def _judge_order(self, command: LineCommand, mode: Mode) -> RejectCode:
         if mode is Mode.PRODUCTION:
             if self._cell.config.recipe(command.recipe_id) is None:
                 return RejectCode.RECIPE_UNKNOWN
-            fault = await asyncio.to_thread(self.calibrations.fault, PLANNED)
+            newest = await self._archive.do(RunStore.newest_time)
+            fault = await asyncio.to_thread(self.calibrations.fault, PLANNED, newest)
             return _refused(RejectCode.CALIBRATION_INVALID, fault)
         if mode is Mode.MAINTENANCE:
-            if not is_procedure(command.recipe_id):
+            if procedure_order(command.recipe_id, self._cell.config) is None:
                 return RejectCode.RECIPE_UNKNOWN
             if command.options:
                 return RejectCode.OPTIONS_UNKNOWN  # a procedure is neither dry nor in steps

@@ -5,6 +5,7 @@ import asyncio
 from cellctl import log
 from cellctl.cell.archive import Archive
 from cellctl.cell.devices import Cell
+from cellctl.cell.invalidating import invalidate_after
 from cellctl.cell.progress import ProgressBoard
 from cellctl.cell.readiness import require_ready
 from cellctl.cell.step import Step
@@ -187,3 +188,10 @@ class Unit:
     def _faulted(self, error: CellError) -> None:
         _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
         self.alarms.add(error, self._work.run_number)
+        self.background.start(self._invalidate_after(error))
+
+    async def _invalidate_after(self, error: CellError) -> None:
+        try:
+            await invalidate_after(error, self.desk.calibrations, self._archive)
+        except CellError as fault:
+            await self.machine.fail(fault)

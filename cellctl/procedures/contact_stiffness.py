@@ -1,7 +1,7 @@
 """Procedure 108: how stiff arm and contact are together, by touching the frame a few times."""
 
 from cellctl.calibration.checks import all_passed
-from cellctl.cell.commissioned import CONTACT_STIFFNESS, Commissioned
+from cellctl.cell.commissioned import Commissioned, stiffness_kind
 from cellctl.cell.step import Step
 from cellctl.procedures.contact_stiffness_result import stiffness_checks, stiffness_record
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
@@ -21,11 +21,11 @@ MODE = "commissioning"
 async def measure_contact_stiffness_on_cell(context: ProcedureContext) -> ProcedureOutcome:
     """Measure and correct as an assembly does, then touch instead of mating once; deck stays.
 
-    Planned with the bounds of the first recipe, as if nothing had been commissioned. Everything
+    Planned with the bounds of the chosen recipe, as if nothing had been commissioned. Everything
     goes into a run of its own, with all force curves. Raises what the steps raise.
     """
     cell, board = context.cell, context.board
-    recipe = cell.config.recipes[0]
+    recipe = context.recipe
     prepared = await prepare(cell, context.calibrations, recipe)
     number = await context.record.open(recipe, MODE, prepared.stored, prepared.calibrations.ids)
     await cell.guard.set_compensation(prepared.calibrations.compensation)
@@ -50,7 +50,7 @@ async def measure_contact_stiffness_on_cell(context: ProcedureContext) -> Proced
     measured = found[-1]
     checks = stiffness_checks(measured, recipe.mating)
     return ProcedureOutcome(
-        item=CONTACT_STIFFNESS,
+        item=stiffness_kind(recipe.id),
         record=stiffness_record(measured, checks, recipe.id, number),
         passed=all_passed(checks),
         warnings=(),

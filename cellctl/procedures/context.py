@@ -9,6 +9,7 @@ from cellctl.cell.devices import Cell
 from cellctl.cell.job import HeldMeanwhile, SafePoint
 from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import ProgressBoard
+from cellctl.config.recipe import Recipe
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +22,8 @@ class ProcedureContext:
     safe_point: SafePoint
     record: JobRecord
     """To be opened by a procedure with contact, before it moves."""
+    recipe: Recipe
+    """Whose parts are there, for procedures that touch them."""
 
     async def progress(self, done: int, total: int, message: str) -> None:
         """Tell how far it is, and obey a pending Hold.

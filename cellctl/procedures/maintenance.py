@@ -18,6 +18,7 @@ from cellctl.plc.commands import LineCommand
 from cellctl.procedures.base_frame import calibrate_base
 from cellctl.procedures.contact_stiffness import measure_contact_stiffness_on_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.procedures.numbers import ProcedureOrder
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
 from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
@@ -29,7 +30,7 @@ _log = log.get(__name__)
 
 Procedure = Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
 
-PROCEDURES: dict[int, Procedure] = {
+PROCEDURES: dict[Step, Procedure] = {
     Step.CALIBRATE_HEAD_1: lambda context: calibrate_head(context, context.cell.head_1),
     Step.CALIBRATE_HEAD_2: lambda context: calibrate_head(context, context.cell.head_2),
     Step.CALIBRATE_BASE_FRAME: calibrate_base,
@@ -41,11 +42,6 @@ PROCEDURES: dict[int, Procedure] = {
 }
 
 
-def is_procedure(number: int) -> bool:
-    """True when Maintenance has a procedure with this number."""
-    return number in PROCEDURES
-
-
 class Maintenance(Job):
     """Runs a procedure and stores what passed."""
 
@@ -55,6 +51,8 @@ class Maintenance(Job):
         archive: Archive,
         board: ProgressBoard,
         calibrations: CalibrationFolder,
+        *,
+        order: ProcedureOrder,
         command: LineCommand,
     ) -> None:
         self.number = command.recipe_id
@@ -63,6 +61,7 @@ class Maintenance(Job):
         self._archive = archive
         self._board = board
         self._calibrations = calibrations
+        self._order = order
         self._command = command
         self._record = JobRecord(cell, archive, command)
 
@@ -73,19 +72,20 @@ class Maintenance(Job):
 
     async def start(self) -> None:
         """Nothing to bring anywhere: each procedure begins where it needs to."""
-        self._board.update(step=Step(self.number))
+        self._board.update(step=self._order.step)
 
     async def execute(self, safe_point: SafePoint) -> None:
         """Run the procedure, from its beginning again when a Hold has spoilt its measurements.
 
         Raises ``ResultOutOfLimits`` when the verdict is bad.
         """
+        order = self._order
         context = ProcedureContext(
-            self._cell, self._calibrations, self._board, safe_point, self._record
+            self._cell, self._calibrations, self._board, safe_point, self._record, order.recipe
         )
         while True:
             try:
-                outcome = await PROCEDURES[self.number](context)
+                outcome = await PROCEDURES[order.step](context)
                 break
             except HeldMeanwhile:
                 _log.info("held meanwhile: the procedure begins again")
@@ -96,7 +96,7 @@ class Maintenance(Job):
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """The record is the calibration and the audit log; after contact also a run."""
-        step = Step(self.number)
+        step = self._order.step
         self._board.update(step=Step.NONE)
         await self._record.close(outcome, fault)
         ended = {"procedure": step.label, "outcome": outcome.value, "fault": str(fault or "")}

@@ -1,8 +1,9 @@
 """Rows to frozen values."""
 
+from datetime import datetime
 from typing import Any, TypeVar
 
-from sqlalchemy import select
+from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from cellctl.errors.records import RunUnknown
@@ -20,6 +21,7 @@ from cellctl.records.ledger import RUN
 from cellctl.records.schema import (
     AlarmRow,
     ArtefactRow,
+    AuditRow,
     GaugeRow,
     IterationRow,
     LedgerRow,
@@ -49,6 +51,13 @@ def read_run(session: Session, number: int) -> RunRecord:
         gauges=tuple(gauges.values()),
         seal=None if sealed is None else convert(sealed, Seal),
     )
+
+
+def newest_time(session: Session) -> datetime | None:
+    """When the newest record of a store was written."""
+    columns = (RunRow.started, RunRow.ended, AuditRow.time, AlarmRow.time, LedgerRow.time)
+    times = [session.scalar(select(func.max(column))) for column in columns]
+    return max((time for time in times if time is not None), default=None)
 
 
 def convert(row: Any, into: type[T]) -> T:

@@ -5,6 +5,7 @@ A folder with ``store.sqlite`` and ``files/``. All methods block, belong to one 
 """
 
 from collections.abc import Mapping, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -232,6 +233,19 @@ class RunStore:
         with self._database.write() as session:
             if session.get(CalibrationRow, stored.id) is None:
                 session.add(row)
+
+    def invalidate_calibration(self, stored: StoredCalibration, reason: str) -> None:
+        """Note that a calibration is worthless from now on; the first reason stays."""
+        self.add_calibration(stored)
+        with self._database.write() as session:
+            row = session.get_one(CalibrationRow, stored.id)
+            if row.invalidated is None:
+                row.invalidated, row.invalidated_reason = utc_now(), reason
+
+    def newest_time(self) -> datetime | None:
+        """When the newest record was written; None in an empty store."""
+        with self._database.read() as session:
+            return reading.newest_time(session)
 
     def calibrations(self) -> list[Calibration]:
         """Every calibration that was ever stored, newest first."""

@@ -62,7 +62,7 @@ def _latency_is_true(folder: Path) -> None:
 
 def _stiffness_is_plausible(folder: Path) -> dict[str, Any]:
     """The contact is 1e6 to 3e6 N/m, the arm 1e6 N/m: 500 to 750 N/mm together, less on an edge."""
-    record = _read(folder, "contact_stiffness")
+    record = _read(folder, "contact_stiffness_1")
     assert 300.0 < record["stiffness_n_per_mm"] < 850.0
     assert record["stiffness_n_per_mm"] < record["upper_n_per_mm"]
     assert len(record["contacts"]) == 3
@@ -82,4 +82,4 @@ def _everything_is_on_record(data: Path, run: int) -> None:
     assert curves == ["force-1.mcap", "force-2.mcap", "force-3.mcap"]
     assert found.mating is not None
     assert found.mating["approach"]["stop_latency_s"] == pytest.approx(0.3)
-    assert {"stop_latency", "contact_stiffness"} <= kinds
+    assert {"stop_latency", "contact_stiffness_1"} <= kinds

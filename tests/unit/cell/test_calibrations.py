@@ -3,19 +3,23 @@
 import json
 import os
 import stat
+from dataclasses import replace
 from datetime import timedelta
 from pathlib import Path
 
 import pytest
 
 from cellctl.calibration.board_transfer import BoardPlacement
-from cellctl.calibration.files import read_calibration
+from cellctl.calibration.files import read_calibration, write_stored
 from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD, CalibrationFolder
+from cellctl.clock import utc_now
 from cellctl.errors.calibration import (
     CalibrationExpired,
+    CalibrationInvalidated,
     CalibrationMissing,
     CalibrationNotStored,
     CalibrationRecordInvalid,
+    ClockNotTrusted,
 )
 from tests.unit.cell.bench import Bench, renew_calibrations, spoil
 
@@ -92,6 +96,55 @@ def test_a_bad_result_is_kept_where_nothing_reads_it(bench: Bench) -> None:
     folder = bench.calibrations.put_aside("head_1", {"verdict": "fail"}, b"picture")
     assert json.loads((folder / "head_1.json").read_text()) == {"verdict": "fail"}
     assert bench.calibrations.read(HOUR).ids == before
+
+
+def test_what_was_invalidated_stays_so_until_it_is_made_anew(bench: Bench) -> None:
+    folder = bench.calibrations
+    assert folder.all_valid()
+    (old,) = folder.invalidate(["head_1"], "F307 collision")
+    assert old.kind == "head_1"
+    folder.invalidate(["head_1"], "something later")
+    fault = folder.fault(HOUR)
+    assert isinstance(fault, CalibrationInvalidated)
+    assert "head_1: F307 collision" in fault.detail
+    assert folder.validity_h()[0] == 0.0
+    assert isinstance(CalibrationFolder(folder.path).fault(HOUR), CalibrationInvalidated)
+    write_stored(folder.path, old)
+    assert isinstance(folder.fault(HOUR), CalibrationInvalidated), "an old file put back"
+    with pytest.raises(CalibrationInvalidated):
+        folder.head("head_1")
+    folder.store("head_1", old.record, "FH-0001", 2 * HOUR)
+    assert folder.fault(HOUR) is None
+
+
+def test_a_marker_that_cannot_be_read_counts(bench: Bench) -> None:
+    (bench.calibrations.path / "payload.invalidated.json").write_text("{")
+    assert isinstance(bench.calibrations.fault(HOUR), CalibrationInvalidated)
+    assert bench.calibrations.validity_h()[3] == 0.0
+
+
+def test_stiffness_is_invalidated_for_every_recipe_and_what_waits_is_dropped(bench: Bench) -> None:
+    folder = bench.calibrations
+    folder.placements["head_1"] = BoardPlacement(None, None)  # type: ignore[arg-type]
+    for kind in ("contact_stiffness_1", "contact_stiffness_2"):
+        folder.store(kind, {"verdict": "pass"}, "", HOUR)
+    found = folder.invalidate(["contact_stiffness", "stop_latency"], "F527")
+    assert [one.kind for one in found] == ["contact_stiffness_1", "contact_stiffness_2"]
+    assert folder.placements == {}
+    assert folder.fault(timedelta(0)) is None, "production does without it"
+
+
+def test_a_clock_that_was_set_back_is_not_believed(bench: Bench) -> None:
+    folder = bench.calibrations
+    assert folder.fault(HOUR, utc_now()) is None
+    later = utc_now() + timedelta(hours=1)
+    assert isinstance(folder.fault(HOUR, later), ClockNotTrusted)
+    made = replace(read_calibration(folder.path, "base_frame"), made=later)
+    write_stored(folder.path, made)
+    fault = folder.fault(HOUR)
+    assert isinstance(fault, ClockNotTrusted)
+    assert "base_frame" in fault.detail
+    assert folder.validity_h()[1] == 0.0
 
 
 def test_a_folder_that_cannot_be_written_is_a_numbered_fault(tmp_path: Path) -> None:

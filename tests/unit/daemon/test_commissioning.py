@@ -68,12 +68,12 @@ async def test_contact_in_maintenance_leaves_a_run_and_a_calibration(
     assert [entry.kind for entry in record.measurements] == ["frame", "deck", "flange_T_deck"]
     assert record.iterations[-1].converged
     assert sum("force" in artefact.name for artefact in record.artefacts) == 3
-    stored = read_calibration(rig.bench.calibrations.path, "contact_stiffness")
+    stored = read_calibration(rig.bench.calibrations.path, "contact_stiffness_1")
     assert stored.passed
     assert stored.record["upper_n_per_mm"] == pytest.approx(660.0)
     assert stored.record["recipe_id"] == 1
     assert stored.record["run"] == head.number
-    assert (rig.bench.calibrations.path / "contact_stiffness.png").exists()
+    assert (rig.bench.calibrations.path / "contact_stiffness_1.png").exists()
     await rig.restart()
     assert rig.shown().cycle_counter == 0
 
@@ -91,7 +91,7 @@ async def test_the_next_part_is_planned_with_it(rig: DaemonRig, touching: Touchi
     assert record.mating is not None
     approach = record.mating["approach"]
     assert approach["stiffness_n_per_mm"] == pytest.approx(1.5 * (300.0 + 3 * 20.0))
-    assert "contact_stiffness" in record.head.calibration_ids
+    assert "contact_stiffness_1" in record.head.calibration_ids
     assert rig.shown().cycle_counter == 1
 
 
@@ -101,8 +101,8 @@ async def test_a_bound_that_is_too_low_does_not_pass(rig: DaemonRig, touching: T
     await rig.to(State.ABORTED, State.STOPPED)
     assert rig.port.ended[seq] is not Result.GOOD
     assert (await rig.record()).head.fault_number == 614
-    assert not (rig.bench.calibrations.path / "contact_stiffness.json").exists()
-    assert (rig.bench.calibrations.path / "rejected" / "contact_stiffness.json").exists()
+    assert not (rig.bench.calibrations.path / "contact_stiffness_1.json").exists()
+    assert (rig.bench.calibrations.path / "rejected" / "contact_stiffness_1.json").exists()
 
 
 async def test_a_fault_in_contact_closes_the_run_with_its_curves(

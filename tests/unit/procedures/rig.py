@@ -10,6 +10,7 @@ from cellctl.cell.job_record import JobRecord
 from cellctl.cell.progress import Progress, ProgressBoard
 from cellctl.procedures.context import ProcedureContext
 from cellctl.procedures.maintenance import Maintenance
+from cellctl.procedures.numbers import procedure_order
 from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench, start_command
@@ -31,7 +32,12 @@ class ProcedureRig:
     def context(self) -> ProcedureContext:
         record = JobRecord(self.bench.as_cell, self.archive, start_command(unit_mode=2))
         return ProcedureContext(
-            self.bench.as_cell, self.bench.calibrations, self.board, self.pauses, record
+            self.bench.as_cell,
+            self.bench.calibrations,
+            self.board,
+            self.pauses,
+            record,
+            self.bench.cell.config.recipes[0],
         )
 
     def answer(self, **answers: Any) -> None:
@@ -41,8 +47,15 @@ class ProcedureRig:
 
     def job(self, number: int) -> Maintenance:
         command = start_command(unit_mode=2, recipe_id=number, order="OP-3")
+        order = procedure_order(number, self.bench.cell.config)
+        assert order is not None
         return Maintenance(
-            self.bench.as_cell, self.archive, self.board, self.bench.calibrations, command
+            self.bench.as_cell,
+            self.archive,
+            self.board,
+            self.bench.calibrations,
+            order=order,
+            command=command,
         )
 
     async def audit(self) -> list[tuple[str, str, dict[str, Any]]]:

@@ -1,0 +1,63 @@
+"""`cellctl calibrate invalidate`: say that a calibration is worthless, whatever its date."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cellctl.calibration.files import StoredCalibration
+from cellctl.cell.calibrations import CalibrationFolder
+from cellctl.config import CellConfig, load_cell
+from cellctl.errors.calibration import CalibrationMissing
+from cellctl.errors.records import StoreUnavailable
+from cellctl.records.store import RunStore
+
+INSTALLED = Path("/etc/cellctl/cell.toml")
+
+
+def invalidate(
+    name: Annotated[str, typer.Argument(help="head_1, head_2, base_frame, board_transfer, …")],
+    *,
+    reason: Annotated[str, typer.Option(help="What happened; the operator will read it.")],
+    by: Annotated[str, typer.Option(help="Who says so, for the audit log.")] = "operator",
+    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = INSTALLED,
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
+    ] = None,
+) -> None:
+    """Production refuses to start until the calibration NAME has been made anew.
+
+    Also for a cell that is running: it looks before every start.
+    """
+    if not reason.strip():
+        raise typer.BadParameter("say what happened", param_hint="--reason")
+    config = load_cell(cell)
+    folder = CalibrationFolder(cell.parent / config.calibration_dir)
+    found = folder.invalidate([name], f"{reason} ({by})")
+    if not found:
+        raise CalibrationMissing(f"{name}: there is no such calibration in {folder.path}")
+    for stored in found:
+        typer.echo(f"{stored.kind} is invalid until it is made anew: {reason}")
+    _record(config, data_dir, found, reason, by)
+
+
+def _record(
+    config: CellConfig,
+    data_dir: Path | None,
+    found: list[StoredCalibration],
+    reason: str,
+    by: str,
+) -> None:
+    path = data_dir or Path(config.data_dir)
+    try:
+        store = RunStore(path, create=False)
+    except StoreUnavailable as error:
+        typer.echo(f"not in the audit log: {error}", err=True)
+        return
+    try:
+        for stored in found:
+            store.invalidate_calibration(stored, reason)
+        detail = {"items": [stored.kind for stored in found], "reason": reason}
+        store.audit(by, "calibrations invalidated", detail)
+    finally:
+        store.close()
