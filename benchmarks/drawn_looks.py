@@ -69,21 +69,12 @@ def narrow_cone(rng: np.random.Generator) -> Look:
 
 def true_cone(rng: np.random.Generator) -> Look:
     """A cone of 90° above the rim, lit from one side."""
-    outer, phase = rng.uniform(1.4, 2.0), _phase(rng)
-    height = outer - 1.0
+    return _coned("countersink", rng.uniform(1.4, 2.0), 150.0, 0.35, _phase(rng))
 
-    def grey(q: Array, m: Array) -> Array:
-        # |q - m t| = 1 + t where the ray, followed upwards by t, leaves the cone.
-        a = (m**2).sum(axis=0) - 1.0
-        b = (q * m).sum(axis=0) + 1.0
-        c = (q**2).sum(axis=0) - 1.0
-        t = (b - np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
-        x, y = q - m * t
-        lit = 150.0 * (1.0 + 0.35 * np.cos(np.arctan2(y, x) - phase))
-        inside = np.hypot(*(q - m * height)) < outer
-        return np.where(inside, np.where(c < 0.0, DARK, lit), np.nan)
 
-    return Look("countersink", 150.0 - DARK, grey, outer + height)
+def broken_edge(rng: np.random.Generator) -> Look:
+    """A bore deburred by a tenth of its radius or less: a cone of 90° that shines."""
+    return _coned("pin", rng.uniform(1.05, 1.1), 215.0, 0.12, _phase(rng))
 
 
 def turns(rng: np.random.Generator) -> Look:
@@ -110,6 +101,7 @@ LOOKS: dict[str, Callable[[np.random.Generator], Look]] = {
     "bright cone": bright_cone,
     "narrow cone": narrow_cone,
     "true cone": true_cone,
+    "broken edge": broken_edge,
     "turns": turns,
     "chamfered turns": chamfered_turns,
 }
@@ -139,6 +131,23 @@ def _ringed(outer: float, ring: float, uneven: float, phase: float) -> Look:
         return np.where(radius < 1.0, DARK, np.where(radius < outer, lit, np.nan))
 
     return Look("countersink", ring - DARK, grey, outer)
+
+
+def _coned(kind: HoleKind, outer: float, cone: float, uneven: float, phase: float) -> Look:
+    height = outer - 1.0
+
+    def grey(q: Array, m: Array) -> Array:
+        # |q - m t| = 1 + t where the ray, followed upwards by t, leaves the cone.
+        a = (m**2).sum(axis=0) - 1.0
+        b = (q * m).sum(axis=0) + 1.0
+        c = (q**2).sum(axis=0) - 1.0
+        t = (b - np.sqrt(np.maximum(b * b - a * c, 0.0))) / a
+        x, y = q - m * t
+        lit = cone * (1.0 + uneven * np.cos(np.arctan2(y, x) - phase))
+        inside = np.hypot(*(q - m * height)) < outer
+        return np.where(inside, np.where(c < 0.0, DARK, lit), np.nan)
+
+    return Look(kind, cone - DARK, grey, outer + height)
 
 
 def _turns(rng: np.random.Generator) -> Grey:

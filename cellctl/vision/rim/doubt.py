@@ -47,11 +47,14 @@ class Doubt:
 
     def ring(self) -> bool:
         """Whether a narrow ring of another grey lies round the rim."""
+        return self.ring_gain() > _DOUBT_GAIN
+
+    def ring_gain(self) -> float:
+        """What a narrow ring of another grey round the rim would explain at most."""
         around = np.stack([np.ones_like(self._cos), self._cos, self._sin])
         radii = self._shape.radius + np.array(_RING_WIDTHS_PX) * self._unit_px
         beyond = outside_circles(self._pixels, self._shape, radii)
-        gains = (self._gain(around * ring) for ring in self._solution.outside - beyond)
-        return any(gain > _DOUBT_GAIN for gain in gains)
+        return max(self._gain(around * ring) for ring in self._solution.outside - beyond)
 
     def _gain(self, rows: Array) -> float:
         """Fall of the squares if ``rows`` (k, n) were added to the model with free weights."""

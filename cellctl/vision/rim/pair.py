@@ -18,11 +18,14 @@ from cellctl.vision.stereo import joint_covariance
 
 _NARROW_PX = 5.0
 """A cone narrower than this is a ring: both its edges are seen at once."""
-_CHAMFER = (0.1, 0.05)
+_CHAMFER, _BROKEN_EDGE = (0.1, 0.05), (0.07, 0.05)
 _UNSEEN_CONE = (0.15, 0.08)
 """Width of a ring over the radius, and its standard deviation."""
 _STATED_SHARE, _SEEN_SHARE = 0.1, 0.2
 """Standard deviation of that width over itself, by the drawing and by the image."""
+_BROKEN_EDGE_GAIN = 25.0
+"""What a ring must explain in both images together before a bore counts as deburred: walls of
+uneven light alone stay below."""
 _LEAST_RING_PX = 2.0
 _MAX_SIGMA_PX = 0.2
 
@@ -84,13 +87,15 @@ def _ring_needed(hole: Hole, tasks: tuple[Task, Task], fits: tuple[Fitted, Fitte
     if hole.kind == "countersink":
         narrow = any(task.clear_px < _NARROW_PX for task in tasks)
         return narrow or any(Doubt(fit).ring() for fit in fits)
-    return False
+    return hole.kind == "pin" and sum(Doubt(fit).ring_gain() for fit in fits) > _BROKEN_EDGE_GAIN
 
 
 def _ring(hole: Hole, tasks: tuple[Task, Task]) -> tuple[float, float]:
     """Width of a ring over the radius and its standard deviation, as far as known."""
     if hole.kind == "thread":
         return _CHAMFER
+    if hole.kind == "pin":
+        return _BROKEN_EDGE
     narrow = _NARROW_PX * tasks[0].patch.unit_px / tasks[0].radius
     stated = (hole.countersink_m or np.inf) / hole.diameter_m - 1.0
     if stated < narrow:

@@ -18,7 +18,8 @@ SIZE_TOLERANCE = 0.035
 """Relative: from here on it is another edge."""
 _BLUR_PX, _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 1.0, 0.25, 0.03
 _RING_COST = 80.0
-"""Fall of the squares that a ring must bring: real ones bring thousands."""
+"""Fall of the squares that a ring round turns must bring: real ones bring thousands. A bore has no
+turns that could be taken for one."""
 _CALM_GREY, _CALM_LIMIT_GREY, _WILD_GREY = 15.0, 12.5, 50.0
 """How uneven turns are expected to be; beyond the limit far more is allowed for, and stated."""
 _PIXELS_ALIKE = 10.0
@@ -62,13 +63,12 @@ def fit_ringed(
 
     def likeliest(turns_grey: float) -> Chosen:
         wall = _WALL_M / tasks[0].sight.distance_m
-        return _likeliest(
-            [
-                *(rough(turns_grey, ring[1], ring_ratio=ring[0], ring_slope=s) for s in _SLOPES),
-                rough(turns_grey, np.inf),
-                rough(turns_grey, _WALL_SIGMAS * wall, wall_ratio=wall),
-            ]
-        )
+        models = [
+            *(rough(turns_grey, ring[1], ring_ratio=ring[0], ring_slope=s) for s in _SLOPES),
+            rough(turns_grey, np.inf),
+            rough(turns_grey, _WALL_SIGMAS * wall, wall_ratio=wall),
+        ]
+        return _likeliest(models, 0.0 if tasks[0].hole.kind == "pin" else _RING_COST)
 
     calm = likeliest(_CALM_GREY)
     if calm.fitted.solution.unevenness_grey(_CALM_GREY) < _CALM_LIMIT_GREY:
@@ -78,10 +78,10 @@ def fit_ringed(
     return Chosen(wild.fitted, wild.spread + np.outer(off, off))
 
 
-def _likeliest(models: list[Fitted]) -> Chosen:
+def _likeliest(models: list[Fitted], ring_cost: float) -> Chosen:
     noise = models[0].solution.noise
     ringed = np.array([model.shapes[0].ring_ratio is not None for model in models])
-    costs = np.array([model.solution.cost_under(noise) for model in models]) + _RING_COST * ringed
+    costs = np.array([model.solution.cost_under(noise) for model in models]) + ring_cost * ringed
     best = int(np.argmin(costs))
     likelihoods = np.exp(-0.5 * (costs - costs[best]) / _PIXELS_ALIKE)
     geometry = np.array([model.solution.vector[:5] for model in models])

@@ -21,6 +21,7 @@ WORST_PX = {
     "bright cone": 0.03,
     "narrow cone": 0.08,
     "true cone": 0.10,
+    "broken edge": 0.10,
     "turns": 0.10,
     "chamfered turns": 0.15,
 }
