@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks import guard_loads
 from cellctl.clock import now_s
 from cellctl.guard.child import GuardChild
-from cellctl.guard.limits import CountTouch, GuardLimits, GuardSettings
+from cellctl.guard.limits import CusumTouch, GuardLimits, GuardSettings
 from cellctl.guard.messages import limits_to_json
 from cellctl.guard.monitor import Monitor
 from cellctl.interfaces.ft_sensor import FtHealth
@@ -27,7 +27,7 @@ SETTLE_S = 1.5
 LIMITS = GuardLimits(
     raw=(1e3,) * 6,
     filtered=(1e3,) * 6,
-    touch=CountTouch(limit_n=15.0, k=1, n=1),
+    touch=CusumTouch(drift_n=15.0, threshold_n=0.0),
     stale_s=30.0,
     flange_age_s=30.0,
     bad_frames=1000,

@@ -186,28 +186,6 @@ def contact_sigma(*sigmas_m: float) -> float:
     return float(np.sqrt(sum(sigma**2 for sigma in sigmas_m)))
 
 
-def seated_pose_limit(
-    M_T_D: RigidTransform, d1_m: float, d2_m: float, d3_m: float
-) -> RigidTransform:
-    """Paper eq. 17: the deck pose at the end of all travel, Z_K = Z_N − D1 − D2 − D3.
-
-    Here it is the hard end that no command may reach, never a target: it lies 25 mm past contact
-    when the deck frame is on the outer face (docs/decisions/0001).
-    """
-    target = M_T_D.translation - np.array([0.0, 0.0, d1_m + d2_m + d3_m])
-    return RigidTransform.from_components(target, M_T_D.rotation)
-
-
-def flange_for_deck(
-    base_T_C1: RigidTransform,
-    C1_T_M: RigidTransform,
-    M_T_D: RigidTransform,
-    flange_T_deck: RigidTransform,
-) -> RigidTransform:
-    """Paper eq. 18 (as eq. 7): B_T_F = B_T_C1 · C1_T_M · M_T_D · (F_T_D)^-1."""
-    return base_T_C1 * C1_T_M * M_T_D * flange_T_deck.inv()
-
-
 def advance(
     base_T_flange: RigidTransform,
     flange_T_deck: RigidTransform,

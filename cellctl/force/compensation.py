@@ -11,7 +11,6 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellctl.geometry.pose import Array
-from cellctl.geometry.wrench import Wrench
 
 GRAVITY_M_S2 = 9.80665
 """Standard gravity; a site may use its own value."""
@@ -60,37 +59,3 @@ def gravity_in_sensor(
 ) -> Array:
     """Unit vector of gravity in sensor axes, shape (3,) for one rotation, (n, 3) for n."""
     return np.asarray(base_R_sensor.inv().apply(base_down), dtype=float)
-
-
-@dataclass(frozen=True, slots=True)
-class RigidLoad:
-    """Mass properties that inertial correction needs, in sensor axes about its origin."""
-
-    mass_kg: float
-    centre_of_mass_m: Array
-    """Shape (3,)."""
-    inertia_kg_m2: Array
-    """Shape (3, 3), about the origin of the sensor."""
-
-
-def inertial_wrench(
-    load: RigidLoad,
-    acceleration_m_s2: Array,
-    angular_acceleration_rad_s2: Array,
-    angular_velocity_rad_s: Array,
-) -> Wrench:
-    """What a moving load adds to the reading beyond gravity (inertial correction).
-
-    All motion arguments have shape (3,), are of the sensor's origin and in sensor axes, without
-    gravity. Sign as in ``Wrench``: the load lags behind, so it pulls against the acceleration.
-    """
-    centre = load.centre_of_mass_m
-    swirl = np.cross(angular_velocity_rad_s, np.cross(angular_velocity_rad_s, centre))
-    centre_acceleration = acceleration_m_s2 + np.cross(angular_acceleration_rad_s2, centre) + swirl
-    spin = load.inertia_kg_m2 @ angular_velocity_rad_s
-    torque_n_m = (
-        load.mass_kg * np.cross(centre, acceleration_m_s2)
-        + load.inertia_kg_m2 @ angular_acceleration_rad_s2
-        + np.cross(angular_velocity_rad_s, spin)
-    )
-    return Wrench(-load.mass_kg * centre_acceleration, -torque_n_m)

@@ -21,7 +21,7 @@ class ForceCurve:
 
 @dataclass(frozen=True, slots=True)
 class CurveStatistics:
-    """Figures of one curve, in N and N·m, signs as in ``Wrench``."""
+    """Figures of one curve, in N and N·m, signs as the guard has them."""
 
     samples: int
     duration_s: float

@@ -56,13 +56,6 @@ def low_pass(signal: Array, time_constant_s: float, sample_period_s: float) -> A
     return np.asarray(filtered)
 
 
-def k_of_n(force_n: Array, limit_n: float, k: int, n: int) -> int | None:
-    """Index at which ``k`` of the last ``n`` samples are above the limit for the first time."""
-    above = np.cumsum(np.concatenate([[0], force_n > limit_n]))
-    counts = above[1:] - above[np.maximum(np.arange(len(force_n)) - n + 1, 0)]
-    return _first(counts >= k)
-
-
 def above(force_n: Array, limit_n: float) -> int | None:
     """Index of the first sample above the limit."""
     return _first(force_n > limit_n)

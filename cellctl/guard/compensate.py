@@ -2,8 +2,8 @@
 
 ``w = T (raw − b − A u) − tare`` with u the unit vector of gravity in sensor axes and T the wrench
 transport from sensor to deck. All but ``T raw`` changes only with the flange pose, fifty times a
-second, so a sample costs 27 multiplications. The same formulas on arrays are in
-``cellctl.force.compensation`` and ``cellctl.geometry.wrench``.
+second, so a sample costs 27 multiplications. The load on arrays is
+``cellctl.force.compensation``. A deck that is pushed up by the frame has a positive Fz.
 """
 
 from collections.abc import Sequence

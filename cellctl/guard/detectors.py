@@ -6,9 +6,8 @@ same detectors on whole records, are in ``cellctl.force.detectors``.
 
 import math
 from collections import deque
-from typing import Protocol
 
-from cellctl.guard.limits import CountTouch, CusumTouch, Six, Touch
+from cellctl.guard.limits import CusumTouch, Six
 
 
 def beyond(wrench: Six, limits: Six) -> int | None:
@@ -61,51 +60,19 @@ class LowPass:
         self._state = None
 
 
-class TouchDetector(Protocol):
-    """Decides on the component of one axis."""
-
-    value: float
-    """The statistic that was compared."""
-
-    def update(self, force: float) -> bool:
-        """True when this sample completes a touch."""
-        ...
-
-
 class Cusum:
     """Sum of the excess over a drift; falls back to zero when the excess is gone."""
 
     def __init__(self, settings: CusumTouch) -> None:
         self.value = 0.0
+        """The sum that was compared."""
         self._drift, self._threshold = settings.drift_n, settings.threshold_n
         self._sign = settings.sign
 
     def update(self, force: float) -> bool:
-        """Add a sample."""
+        """Add a sample; True when it completes a touch."""
         self.value = max(0.0, self.value + self._sign * force - self._drift)
         return not self.value <= self._threshold
-
-
-class Count:
-    """k of the last n samples above a limit, kept as bits."""
-
-    def __init__(self, settings: CountTouch) -> None:
-        self.value = 0.0
-        self._limit, self._sign = settings.limit_n, settings.sign
-        self._k, self._mask = settings.k, (1 << settings.n) - 1
-        self._bits = 0
-
-    def update(self, force: float) -> bool:
-        """Shift in a sample."""
-        above = not self._sign * force <= self._limit
-        self._bits = (self._bits << 1 | above) & self._mask
-        self.value = float(self._bits.bit_count())
-        return self.value >= self._k
-
-
-def touch_detector(settings: Touch) -> TouchDetector:
-    """The detector that a setting names."""
-    return Cusum(settings) if isinstance(settings, CusumTouch) else Count(settings)
 
 
 class Frozen:

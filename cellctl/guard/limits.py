@@ -34,20 +34,6 @@ class CusumTouch:
 
 
 @dataclass(frozen=True, slots=True)
-class CountTouch:
-    """Touch: ``k`` of the last ``n`` samples are above a limit."""
-
-    limit_n: float = 8.0
-    k: int = 8
-    n: int = 10
-    axis: int = 2
-    sign: float = 1.0
-
-
-Touch = CusumTouch | CountTouch
-
-
-@dataclass(frozen=True, slots=True)
 class GuardLimits:
     """Everything that trips while the guard is armed. Magnitudes in the deck frame, N and N·m."""
 
@@ -55,7 +41,7 @@ class GuardLimits:
     """A single sample beyond it trips."""
     filtered: Six = UNLIMITED
     """The same after a first-order low-pass of ``filter_s``."""
-    touch: Touch | None = None
+    touch: CusumTouch | None = None
     filter_s: float = DEFAULT_FILTER_S
     stale_s: float = 0.01
     """No sample for this long trips."""

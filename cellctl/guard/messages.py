@@ -12,13 +12,12 @@ from typing import Any
 
 from cellctl.errors.base import CellError, catalogue
 from cellctl.errors.internal import Unexpected
-from cellctl.guard.limits import CountTouch, CusumTouch, GuardLimits
+from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip, TripReason
 
 Message = dict[str, Any]
 
 _LONGEST_BYTES = 65_536
-_TOUCHES = {"cusum": CusumTouch, "count": CountTouch}
 
 
 def encode(message: Message) -> bytes:
@@ -37,19 +36,14 @@ def receive(link: socket.socket) -> Message | None:
 
 def limits_to_json(limits: GuardLimits) -> Message:
     """Limits as a message."""
-    message = asdict(limits)
-    if limits.touch is not None:
-        names = {kind: name for name, kind in _TOUCHES.items()}
-        message["touch"] = {"kind": names[type(limits.touch)], **asdict(limits.touch)}
-    return message
+    return asdict(limits)
 
 
 def limits_from_json(message: Message) -> GuardLimits:
     """Limits back; ``ValueError`` or ``TypeError`` for what are no limits."""
     fields = dict(message)
     if fields.get("touch") is not None:
-        touch = dict(fields["touch"])
-        fields["touch"] = _TOUCHES[touch.pop("kind")](**touch)
+        fields["touch"] = CusumTouch(**fields["touch"])
     for name in ("raw", "filtered", "rate_hz"):
         fields[name] = tuple(fields[name])
     return GuardLimits(**fields)

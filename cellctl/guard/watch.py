@@ -1,6 +1,6 @@
 """The detectors of one arming."""
 
-from cellctl.guard.detectors import Burst, Frozen, RateWindow, touch_detector
+from cellctl.guard.detectors import Burst, Cusum, Frozen, RateWindow
 from cellctl.guard.limits import GuardLimits, Six
 
 
@@ -12,7 +12,7 @@ class Watch:
         self.frozen = Frozen(limits.frozen_samples)
         self.rate = RateWindow(limits.rate_hz, limits.rate_window_s, now_s)
         self.touch_axis = limits.touch.axis if limits.touch is not None else 0
-        self._touch = touch_detector(limits.touch) if limits.touch is not None else None
+        self._touch = Cusum(limits.touch) if limits.touch is not None else None
         self._bad_frames = Burst(limits.bad_frames, limits.bad_frames_window_s, bad_frames)
 
     def touched(self, wrench: Six) -> bool:

@@ -5,7 +5,13 @@ from typing import Self
 
 from cellctl.config.devices import Force
 from cellctl.config.sensor import sensor_rate_hz
-from cellctl.guard.limits import DEFAULT_FILTER_S, DEFAULT_RATE_WINDOW_S, GuardLimits, Six, Touch
+from cellctl.guard.limits import (
+    DEFAULT_FILTER_S,
+    DEFAULT_RATE_WINDOW_S,
+    CusumTouch,
+    GuardLimits,
+    Six,
+)
 
 RAW_MARGIN_N = 12.0
 """A single sample may exceed a filtered limit by its noise."""
@@ -38,7 +44,7 @@ def guard_limits(
     filtered: Six,
     sensing: Sensing,
     *,
-    touch: Touch | None = None,
+    touch: CusumTouch | None = None,
     filter_s: float = DEFAULT_FILTER_S,
 ) -> GuardLimits:
     """What the guard watches when the filtered wrench may be so great."""

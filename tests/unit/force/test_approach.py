@@ -11,14 +11,13 @@ from cellctl.force.approach import (
     approach_speed,
     contact_sigma,
     contact_window,
-    flange_for_deck,
     peak_at,
-    seated_pose_limit,
     segment_length,
     series,
 )
 from cellctl.force.detectors import Cusum
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.vision.compensation import flange_target
 
 FIGURES = ApproachFigures(
     stop_latency_s=0.25,
@@ -113,15 +112,6 @@ def test_uncertainties_join_as_squares() -> None:
     assert contact_sigma(3e-5, 4e-5) == pytest.approx(5e-5)
 
 
-def test_equation_17_ends_ten_millimetres_below_the_mating_face() -> None:
-    """force.md 3.1: with the paper's numbers Z_K is -10 mm."""
-    last = pose_from_xyzabc([0.1, -0.2, 25.0, 0.01, 0.02, 0.03])
-    end = seated_pose_limit(last, 0.015, 0.010, 0.010)
-    assert end.translation[2] == pytest.approx(-0.010)
-    np.testing.assert_allclose(end.translation[:2], last.translation[:2])
-    np.testing.assert_allclose(end.rotation.as_matrix(), last.rotation.as_matrix())
-
-
 def test_advancing_is_equation_18_for_a_pure_translation() -> None:
     rng = np.random.default_rng(7)
     flange_T_deck = pose_from_xyzabc([1.0, -2.0, 502.0, 0.3, -0.2, 179.8])
@@ -131,7 +121,7 @@ def test_advancing_is_equation_18_for_a_pure_translation() -> None:
     )
     M_T_D = pose_from_xyzabc([0.01, 0.02, 25.0, 0.0, 0.0, 0.0])
     lower = pose_from_xyzabc([0.01, 0.02, 15.0, 0.0, 0.0, 0.0])
-    start = flange_for_deck(base_T_C1, C1_T_M, M_T_D, flange_T_deck)
-    end = flange_for_deck(base_T_C1, C1_T_M, lower, flange_T_deck)
+    start = flange_target(base_T_C1, C1_T_M, M_T_D, flange_T_deck)
+    end = flange_target(base_T_C1, C1_T_M, lower, flange_T_deck)
     moved = advance(start, flange_T_deck, 0.010)
     np.testing.assert_allclose(moved.as_matrix(), end.as_matrix(), atol=1e-12)

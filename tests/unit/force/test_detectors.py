@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from cellctl.force.detectors import Cusum, above, k_of_n, low_pass
+from cellctl.force.detectors import Cusum, above, low_pass, touch_threshold_n
 from cellctl.guard.detectors import Cusum as GuardCusum
 from cellctl.guard.detectors import LowPass
 from cellctl.guard.limits import CusumTouch
@@ -9,8 +9,9 @@ from cellctl.guard.limits import CusumTouch
 PERIOD_S = 1e-3
 
 
-def noise(seconds: float, rng: np.random.Generator, sigma_n: float = 2.5) -> np.ndarray:
-    time_s = np.arange(0.0, seconds, PERIOD_S)
+def noise(seconds: float, rng: np.random.Generator, period_s: float = PERIOD_S) -> np.ndarray:
+    sigma_n = 2.5
+    time_s = np.arange(0.0, seconds, period_s)
     vibration = 2.0 * np.sqrt(2.0) * np.sin(2.0 * np.pi * 12.0 * time_s + rng.uniform(0, 6))
     return np.asarray(rng.normal(0.0, sigma_n, len(time_s)) + vibration)
 
@@ -42,6 +43,12 @@ def test_cusum_does_not_alarm_on_noise_alone() -> None:
     assert above(noise(300.0, rng), 8.0) is not None, "a plain threshold does"
 
 
+@pytest.mark.parametrize("rate_hz", [100.0, 250.0, 500.0, 4000.0])
+def test_nor_does_that_of_another_rate(rate_hz: float) -> None:
+    cusum = Cusum(threshold_n=touch_threshold_n(rate_hz))
+    assert cusum.first_alarm(noise(300.0, np.random.default_rng(8), 1.0 / rate_hz)) is None
+
+
 def test_the_study_and_the_guard_decide_on_the_same_sample() -> None:
     rng = np.random.default_rng(5)
     signal = noise(2.0, rng) + np.maximum(np.arange(2000) - 900, 0) * 0.08
@@ -58,10 +65,3 @@ def test_the_filters_agree_with_the_guard() -> None:
         guard.update((float(force),) * 6, index * PERIOD_S)[2] for index, force in enumerate(signal)
     ]
     np.testing.assert_allclose(low_pass(signal, 5e-3, PERIOD_S), six, atol=1e-9)
-
-
-def test_k_of_n_waits_for_enough() -> None:
-    force = np.array([9.0, 0.0, 9.0, 9.0, 0.0, 9.0, 9.0, 9.0])
-    assert k_of_n(force, 8.0, 3, 3) == 7
-    assert k_of_n(force, 8.0, 3, 4) == 3
-    assert k_of_n(force, 10.0, 1, 1) is None

@@ -8,7 +8,6 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import pose_error, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose, skew
-from cellctl.geometry.wrench import Wrench
 
 mm = st.floats(-5000, 5000)
 angle = st.floats(-179, 179)
@@ -74,15 +73,3 @@ def test_covariances_of_products_and_inverses_match_the_scatter():
 def test_skew_is_the_cross_product():
     a, b = np.array([1.0, -2.0, 3.0]), np.array([0.5, 4.0, -1.0])
     assert skew(a) @ b == pytest.approx(np.cross(a, b))
-
-
-def test_a_wrench_keeps_its_power_in_any_frame():
-    rng = np.random.default_rng(1)
-    wrench = Wrench.from_vector(rng.normal(size=6))
-    b_T_a = pose_from_xyzabc([120, -340, 560, 20, -50, 75])
-    velocity_a, rate_a = rng.normal(size=3), rng.normal(size=3)
-    rate_b = b_T_a.rotation.apply(rate_a)
-    velocity_b = b_T_a.rotation.apply(velocity_a) - np.cross(rate_b, b_T_a.translation)
-    moved = wrench.in_frame(b_T_a)
-    before = wrench.force_n @ velocity_a + wrench.torque_n_m @ rate_a
-    assert moved.force_n @ velocity_b + moved.torque_n_m @ rate_b == pytest.approx(before)

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.force.compensation import Compensation
-from cellctl.geometry.wrench import Wrench
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.compensate import Compensator
+from tests.unit.guard.wrench import Wrench
 
 
 def nine(rotation: Rotation) -> tuple[float, ...]:
@@ -61,3 +62,27 @@ def test_only_a_load_that_hangs_needs_the_pose() -> None:
     assert not guard.needs_pose
     guard.set_load([(0.0, 0.0, 1.0)] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))
     assert guard.needs_pose
+
+
+def test_a_wrench_keeps_its_power_in_any_frame() -> None:
+    rng = np.random.default_rng(1)
+    wrench = Wrench.from_vector(rng.normal(size=6))
+    b_T_a = pose_from_xyzabc([120, -340, 560, 20, -50, 75])
+    velocity_a, rate_a = rng.normal(size=3), rng.normal(size=3)
+    rate_b = b_T_a.rotation.apply(rate_a)
+    velocity_b = b_T_a.rotation.apply(velocity_a) - np.cross(rate_b, b_T_a.translation)
+    moved = wrench.in_frame(b_T_a)
+    before = wrench.force_n @ velocity_a + wrench.torque_n_m @ rate_a
+    assert moved.force_n @ velocity_b + moved.torque_n_m @ rate_b == pytest.approx(before)
+
+
+def test_transport_to_the_deck_keeps_force_and_moves_the_moment() -> None:
+    """A push of 35 N at the middle of a deck 0.44 m below the sensor gives no moment there."""
+    sensor_T_deck = RigidTransform.from_components(
+        [0.003, -0.002, 0.442], Rotation.from_euler("x", 180.0, degrees=True)
+    )
+    at_deck = Wrench(np.array([0.0, 0.0, 35.0]), np.zeros(3))
+    at_sensor = at_deck.in_frame(sensor_T_deck)
+    assert at_sensor.force_n[2] == pytest.approx(-35.0)
+    back = at_sensor.in_frame(sensor_T_deck.inv())
+    np.testing.assert_allclose(back.vector, at_deck.vector, atol=1e-12)

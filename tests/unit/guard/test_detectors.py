@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cellctl.force import detectors as records
-from cellctl.guard.detectors import Burst, Count, Cusum, Frozen, LowPass, beyond
-from cellctl.guard.limits import CountTouch, CusumTouch
+from cellctl.guard.detectors import Burst, Cusum, Frozen, LowPass, beyond
+from cellctl.guard.limits import CusumTouch
 
 
 def ramp(seed: int) -> list[float]:
@@ -19,14 +19,6 @@ def test_cusum_alarms_at_the_same_sample(seed: int) -> None:
     streaming = Cusum(CusumTouch())
     alarms = [streaming.update(value) for value in force]
     assert alarms.index(True) == records.Cusum().first_alarm(np.array(force))
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_count_alarms_at_the_same_sample(seed: int) -> None:
-    force = ramp(seed)
-    streaming = Count(CountTouch())
-    alarms = [streaming.update(value) for value in force]
-    assert alarms.index(True) == records.k_of_n(np.array(force), 8.0, 8, 10)
 
 
 def test_low_pass_is_the_same_filter() -> None:

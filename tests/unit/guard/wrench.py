@@ -1,4 +1,4 @@
-"""Forces and moments and how they change from one frame to another."""
+"""Wrenches on arrays: the guard's plain floats are tested against them."""
 
 from dataclasses import dataclass
 
