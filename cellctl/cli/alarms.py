@@ -6,7 +6,7 @@ import typer
 from rich.console import Console
 
 from cellctl.cli.daemon_client import DaemonClient, SocketOption
-from cellctl.daemon.local.messages import AcknowledgeCommand
+from cellctl.daemon.local.messages import AcknowledgeCommand, made
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 
@@ -32,5 +32,5 @@ def acknowledge(
     socket: SocketOption = None,
 ) -> None:
     """Acknowledge every alarm with this number; it releases no fault and moves nothing."""
-    DaemonClient(socket).command(AcknowledgeCommand(number=number))
+    DaemonClient(socket).command(made(AcknowledgeCommand, number=number))
     typer.echo(f"F{number:03d} acknowledged")

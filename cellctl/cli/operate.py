@@ -13,6 +13,7 @@ from cellctl.daemon.local.messages import (
     PlainCommand,
     ProcedureCommand,
     StartCommand,
+    made,
 )
 from cellctl.daemon.local.report import StatusReport
 from cellctl.errors.local import CommandMissedItsGoal
@@ -78,21 +79,26 @@ def start(
     socket: SocketOption = None,
 ) -> None:
     """Assemble a part, in Production mode."""
-    request = StartCommand(
-        serial=serial, recipe=recipe, order=order, dry_run=dry_run, single_step=single_step
+    request = made(
+        StartCommand,
+        serial=serial,
+        recipe=recipe,
+        order=order,
+        dry_run=dry_run,
+        single_step=single_step,
     )
     _begin(DaemonClient(socket), request, wait=wait)
 
 
 def procedure(
-    number: Annotated[int, typer.Argument(help="101 to 108, see docs/commissioning.md.")],
+    number: Annotated[int, typer.Argument(help="Such as 107, see docs/commissioning.md.")],
     serial: Annotated[str, typer.Option(help="For the record; default: PROCEDURE-NUMBER.")] = "",
     *,
     wait: Wait = False,
     socket: SocketOption = None,
 ) -> None:
     """Calibrate, identify or verify, in Maintenance mode."""
-    request = ProcedureCommand(number=number, serial=serial or f"PROCEDURE-{number}")
+    request = made(ProcedureCommand, number=number, serial=serial or f"PROCEDURE-{number}")
     _begin(DaemonClient(socket), request, wait=wait)
 
 

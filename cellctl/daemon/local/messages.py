@@ -11,7 +11,10 @@ REQUEST_LIMIT = 4096
 """Bytes of a request with its line end."""
 ANSWER_LIMIT = 1 << 20
 M = TypeVar("M")
-Number = Annotated[int, Field(ge=1, le=999)]
+C = TypeVar("C", bound=BaseModel)
+FaultNumber = Annotated[int, Field(ge=1, le=999)]
+ProcedureNumber = Annotated[int, Field(ge=1, le=65535)]
+"""As in the line's register."""
 Serial = Annotated[str, Field(max_length=24)]
 
 
@@ -49,7 +52,7 @@ class ProcedureCommand(Message):
     """Start in Maintenance."""
 
     request: Literal["procedure"] = "procedure"
-    number: Number
+    number: ProcedureNumber
     serial: Serial
 
 
@@ -64,7 +67,7 @@ class AcknowledgeCommand(Message):
     """Acknowledge every alarm with this number."""
 
     request: Literal["acknowledge"] = "acknowledge"
-    number: Number
+    number: FaultNumber
 
 
 CommandRequest = PlainCommand | StartCommand | ProcedureCommand | ModeCommand | AcknowledgeCommand
@@ -120,6 +123,14 @@ def parse_answer(line: bytes) -> Answer:
     return _parse(_ANSWER, line)
 
 
+def made(kind: type[C], **values: object) -> C:
+    """A message with values that a user typed; raises ``MessageMalformed``."""
+    try:
+        return kind.model_validate(values)
+    except ValidationError as error:
+        raise _malformed(error) from error
+
+
 def to_line(message: Message) -> bytes:
     """The line of a message."""
     return message.model_dump_json().encode() + b"\n"
@@ -129,6 +140,10 @@ def _parse(adapter: TypeAdapter[M], line: bytes) -> M:
     try:
         return adapter.validate_json(line)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        place = ".".join(str(part) for part in first["loc"])
-        raise MessageMalformed(f"{place}: {first['msg']}" if place else first["msg"]) from error
+        raise _malformed(error) from error
+
+
+def _malformed(error: ValidationError) -> MessageMalformed:
+    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+    place = ".".join(str(part) for part in first["loc"])
+    return MessageMalformed(f"{place}: {first['msg']}" if place else first["msg"])

@@ -2,11 +2,11 @@
 
 import asyncio
 from datetime import datetime
+from pathlib import Path
 
 from cellctl.calibration.files import StoredCalibration, read_calibration
 from cellctl.cell.archive import Archive
 from cellctl.cell.calibrations import ALL_KINDS
-from cellctl.cell.commissioned import CONTACT_STIFFNESS, STOP_LATENCY
 from cellctl.cell.devices import Cell
 from cellctl.cell.step import Step
 from cellctl.clock import utc_now
@@ -16,8 +16,6 @@ from cellctl.daemon.local.report import CalibrationReport, FaultReport, RunRepor
 from cellctl.daemon.unit import Unit
 from cellctl.errors import CellError, catalogue
 from cellctl.records.store import RunStore
-
-_KINDS = (*ALL_KINDS, STOP_LATENCY, CONTACT_STIFFNESS)
 
 
 class Reporter:
@@ -95,7 +93,7 @@ class Reporter:
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
         folder, now = self._unit.desk.calibrations.path, utc_now()
         found = []
-        for kind in _KINDS:
+        for kind in _kinds(folder):
             try:
                 stored = read_calibration(folder, kind)
             except CellError as error:
@@ -108,6 +106,12 @@ class Reporter:
                 )
             )
         return tuple(found)
+
+
+def _kinds(folder: Path) -> tuple[str, ...]:
+    """What production demands, then whatever else there is; a marker's name has a dot in it."""
+    found = {path.stem for path in folder.glob("*.json") if "." not in path.stem}
+    return (*ALL_KINDS, *sorted(found.difference(ALL_KINDS)))
 
 
 def _problem(stored: StoredCalibration, now: datetime) -> str:

@@ -1,0 +1,237 @@
+"""Operator commands against a daemon, and every one of them that the documents show."""
+
+import io
+import json
+import re
+import shlex
+import time
+from collections.abc import Iterator
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+from typer.testing import CliRunner, Result
+
+from cellctl.cli import daemon_client
+from cellctl.cli.app import app
+from cellctl.cli.status_screen import screen
+from cellctl.clock import utc_now
+from cellctl.daemon.local.messages import (
+    AcknowledgeCommand,
+    ModeCommand,
+    ProcedureCommand,
+    Refused,
+    StartCommand,
+)
+from cellctl.daemon.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.errors import CellError
+from cellctl.errors.local import (
+    CommandMissedItsGoal,
+    CommandRefused,
+    DaemonNotReached,
+    MessageMalformed,
+)
+from tests.unit.cli.agreeable import AT_REST, Agreeable, listening
+
+DOCS = Path(__file__).parents[3] / "docs"
+OPERATOR = "status|clear|reset|start|procedure|hold|unhold|stop|abort|mode|alarms"
+FAULT = FaultReport(number=202, text="F202 lost: aux_1", cause="Cable.", remedy="Find out why.")
+
+
+@pytest.fixture
+def daemon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Agreeable]:
+    daemon = Agreeable()
+    monkeypatch.setenv("CELLCTL_SOCKET", str(tmp_path / "s"))
+    with listening(tmp_path / "s", daemon):
+        yield daemon
+
+
+def cellctl(*arguments: str) -> Result:
+    return CliRunner().invoke(app, list(arguments))
+
+
+def fault_of(result: Result) -> type[BaseException]:
+    assert result.exception is not None, result.output
+    assert isinstance(result.exception, CellError), result.output
+    return type(result.exception)
+
+
+@pytest.mark.parametrize("name", ["clear", "reset", "hold", "unhold", "stop", "abort"])
+def test_a_command_is_told_and_waited_for(daemon: Agreeable, name: str) -> None:
+    done = cellctl(name)
+    assert done.exit_code == 0, done.output
+    assert [request.request for request in daemon.asked] == [name]
+    assert daemon.shows["state"].lower() in done.output
+
+
+def test_parameters_arrive(daemon: Agreeable) -> None:
+    assert cellctl("start", "--serial", "S-1", "--recipe", "panel", "--dry-run").exit_code == 0
+    assert cellctl("procedure", "107", "--wait").exit_code == 0
+    assert cellctl("mode", "maintenance").exit_code == 0
+    assert cellctl("alarms", "acknowledge", "202").exit_code == 0
+    assert daemon.asked == [
+        StartCommand(serial="S-1", recipe="panel", dry_run=True),
+        ProcedureCommand(number=107, serial="PROCEDURE-107"),
+        ModeCommand(mode="maintenance"),
+        AcknowledgeCommand(number=202),
+    ]
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["start"], ["mode", "automatic"], ["procedure", "x"], ["procedure"], ["alarms", "all"]],
+)
+def test_what_is_mistyped_asks_for_nothing(daemon: Agreeable, arguments: list[str]) -> None:
+    assert cellctl(*arguments).exit_code == 2
+    assert daemon.asked == []
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["procedure", "0"], ["start", "--serial", "S" * 25], ["alarms", "acknowledge", "0"]],
+)
+def test_what_no_message_can_say_is_a_numbered_fault(
+    daemon: Agreeable, arguments: list[str]
+) -> None:
+    assert fault_of(cellctl(*arguments)) is MessageMalformed
+    assert daemon.asked == []
+
+
+def test_a_refusal_is_a_numbered_fault_with_its_reason(daemon: Agreeable) -> None:
+    daemon.refusal = Refused(code=0x10B, text="the line PLC is in control", state="STOPPED")
+    done = cellctl("reset")
+    assert fault_of(done) is CommandRefused
+    assert "0x10B the line PLC is in control (state STOPPED)" in str(done.exception)
+
+
+def test_a_reset_that_ends_in_aborted_failed(daemon: Agreeable) -> None:
+    daemon.leads_to["reset"] = "ABORTED"
+    daemon.shows["faults"] = (FAULT,)
+    done = cellctl("reset")
+    assert fault_of(done) is CommandMissedItsGoal
+    assert "ABORTED: F202 lost" in str(done.exception)
+
+
+@pytest.mark.parametrize("arguments", [["start", "--serial", "S"], ["procedure", "101"]])
+def test_only_a_good_end_is_a_success(daemon: Agreeable, arguments: list[str]) -> None:
+    daemon.shows["result"] = "bad"
+    assert cellctl(*arguments).exit_code == 0
+    assert fault_of(cellctl(*arguments, "--wait")) is CommandMissedItsGoal
+
+
+def test_what_takes_too_long_is_not_waited_for(
+    daemon: Agreeable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    times_s = iter(range(0, 1000, 50))
+    monkeypatch.setattr(daemon_client, "now_s", lambda: next(times_s))
+    daemon.leads_to["reset"], daemon.on_its_way_to = "RESETTING", "IDLE"
+    done = cellctl("reset")
+    assert fault_of(done) is CommandMissedItsGoal
+    assert "still RESETTING after 60 s" in str(done.exception)
+
+
+def test_no_daemon_is_a_numbered_fault(tmp_path: Path) -> None:
+    done = cellctl("status", "--socket", str(tmp_path / "none"))
+    assert fault_of(done) is DaemonNotReached
+
+
+def test_status_for_programs(daemon: Agreeable) -> None:
+    done = cellctl("status", "--json")
+    assert StatusReport.model_validate_json(done.output).state == "STOPPED"
+    assert json.loads(done.output)["links"] == {"robots.main": "", "guard": ""}
+
+
+def test_status_is_followed_until_it_is_interrupted(
+    daemon: Agreeable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    naps = iter((None, None, KeyboardInterrupt()))
+
+    def nap(_s: float) -> None:
+        interrupt = next(naps)
+        if interrupt is not None:
+            raise interrupt
+
+    monkeypatch.setattr(time, "sleep", nap)
+    done = cellctl("status", "--watch")
+    assert done.exit_code == 0, done.output
+    assert "Stopped" in done.output
+
+
+def test_alarms_are_listed_with_their_remedy(daemon: Agreeable) -> None:
+    assert "no alarms" in cellctl("alarms").output
+    daemon.shows["alarms"] = (FAULT,)
+    listed = cellctl("alarms").output
+    assert "F202 lost: aux_1" in listed
+    assert "Find out why." in listed
+
+
+def test_the_screen_says_what_matters() -> None:
+    now = utc_now()
+    shows = AT_REST | {
+        "state": "HOLDING",
+        "state_requested": "HELD",
+        "control": "line",
+        "line_alive": True,
+        "step": "compensate",
+        "iteration": 2,
+        "faults": (FAULT,),
+        "alarms": (FAULT,),
+        "guard_trip": "raw limit: Fz 60 N",
+        "links": {"robots.main": "F207 too old", "guard": ""},
+        "calibrations": (
+            CalibrationReport(
+                kind="head_1", made=now - timedelta(days=5, hours=1), valid_until=now
+            ),
+            CalibrationReport(kind="payload", problem="F632 missing"),
+        ),
+        "last_run": RunReport(
+            number=7, serial="SAT-7", recipe="panel", mode="production", started=now, result=""
+        ),
+    }
+    console = Console(width=100, record=True, file=io.StringIO())
+    console.print(screen(StatusReport(**shows), now))
+    text = console.export_text()
+    for words in (
+        "Holding, on its way to Held",
+        "line PLC; here only",
+        "compensate, pass 2",
+        "7, SAT-7, panel",
+        "open",
+        "Fz 60 N",
+        "robots.main: F207 too old",
+        "line PLC alive",
+        "Find out why.",
+        "5 d",
+        "F632 missing",
+    ):
+        assert words in text, words
+    assert text.count("F202") == 1, "a latched fault is not shown again as an alarm"
+    assert len(text.splitlines()) <= 24
+
+
+def documented() -> list[str]:
+    """Operator commands as the documents show them, in their order."""
+    pages = (DOCS / name for name in ("operating.md", "commissioning.md"))
+    text = "\n".join(page.read_text(encoding="utf-8") for page in pages)
+    found = re.findall(rf"^    (cellctl (?:{OPERATOR})\b[^#\n]*)", text, re.MULTILINE)
+    found += re.findall(rf"`(cellctl (?:{OPERATOR})\b[^`\n]*)`", text)
+    return list(dict.fromkeys(command.strip() for command in found))
+
+
+@pytest.mark.parametrize("command", documented())
+def test_what_the_documents_show_runs(
+    daemon: Agreeable, command: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(_s: float) -> None:
+        raise KeyboardInterrupt
+
+    if "--watch" in command:
+        monkeypatch.setattr(time, "sleep", interrupt)
+    done = cellctl(*shlex.split(command)[1:])
+    assert done.exit_code == 0, (command, done.output, done.exception)
+
+
+def test_the_documents_show_every_command() -> None:
+    shown = {command.split()[1] for command in documented()}
+    assert shown == set(OPERATOR.split("|"))
