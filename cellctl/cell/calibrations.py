@@ -1,11 +1,13 @@
 """The cell's calibrations on disk: stored by procedures, demanded by production."""
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from cellctl import __version__
 from cellctl.calibration.base_frame import BaseFrameResult
@@ -25,6 +27,7 @@ from cellctl.calibration.invalidation import lift_invalidation, mark_invalid, ma
 from cellctl.calibration.stereo_result import StereoResult
 from cellctl.cell.commissioned import CONTACT_STIFFNESS, Commissioned, read_commissioned
 from cellctl.clock import utc_now
+from cellctl.config.base import JointsDeg
 from cellctl.durable import require_writable
 from cellctl.errors import CellError
 from cellctl.errors.calibration import (
@@ -32,6 +35,7 @@ from cellctl.errors.calibration import (
     CalibrationMissing,
     CalibrationNotStored,
     CalibrationRecordInvalid,
+    HeadPoseChanged,
 )
 from cellctl.force.compensation import Compensation
 from cellctl.force.payload_result import compensation_from_document
@@ -46,6 +50,20 @@ Stamp = tuple[tuple[int, int], ...]
 """Time of change and size of every file: a file that changes, goes or comes back changes it."""
 
 
+HEAD_JOINTS = "head_joints_deg"
+"""Key of the board transfer's record: taught joints of each head's robot, by head."""
+SAME_JOINT_DEG = 1e-4
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """The target board before one head, waiting for the other head's turn."""
+
+    board: BoardPlacement
+    joints_deg: JointsDeg
+    """The measuring pose from which the head saw it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Calibrations:
     """Everything production needs, valid at the moment it was read."""
@@ -56,6 +74,8 @@ class Calibrations:
     """Identity of every record by kind."""
     serial_numbers: Mapping[str, str]
     """Of the instrument behind every record, by kind."""
+    head_joints_deg: Mapping[str, Sequence[float]]
+    """Of the measuring poses for which the board transfer holds, by head."""
 
     def require_instrument(self, kind: str, serial_number: str) -> None:
         """Raise ``CalibrationRecordInvalid`` when another instrument is connected."""
@@ -65,13 +85,23 @@ class Calibrations:
                 f"{kind} was made for {made_for!r}, connected is {serial_number!r}"
             )
 
+    def require_head_pose(self, head: str, joints_deg: JointsDeg) -> None:
+        """Raise ``HeadPoseChanged`` when the board transfer holds for another measuring pose."""
+        made_at = self.head_joints_deg.get(head)
+        if made_at is None:
+            raise HeadPoseChanged(f"{head}: the board transfer does not say for which joints")
+        if len(made_at) != len(joints_deg) or not np.allclose(
+            made_at, joints_deg, rtol=0.0, atol=SAME_JOINT_DEG
+        ):
+            raise HeadPoseChanged(f"{head}: made at {list(made_at)}, taught is {list(joints_deg)}")
+
 
 @dataclass(slots=True)
 class CalibrationFolder:
     """Reads and writes the folder; also keeps what two procedures hand to each other."""
 
     path: Path
-    placements: dict[str, BoardPlacement] = field(default_factory=dict)
+    placements: dict[str, Placement] = field(default_factory=dict)
     """Target board before head_1 and head_2, waiting for both to be there."""
     _seen: tuple[Stamp, dict[str, float]] | None = None
 
@@ -96,7 +126,9 @@ class CalibrationFolder:
             one.require_past(now)
         serial_numbers = {one.kind: one.serial_number for one in stored}
         ids = {**geometry.ids, PAYLOAD: payload.id}
-        return Calibrations(geometry, compensation, ids, serial_numbers)
+        transfer = next(one.record for one in stored if one.kind == "board_transfer")
+        joints_deg = transfer.get(HEAD_JOINTS, {})
+        return Calibrations(geometry, compensation, ids, serial_numbers, joints_deg)
 
     def commissioned(self, recipe_id: int, planned: timedelta) -> Commissioned:
         """What commissioning has measured and stays valid for longer than ``planned``."""

@@ -31,7 +31,7 @@ MOVED_RAD = np.radians(0.005)
 
 @dataclass(frozen=True, slots=True)
 class HeadGeometry:
-    """What calibration says about the two heads at their measuring poses."""
+    """What calibration says about the two heads at the measuring poses that it was made at."""
 
     head_1: StereoHead
     head_2: StereoHead

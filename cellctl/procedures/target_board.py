@@ -12,6 +12,7 @@ from cellctl.calibration.board_transfer import (
     calibrate_board_transfer,
 )
 from cellctl.calibration.transfer_picture import transfer_picture
+from cellctl.cell.calibrations import HEAD_JOINTS, Placement
 from cellctl.cell.head_station import HeadStation
 from cellctl.cell.together import together
 from cellctl.geometry.pose import MM, pose_from_xyzabc
@@ -41,18 +42,19 @@ async def measure_board(context: ProcedureContext, station: HeadStation) -> Proc
     in_head, in_large_field = await together(
         _in_head(context, station, model), _in_large_field(context)
     )
-    calibrations.placements[station.name] = BoardPlacement(in_large_field, in_head)
+    calibrations.placements[station.name] = Placement(
+        BoardPlacement(in_large_field, in_head), station.config.measuring_joints_deg
+    )
     if len(calibrations.placements) < 2:
         return None
+    first, second = (calibrations.placements.pop(name) for name in ("head_1", "head_2"))
     result = await context.cell.workers.run(
-        calibrate_board_transfer,
-        calibrations.c_T_base(),
-        [calibrations.placements.pop("head_1")],
-        [calibrations.placements.pop("head_2")],
+        calibrate_board_transfer, calibrations.c_T_base(), [first.board], [second.board]
     )
+    joints_deg = {"head_1": first.joints_deg, "head_2": second.joints_deg}
     return ProcedureOutcome(
         item="board_transfer",
-        record=result.to_record(),
+        record={**result.to_record(), HEAD_JOINTS: joints_deg},
         passed=result.passed,
         warnings=result.warnings,
         picture_png=await context.cell.workers.run(transfer_picture, result),

@@ -58,6 +58,7 @@ async def prepare(cell: Cell, folder: CalibrationFolder, recipe: Recipe) -> Prep
     deck = read_features(cell.folder / recipe.deck_features)
     for head in cell.heads:
         calibrations.require_instrument(head.name, await head.camera.serial_number())
+        calibrations.require_head_pose(head.name, head.config.measuring_joints_deg)
     calibrations.require_instrument(PAYLOAD, cell.guard.health().sensor_serial)
     stored = await asyncio.to_thread(folder.stored)
     payload_kg = next(mass_kg(item.record) for item in stored if item.kind == PAYLOAD)

@@ -11,7 +11,7 @@ import pytest
 
 from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import read_calibration, write_stored
-from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD, CalibrationFolder
+from cellctl.cell.calibrations import ALL_KINDS, HEAD_JOINTS, PAYLOAD, CalibrationFolder, Placement
 from cellctl.clock import utc_now
 from cellctl.errors.calibration import (
     CalibrationExpired,
@@ -20,6 +20,7 @@ from cellctl.errors.calibration import (
     CalibrationNotStored,
     CalibrationRecordInvalid,
     ClockNotTrusted,
+    HeadPoseChanged,
 )
 from tests.unit.cell.bench import Bench, renew_calibrations, spoil
 
@@ -75,10 +76,24 @@ def test_another_instrument_does_not_get_the_calibration(bench: Bench) -> None:
         found.require_instrument("head_1", "FH-0009")
 
 
+def test_a_head_that_was_taught_another_pose_is_refused(bench: Bench) -> None:
+    folder = bench.calibrations
+    taught = bench.cell.config.robots.aux_2.measuring_joints_deg
+    found = folder.read(HOUR)
+    found.require_head_pose("head_2", taught)
+    with pytest.raises(HeadPoseChanged, match=r"F637 .*head_2: made at \[-3\.29612"):
+        found.require_head_pose("head_2", (taught[0] + 0.001, *taught[1:]))
+    record = dict(read_calibration(folder.path, "board_transfer").record)
+    del record[HEAD_JOINTS]
+    folder.store("board_transfer", record, "ET-0001", 2 * HOUR)
+    with pytest.raises(HeadPoseChanged, match="does not say"):
+        folder.read(HOUR).require_head_pose("head_2", taught)
+
+
 def test_a_stored_record_takes_effect_at_once(bench: Bench) -> None:
     folder = bench.calibrations
     record = read_calibration(folder.path, "head_1").record
-    placement = BoardPlacement(None, None)  # type: ignore[arg-type]
+    placement = Placement(BoardPlacement(None, None), (0.0,) * 6)  # type: ignore[arg-type]
     folder.placements |= {"head_1": placement, "head_2": placement}
     assert folder.validity_h()[0] > 2.0
     stored = folder.store("head_1", record, "FH-0001", HOUR, b"picture")
@@ -125,7 +140,8 @@ def test_a_marker_that_cannot_be_read_counts(bench: Bench) -> None:
 
 def test_stiffness_is_invalidated_for_every_recipe_and_what_waits_is_dropped(bench: Bench) -> None:
     folder = bench.calibrations
-    folder.placements["head_1"] = BoardPlacement(None, None)  # type: ignore[arg-type]
+    board = BoardPlacement(None, None)  # type: ignore[arg-type]
+    folder.placements["head_1"] = Placement(board, (0.0,) * 6)
     for kind in ("contact_stiffness_1", "contact_stiffness_2"):
         folder.store(kind, {"verdict": "pass"}, "", HOUR)
     found = folder.invalidate(["contact_stiffness", "stop_latency"], "F527")

@@ -95,6 +95,8 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
         assert np.linalg.norm(distance) < 2e-4
         assert np.degrees(np.linalg.norm(angle)) < 0.03
     assert len(boards.predicted) == 2 * PAIRS
+    for head in cell.heads:
+        assert outcome.record["head_joints_deg"][head.name] == head.config.measuring_joints_deg
     for head, robot, turn in zip(cell.heads, (cell.aux_1, cell.aux_2), (0, 1), strict=True):
         place = np.radians(head.config.measuring_joints_deg)
         np.testing.assert_allclose(robot.moves[turn].target, place)

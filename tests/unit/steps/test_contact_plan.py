@@ -9,6 +9,7 @@ import pytest
 from cellctl.cell.commissioned import Commissioned
 from cellctl.config.cell import CellConfig
 from cellctl.config.recipe import Pins
+from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.force.detectors import Cusum, touch_threshold_n
 from cellctl.steps.compensate import compensate
@@ -104,6 +105,14 @@ async def test_a_robot_that_was_slowed_down_meanwhile_gets_no_plan(rig: RunRig) 
     rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
     with pytest.raises(SpeedOverridden):
         contact_plan(run, Commissioned())
+
+
+async def test_a_run_is_not_prepared_for_a_head_that_was_taught_another_pose(rig: RunRig) -> None:
+    cell = rig.bench.cell
+    moved = cell.head_1.config.model_copy(update={"measuring_joints_deg": (0.0,) * 6})
+    cell.head_1 = replace(cell.head_1, config=moved)
+    with pytest.raises(HeadPoseChanged):
+        await prepare(rig.bench.as_cell, rig.bench.calibrations, rig.run().recipe)
 
 
 async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig) -> None:
