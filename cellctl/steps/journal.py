@@ -151,7 +151,9 @@ class Journal:
             )
             for side, image in (("left", pair.left), ("right", pair.right))
         ]
-        drawn = await asyncio.gather(*(self.workers.run(draw, *what) for _, *what in seen))
+        drawn = await asyncio.gather(
+            *(self.workers.run(draw, image, found, side) for _, image, found, side in seen)
+        )
         for (name, *_), (picture, raw) in zip(seen, drawn, strict=True):
             await self._artefact(f"{name}.jpg", picture, "image/jpeg")
             await self._artefact(f"{RAW_FOLDER}/{name}.png", raw, "image/png")

@@ -20,7 +20,7 @@ FIRST_LIFT_M = 4e-4
 LIFT_M = 0.06
 SLOW_LIFT_M = 0.015
 SLOW_SPEED_M_S = 2e-3
-"""The first stretch off a seat: pins and edges are still near."""
+"""Of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03
 """A deck less than this above its seat is lifted before it goes anywhere else."""
 NEAR_STATION_M = 0.8

@@ -29,9 +29,9 @@ class PinSettings:
 
 @dataclass(frozen=True, slots=True)
 class MatingSettings:
-    """Constants of a mating; the defaults are those of the shipped recipe.
+    """Constants of a mating; the defaults are those of the shipped recipe and its payload.
 
-    Measured figures have none. What follows from another figure is a property.
+    Latency and stiffness have none. What follows from another figure is a property.
     """
 
     stop_latency_s: float
@@ -41,6 +41,7 @@ class MatingSettings:
     contact_stiffness_n_m: float = 1e7
     """Deck on frame alone, upper bound: only the impact term needs it."""
     moving_mass_kg: float = 200.0
+    """Everything that hangs on the force sensor."""
     deceleration_m_s2: float = 0.1
     """The least deceleration of a stop."""
 
