@@ -8,11 +8,12 @@ from rich.console import Console
 
 from cellctl.config import load_cell, problems
 from cellctl.durable import may_write
+from cellctl.steps.plan_check import plan_problems
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
     """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
-    found = problems(cell_file)
+    found = problems(cell_file) or list(plan_problems(load_cell(cell_file)))
     console = Console(soft_wrap=True, highlight=False)
     if found:
         errors = "1 error" if len(found) == 1 else f"{len(found)} errors"

@@ -1,8 +1,9 @@
 """The whole cell file."""
 
+import ipaddress
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from cellctl.config.base import JointsDeg, Section, WrittenPose
 from cellctl.config.devices import Device, Force, Heads, Robots
@@ -18,7 +19,14 @@ class Plc(Section):
     """Order of the two words of a 32-bit value."""
     heartbeat_timeout_s: Annotated[float, Field(ge=0.5, le=10)] = 1.5
     allowed_clients: tuple[str, ...] = ()
-    """Addresses that may connect; empty for any."""
+    """Addresses or networks that may connect; empty for any. Names are not looked up."""
+
+    @field_validator("allowed_clients")
+    @classmethod
+    def _clients_are_addresses(cls, clients: tuple[str, ...]) -> tuple[str, ...]:
+        for client in clients:
+            ipaddress.ip_network(client, strict=False)
+        return clients
 
 
 class LocalApi(Section):

@@ -1,7 +1,6 @@
 """Read a cell file and say everything that is wrong with it."""
 
 import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,8 @@ from pydantic import BaseModel, ValidationError
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import Force
+from cellctl.config.features import feature_problems
+from cellctl.config.problem import Problem
 from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, MixedSimulation, UnknownDriver
 
@@ -23,16 +24,6 @@ DRIVER_GROUPS = {
     "force.sensor": plugins.FT_SENSOR,
     "force.stop_channel": plugins.STOP_CHANNEL,
 }
-
-
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """One error in a cell file."""
-
-    key: str
-    value: str
-    allowed: str
-    number: int = ConfigInvalid.number
 
 
 def load_cell(path: Path) -> CellConfig:
@@ -55,7 +46,7 @@ def _examine(path: Path) -> tuple[list[Problem], CellConfig | None]:
         cell = CellConfig.model_validate(raw)
     except ValidationError as error:
         return _from_pydantic("", error), None
-    found = _driver_problems(cell) + _feature_problems(cell, path.parent)
+    found = _driver_problems(cell) + list(feature_problems(cell, path.parent))
     if not any(problem.key.startswith("force.sensor.") for problem in found):
         found += _pace_problems(cell.force)
     flags = {device.simulated for device in cell.devices().values()}
@@ -94,18 +85,6 @@ def _pace_problems(force: Force) -> list[Problem]:
         return []
     allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
     return [Problem("force.stale_ms", f"{force.stale_ms:g}", allowed)]
-
-
-def _feature_problems(cell: CellConfig, folder: Path) -> list[Problem]:
-    return [
-        Problem(f"recipes.{index}.{key}", repr(name), "an existing feature file (TOML)")
-        for index, recipe in enumerate(cell.recipes)
-        for key, name in (
-            ("frame_features", recipe.frame_features),
-            ("deck_features", recipe.deck_features),
-        )
-        if not (folder / name).is_file()
-    ]
 
 
 def _from_pydantic(prefix: str, error: ValidationError) -> list[Problem]:

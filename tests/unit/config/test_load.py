@@ -86,6 +86,59 @@ def test_a_missing_feature_file_is_an_error(tmp_path: Path):
     assert problem.key == "recipes.0.deck_features"
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("head_1 = ", "other = ", "unknown key"),
+        ("head_1 = [", "head_1 = []\n# [", "head_1 must list"),
+        ("head_2 = [", "head_2 = []\n# [", "head_2 must list"),
+        ("position_mm", "position", "unknown key"),
+        ("[[hole]]", "[[hole", "not TOML"),
+    ],
+)
+def test_a_feature_file_that_no_part_can_be_measured_with_is_an_error(
+    tmp_path: Path, old: str, new: str, said: str
+):
+    text = (CONFIG / "features" / "deck.toml").read_text()
+    assert old in text
+    (tmp_path / "broken.toml").write_text(text.replace(old, new, 1))
+    path = changed(tmp_path, feature=("features/deck.toml", "broken.toml"))
+    (problem,) = problems(path)
+    assert (problem.key, problem.number) == ("recipes.0.deck_features", 402)
+    assert said in problem.allowed
+
+
+def test_heads_that_see_too_little_of_a_part_together_are_an_error(tmp_path: Path):
+    text = (CONFIG / "features" / "frame.toml").read_text()
+    for line in [line for line in text.splitlines() if line.startswith("head_")]:
+        text = text.replace(line, f'{line.split("=")[0]}= ["P1"]')
+    (tmp_path / "few.toml").write_text(text)
+    (problem,) = problems(changed(tmp_path, feature=("features/frame.toml", "few.toml")))
+    assert "three holes" in problem.allowed
+
+
+@pytest.mark.parametrize("client", ["plc", "192.168.10", "192.168.10.2/99"])
+def test_allowed_clients_are_addresses(tmp_path: Path, client: str):
+    line = "heartbeat_timeout_s = 3.0"
+    path = changed(tmp_path, client=(line, f'{line}\nallowed_clients = ["{client}"]'))
+    (problem,) = problems(path)
+    assert problem.key == "plc.allowed_clients"
+
+
+@pytest.mark.parametrize("client", ["192.168.10.2", "192.168.10.0/24", "fd00::1"])
+def test_addresses_and_networks_may_be_allowed(tmp_path: Path, client: str):
+    line = "heartbeat_timeout_s = 3.0"
+    assert not problems(changed(tmp_path, c=(line, f'{line}\nallowed_clients = ["{client}"]')))
+
+
+def test_check_tells_of_a_recipe_that_no_mating_can_be_planned_for(tmp_path: Path):
+    path = changed(tmp_path, force=("target_force_n = 35.0", "target_force_n = 44.0"))
+    result = CliRunner().invoke(app, ["check", str(path)])
+    assert result.exit_code == 1
+    assert "F528 recipes.0.mating" in result.output
+    assert "no window for the final force" in result.output
+
+
 @pytest.mark.parametrize("content", [b"= broken", b"\xff\xfe", None])
 def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
     path = tmp_path / "cell.toml"

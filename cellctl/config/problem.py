@@ -1,0 +1,15 @@
+"""What a check finds wrong."""
+
+from dataclasses import dataclass
+
+from cellctl.errors.config import ConfigInvalid
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One error in a cell file or a file that it names."""
+
+    key: str
+    value: str
+    allowed: str
+    number: int = ConfigInvalid.number
