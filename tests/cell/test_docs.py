@@ -11,7 +11,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cellctl.cli.app import app as cellctl_app
+from cellctl.cli.commands import app as cellctl_app
 from cellctl.cli.faults import fault_catalogue
 from cellctl.packml.document import state_machine_document
 from cellctl.plc.document import register_map_document

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.calibration.invalidation import require_not_invalidated
 from cellctl.cell.calibrations import CalibrationFolder
-from cellctl.cli.app import app
+from cellctl.cli.commands import app
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import CELL_FILE, renew_calibrations

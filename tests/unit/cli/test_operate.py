@@ -4,6 +4,8 @@ import io
 import json
 import re
 import shlex
+import subprocess
+import sys
 import time
 from collections.abc import Iterator
 from datetime import timedelta
@@ -13,8 +15,9 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
-from cellctl.cli import daemon_client
-from cellctl.cli.app import app
+from cellctl.cli import app as entry
+from cellctl.cli import daemon_client, operator_commands
+from cellctl.cli.commands import app
 from cellctl.cli.status_screen import screen
 from cellctl.clock import utc_now
 from cellctl.daemon.local.messages import (
@@ -235,3 +238,21 @@ def test_what_the_documents_show_runs(
 def test_the_documents_show_every_command() -> None:
     shown = {command.split()[1] for command in documented()}
     assert shown == set(OPERATOR.split("|"))
+
+
+def test_an_abort_waits_for_no_library_that_computes() -> None:
+    """Loading these takes seconds, of an Abort's time and of the daemon's processor."""
+    code = "import sys, cellctl.cli.operator_commands; print(*sys.modules)"
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
+    )
+    loaded = set(done.stdout.split())
+    assert not loaded & {"numpy", "scipy", "cv2", "matplotlib", "sqlalchemy", "transitions"}
+
+
+@pytest.mark.parametrize(
+    ("words", "operators_only"),
+    [(["abort"], True), (["--debug", "alarms"], True), (["runs", "list"], False), ([], False)],
+)
+def test_only_what_is_needed_is_loaded(words: list[str], operators_only: bool) -> None:
+    assert (entry._app_for(words) is operator_commands.app) == operators_only

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli import check
-from cellctl.cli.app import app
+from cellctl.cli.commands import app
 from cellctl.config import load_cell, problems
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 

@@ -1,0 +1,36 @@
+"""The commands to the running daemon. They load nothing that computes: an Abort must be quick."""
+
+import typer
+
+from cellctl.cli import alarms, operate, status
+from cellctl.cli.root import new_app
+
+_PANEL = "Operate the running cell"
+
+
+def add_operator_commands(app: typer.Typer) -> None:
+    """Register them, in the order of the help."""
+    for command in (
+        status.status,
+        operate.clear,
+        operate.reset,
+        operate.start,
+        operate.procedure,
+        operate.hold,
+        operate.unhold,
+        operate.stop,
+        operate.abort,
+        operate.mode,
+    ):
+        app.command(command.__name__, rich_help_panel=_PANEL)(command)
+    app.add_typer(alarms.app, name="alarms", rich_help_panel=_PANEL)
+
+
+app = new_app()
+add_operator_commands(app)
+NAMES = frozenset(
+    [
+        *(str(command.name) for command in app.registered_commands),
+        *(str(group.name) for group in app.registered_groups),
+    ]
+)

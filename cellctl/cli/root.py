@@ -1,0 +1,30 @@
+"""What every form of the command line has in common."""
+
+from typing import Annotated
+
+import typer
+
+from cellctl.cli.help_groups import GroupedCommands
+
+settings = {"debug": False}
+
+
+def new_app() -> typer.Typer:
+    """`cellctl` without commands."""
+    app = typer.Typer(
+        name="cellctl",
+        cls=GroupedCommands,
+        help="Cell controller for vision- and force-guided satellite assembly.",
+        no_args_is_help=True,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    app.callback()(_root)
+    return app
+
+
+def _root(
+    *, debug: Annotated[bool, typer.Option(help="Show the traceback of a fault.")] = False
+) -> None:
+    """Numbered faults end with exit code 1 and one clear line; `--debug` shows where."""
+    settings["debug"] = debug
