@@ -13,7 +13,6 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
-from cellctl import __version__
 from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.calibration.board_transfer import TransferResult
 from cellctl.calibration.checks import require_passed
@@ -28,6 +27,7 @@ from cellctl.errors.calibration import (
     ClockNotTrusted,
 )
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.software import software
 from cellctl.vision.stereo_head import StereoHead
 
 KINDS = ("head_1", "head_2", "base_frame", "board_transfer")
@@ -129,7 +129,7 @@ def write_calibration(
     """
     require_passed(result.checks)
     stored = StoredCalibration(
-        kind, result.to_record(), made, valid_until, f"cellctl {__version__}", serial_number
+        kind, result.to_record(), made, valid_until, software(), serial_number
     )
     write_stored(folder, stored)
     return stored

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from cellctl import __version__
 from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import (
@@ -40,6 +39,7 @@ from cellctl.errors.calibration import (
 from cellctl.force.compensation import Compensation
 from cellctl.force.payload_result import compensation_from_document
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.software import software
 from cellctl.vision.stereo_head import StereoHead
 
 PAYLOAD = "payload"
@@ -159,9 +159,7 @@ class CalibrationFolder:
         """
         now = utc_now()
         plain = json.loads(json.dumps(record))  # as it will be read back
-        stored = StoredCalibration(
-            kind, plain, now, now + valid_for, f"cellctl {__version__}", serial_number
-        )
+        stored = StoredCalibration(kind, plain, now, now + valid_for, software(), serial_number)
         write_stored(self.path, stored)
         if picture_png is not None:
             write_file(self.path / f"{kind}.png", picture_png)

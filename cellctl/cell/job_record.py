@@ -1,20 +1,19 @@
 """The record of one job with contact: opened before anything moves, closed whatever happens."""
 
 import asyncio
-import json
 from collections.abc import Mapping, Sequence
-from hashlib import sha256
 
-from cellctl import __version__, log
+from cellctl import log
 from cellctl.calibration.files import StoredCalibration
 from cellctl.cell.archive import Archive
 from cellctl.cell.devices import Cell
-from cellctl.config.base import Section
+from cellctl.cell.provenance import provenance
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.plc.commands import LineCommand
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
+from cellctl.software import software
 
 _log = log.get(__name__)
 
@@ -28,7 +27,7 @@ class JobRecord:
         """Of the run; 0 until it is open."""
         self._cell = cell
         self._command = command
-        self._opening: asyncio.Task[int] | None = None
+        self._opening: asyncio.Task[None] | None = None
 
     async def open(
         self,
@@ -39,11 +38,12 @@ class JobRecord:
     ) -> int:
         """The number of the run, opened at the first call; ``used`` are identities by kind.
 
-        The row is written by a task of its own: a Stop must not leave one that nobody closes.
+        Cell file, recipe and feature files go into it whole. The row is written by a task of its
+        own: a Stop must not leave one that nobody closes.
         """
         if self._opening is None:
             self._opening = asyncio.create_task(self._write(recipe, mode, stored, used))
-        self.number = await asyncio.shield(self._opening)
+        await asyncio.shield(self._opening)
         return self.number
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:
@@ -51,9 +51,10 @@ class JobRecord:
         if self._opening is None:
             return
         try:
-            self.number = await self._opening
+            await self._opening
         except CellError:
-            return  # there is no record; this is the fault that has ended the run
+            if not self.number:
+                return  # there is no record; this is the fault that has ended the run
         await self.archive.do(
             RunStore.close_run,
             self.number,
@@ -69,25 +70,23 @@ class JobRecord:
         mode: str,
         stored: Sequence[StoredCalibration],
         used: Mapping[str, str],
-    ) -> int:
+    ) -> None:
         for calibration in stored:
             await self.archive.do(RunStore.add_calibration, calibration)
-        return await self.archive.do(
+        cell, command = self._cell, self._command
+        made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
+        self.number = await self.archive.do(
             RunStore.start_run,
-            serial=self._command.serial,
+            serial=command.serial,
             recipe_id=recipe.id,
             recipe_name=recipe.name,
-            recipe_hash=content_hash(recipe),
+            recipe_hash=made_with.recipe_hash,
             mode=mode,
-            software=f"cellctl {__version__}",
-            config_hash=content_hash(self._cell.config),
+            software=await asyncio.to_thread(software),
+            config_hash=made_with.cell_hash,
             calibration_ids=used,
-            simulated=self._cell.config.simulated,
-            operator=self._command.order or self._command.by,
+            simulated=cell.config.simulated,
+            operator=command.order or command.by,
         )
-
-
-def content_hash(section: Section) -> str:
-    """SHA-256 of a part of the cell file, independent of its layout."""
-    text = json.dumps(section.model_dump(mode="json"), sort_keys=True)
-    return sha256(text.encode()).hexdigest()
+        for artefact in made_with.artefacts():
+            await self.archive.do(RunStore.add_artefact, self.number, *artefact)
