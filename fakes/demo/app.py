@@ -2,6 +2,7 @@
 
 import sys
 import time
+import tomllib
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Any
@@ -90,6 +91,7 @@ class Session:
 
     def start_daemon(self, cell: Path) -> None:
         """The daemon, until every device of its cell file is connected."""
+        _as_calibrated(cell)
         store = self._folder / "store"
         self._daemon = self._spawn(
             "daemon", ["-m", "cellctl", "run", str(cell), "--data-dir", str(store)]
@@ -180,3 +182,16 @@ class Session:
 
 if __name__ == "__main__":
     sys.exit(app())
+
+
+def _as_calibrated(cell: Path) -> None:
+    """The devices of a new fake cell are as its hardware seed draws them: what an earlier one
+    suffered, and the daemon held against its calibrations, is undone.
+    """
+    try:
+        written = tomllib.loads(cell.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return  # the daemon says what is wrong with it
+    folder = cell.parent / str(written.get("calibration_dir", "calibration"))
+    for marker in folder.glob("*.invalidated.json"):
+        marker.unlink()

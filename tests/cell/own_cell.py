@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from shutil import copytree
 from typing import Any, Self
 from uuid import uuid4
 
@@ -65,7 +66,8 @@ class OwnCell:
 
     def _write_cell(self) -> None:
         text = _CELL.read_text(encoding="utf-8")
-        text = text.replace('"demo-calibration"', f'"{ROOT}/config/demo-calibration"')
+        copytree(ROOT / "config" / "demo-calibration", self.calibration, dirs_exist_ok=True)
+        text = text.replace('"demo-calibration"', f'"{self.calibration}"')
         text = text.replace('"features/', f'"{ROOT}/config/features/')
         self.cell.write_text(self._renumbered(text), encoding="utf-8")
 
@@ -83,6 +85,11 @@ class OwnCell:
     @property
     def cell(self) -> Path:
         return self.folder / "cell.toml"
+
+    @property
+    def calibration(self) -> Path:
+        """The shipped calibrations, of this cell alone: a fault may invalidate some."""
+        return self.folder / "shipped-calibration"
 
     @property
     def data(self) -> Path:

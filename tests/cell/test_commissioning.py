@@ -21,7 +21,7 @@ def test_latency_and_stiffness_are_measured_and_used(own: OwnCell) -> None:
     folder.mkdir()
     for kind in BY_PRODUCTION:
         shutil.copy(SHIPPED / f"{kind}.json", folder)
-    own.change(f'"{SHIPPED}"', f'"{folder}"')
+    own.change(str(own.calibration), str(folder))
     own.fake().ready()
     daemon = own.daemon()
     daemon.ready()

@@ -157,7 +157,7 @@ def test_store_may_not_be_written(own: OwnCell) -> None:
 def test_calibrations_that_cannot_be_used(visited: OwnCell) -> None:
     """One daemon, three states of the folder: Start is refused each time, with the reason."""
     folder = visited.folder / "calibration"
-    visited.change(f"{ROOT}/config/demo-calibration", str(folder))
+    visited.change(str(visited.calibration), str(folder))
     daemon = visited.daemon()
     daemon.ready()
 
@@ -169,7 +169,7 @@ def test_calibrations_that_cannot_be_used(visited: OwnCell) -> None:
         return "\n".join(str(entry.get("fault")) for entry in daemon.log[known:])
 
     assert "F632" in refused()  # missing
-    copytree(ROOT / "config" / "demo-calibration", folder)
+    copytree(ROOT / "config" / "demo-calibration", folder, dirs_exist_ok=True)
     payload = folder / "payload.json"
     payload.write_text(payload.read_text(encoding="utf-8").replace("1", "2", 1), encoding="utf-8")
     assert "F631" in refused()  # damaged

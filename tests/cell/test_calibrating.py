@@ -1,0 +1,28 @@
+"""Every calibration from nothing, as a line runs them on the fake cell."""
+
+import pytest
+
+from cellctl.cell.calibrations import CalibrationFolder
+from cellctl.steps.preparation import PLANNED
+from fakes.demo.calibration import PROCEDURES
+from tests.cell.own_cell import OwnCell
+
+pytestmark = [pytest.mark.timeout(900), pytest.mark.long]
+
+
+def test_all_procedures_in_their_order_open_the_gate(own: OwnCell) -> None:
+    folder = own.folder / "calibration"
+    own.change(str(own.calibration), str(folder))
+    own.fake().ready()
+    daemon = own.daemon()
+    daemon.ready()
+    with own.control() as control:
+        for procedure in PROCEDURES:
+            procedure.prepare(control)
+            plc = own.plc("--mode", "maintenance", "--recipe", str(procedure.number))
+            assert plc.end(400) == 0, (procedure.title, plc.stdout)
+            assert plc.messages[-1]["result"] == "good", procedure.title
+    calibrations = CalibrationFolder(folder)
+    assert calibrations.fault(PLANNED) is None
+    assert len(calibrations.commissioned(1, PLANNED).records) == 2
+    assert [entry for entry in daemon.log if entry.get("event") == "fault"] == []
