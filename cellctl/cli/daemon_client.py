@@ -36,6 +36,8 @@ HERE = Path("runs/cellctl.sock")
 ANSWER_S = 10.0
 SETTLE_S = 60.0
 _POLL_S = 0.2
+_PATIENT_POLL_S = 1.0
+"""While a whole run is waited for: the daemon has other things to do."""
 
 SocketOption = Annotated[
     Path | None,
@@ -78,7 +80,7 @@ class DaemonClient:
                 return report
             if end_s is not None and now_s() > end_s:
                 raise CommandMissedItsGoal(f"still {report.state} after {timeout_s:g} s")
-            time.sleep(_POLL_S)
+            time.sleep(_PATIENT_POLL_S if end_s is None else _POLL_S)
 
     def _ask(self, request: Request) -> Answer:
         try:

@@ -120,9 +120,11 @@ class Session:
 
     def _stay(self) -> int:
         data = f"--data-dir {self._folder / 'store'}"
+        socket = self._folder / "store" / "cellctl.sock"
         self._console.print(
             f"Modbus TCP on 127.0.0.1:{self._modbus_port}, map in docs/register-map.md\n"
             f"  a line PLC to try:  .venv/bin/python -m fakes plc --port {self._modbus_port}\n"
+            f"  its state:          .venv/bin/cellctl status --watch --socket {socket}\n"
             f"  its runs:           .venv/bin/cellctl runs list {data}\n"
             "Ctrl-C ends both"
         )

@@ -28,6 +28,7 @@ from cellctl.daemon.local.messages import (
     StartCommand,
 )
 from cellctl.daemon.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.daemon.local.socket_file import default_path
 from cellctl.errors import CellError
 from cellctl.errors.local import (
     CommandMissedItsGoal,
@@ -256,3 +257,12 @@ def test_an_abort_waits_for_no_library_that_computes() -> None:
 )
 def test_only_what_is_needed_is_loaded(words: list[str], operators_only: bool) -> None:
     assert (entry._app_for(words) is operator_commands.app) == operators_only
+
+
+def test_the_service_is_found_where_its_unit_puts_the_socket(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    unit = (DOCS.parent / "systemd" / "cellctl.service").read_text(encoding="utf-8")
+    (name,) = re.findall(r"^RuntimeDirectory=(\w+)$", unit, re.MULTILINE)
+    monkeypatch.setenv("RUNTIME_DIRECTORY", f"/run/{name}")
+    assert default_path(Path("elsewhere")) == daemon_client.SERVICE
