@@ -71,6 +71,7 @@ class LocalServer:
         if len(self._clients) >= self._limits.clients:
             next(iter(self._clients)).cancel()  # the oldest: an Abort must always get in
         self._clients[task] = None
+        writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
         try:
             await self._serve(reader, writer, peer_uid(writer.get_extra_info("socket")))
         except (TimeoutError, OSError, asyncio.CancelledError) as error:
