@@ -52,6 +52,11 @@ def fading_wall(rng: np.random.Generator) -> Look:
     return Look("pin", PLATE - 110.0, _bore(12.0, 110.0, 0.3, _phase(rng), fade=1.6))
 
 
+def faint_wall(rng: np.random.Generator) -> Look:
+    """A wall hardly brighter than the floor, mostly on one side."""
+    return Look("pin", PLATE - 45.0, _bore(rng.uniform(0.3, 3.0), 45.0, 0.3, _phase(rng), fade=1.0))
+
+
 def flat_cone(rng: np.random.Generator) -> Look:
     """A countersink drawn as a flat ring darker than the plate, brighter on one side."""
     return _ringed(rng.uniform(1.5, 2.1), 110.0, 0.3, _phase(rng))
@@ -97,6 +102,7 @@ LOOKS: dict[str, Callable[[np.random.Generator], Look]] = {
     "lit wall": lit_wall,
     "bright wall": bright_wall,
     "fading wall": fading_wall,
+    "faint wall": faint_wall,
     "flat cone": flat_cone,
     "bright cone": bright_cone,
     "narrow cone": narrow_cone,

@@ -20,7 +20,7 @@ from cellctl.vision.layout import Assignment, Expectation, Spot, assignments
 from cellctl.vision.locate import LOCATE_REACH_PX, locate_holes, or_missing, sights_of
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
-from cellctl.vision.rim.pair import RimPair, measure_rims
+from cellctl.vision.rim.pair import RimPair, measure_rims, vague
 from cellctl.vision.rim.sight import SIDES
 from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
 from cellctl.vision.stereo import epipolar_distances_px, triangulate
@@ -132,6 +132,7 @@ def _measure(
         if hole.kind != "thread":
             blurs.append((rims.left.blur_px, rims.right.blur_px))
         _check_sharpness(hole, rims)
+        or_missing(hole, vague(rims) or rims)
         measured[hole.name] = _stereo(pair.head, hole, rims)
     result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     check_layout(holes, result.positions_m, tolerance_m)

@@ -15,7 +15,8 @@ from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_OFFSET_GREY, _WALL_FADE_GREY = 40.0, 10.0
+_WALL_GREY = 40.0
+"""How much the light of a wall may differ from an even fade at that rate."""
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
@@ -135,10 +136,9 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
     deep = 1.0 - fade
-    terms = np.stack(
-        [fade, fade * met[0], fade * met[1], fade * depth, deep, deep * met[0], deep * met[1]]
-    )
-    return terms, np.array([np.inf, np.inf, np.inf, _WALL_FADE_GREY, *[_WALL_OFFSET_GREY] * 3])
+    around = np.stack([np.ones_like(depth), met[0], met[1]])
+    terms = np.concatenate([fade * around, fade * depth * around, deep * around])
+    return terms, np.array([*[np.inf] * 3, *[_WALL_GREY] * 6])
 
 
 def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:

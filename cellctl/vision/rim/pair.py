@@ -1,6 +1,5 @@
 """A rim measured in both images, by the simplest model that their grey values do not contradict."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +11,7 @@ from cellctl.vision.rim.fit import Fitted, rated
 from cellctl.vision.rim.result import FLOOR_PX, Rim, refusal, rim_of
 from cellctl.vision.rim.ringed import SIZE_TOLERANCE, Chosen, fit_ringed
 from cellctl.vision.rim.sight import SIDES, Located, Rejection, Sight
-from cellctl.vision.rim.single import fit_alone, rim_alone
+from cellctl.vision.rim.single import Alone, fit_alone, rim_alone
 from cellctl.vision.rim.task import Task, task_for
 from cellctl.vision.stereo import joint_covariance
 
@@ -55,7 +54,7 @@ def measure_rims(
     if isinstance(tasks, Rejection):
         return tasks
     fits = (fit_alone(tasks[0]), fit_alone(tasks[1]))
-    if not _ring_needed(hole, tasks, fits):
+    if not _ring_needed(hole, tasks, (fits[0].fitted, fits[1].fitted)):
         return _apart(tasks, fits)
     ratio, sigma = _ring(hole, tasks)
     ring_px = max(_LEAST_RING_PX, ratio * tasks[0].radius / tasks[0].patch.unit_px)
@@ -108,16 +107,14 @@ def _ring(hole: Hole, tasks: tuple[Task, Task]) -> tuple[float, float]:
     return (float(np.mean(seen)), _SEEN_SHARE * float(np.mean(seen))) if seen else _UNSEEN_CONE
 
 
-def _apart(tasks: tuple[Task, Task], fits: tuple[Fitted, Fitted]) -> RimPair | Rejection:
+def _apart(tasks: tuple[Task, Task], fits: tuple[Alone, Alone]) -> RimPair | Rejection:
     """Fits of each image for itself."""
     rims = []
-    for side, task, fitted in zip(SIDES, tasks, fits, strict=True):
-        rim = rim_alone(task, fitted)
+    for side, task, alone in zip(SIDES, tasks, fits, strict=True):
+        rim = rim_alone(task, alone)
         if isinstance(rim, Rejection):
             return replace(rim, side=side)
         rims.append(rim)
-    if (refused := _vague(rims)) is not None:
-        return refused
     joint = joint_covariance(rims[0].covariance_px2, rims[1].covariance_px2)
     return RimPair(rims[0], rims[1], joint)
 
@@ -135,15 +132,13 @@ def _together(tasks: tuple[Task, Task], chosen: Chosen) -> RimPair | Rejection:
         part = slice(2 * index, 2 * index + 2)
         jacobian[part, part] = task.patch.px_by_point(shape.centre)
         rims.append(rim_of(task, fit, shape, fit.covariance[part, part]))
-    if (refused := _vague(rims)) is not None:
-        return refused
     joint = jacobian @ fit.covariance[:4, :4] @ jacobian.T + np.eye(4) * FLOOR_PX**2
     return RimPair(rims[0], rims[1], joint)
 
 
-def _vague(rims: Sequence[Rim]) -> Rejection | None:
+def vague(rims: RimPair) -> Rejection | None:
     """Refusal of rims whose centre the grey values leave open: no contrast to what lies beside."""
-    for side, rim in zip(SIDES, rims, strict=True):
+    for side, rim in zip(SIDES, (rims.left, rims.right), strict=True):
         sigma_px = float(np.sqrt(np.linalg.eigvalsh(rim.covariance_px2)[-1]))
         if sigma_px > _MAX_SIGMA_PX:
             reason = f"centre known to {sigma_px:.2f} px only, allowed {_MAX_SIGMA_PX:.2f} px"

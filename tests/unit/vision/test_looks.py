@@ -17,6 +17,7 @@ WORST_PX = {
     "lit wall": 0.06,
     "bright wall": 0.12,
     "fading wall": 0.05,
+    "faint wall": 0.06,
     "flat cone": 0.05,
     "bright cone": 0.03,
     "narrow cone": 0.08,
