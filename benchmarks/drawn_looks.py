@@ -102,15 +102,16 @@ LOOKS: dict[str, Callable[[np.random.Generator], Look]] = {
     "lit wall": lit_wall,
     "bright wall": bright_wall,
     "fading wall": fading_wall,
-    "faint wall": faint_wall,
     "flat cone": flat_cone,
     "bright cone": bright_cone,
     "narrow cone": narrow_cone,
     "true cone": true_cone,
-    "broken edge": broken_edge,
     "turns": turns,
     "chamfered turns": chamfered_turns,
+    "broken edge": broken_edge,
+    "faint wall": faint_wall,
 }
+"""A look's place is part of its seed: new ones come last."""
 
 
 def _phase(rng: np.random.Generator) -> float:

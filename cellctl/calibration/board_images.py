@@ -152,6 +152,6 @@ def _check_board(pair: ImagePair, board: CalibrationBoard) -> None:
         return
     columns, rows = seen
     if board.charuco is not None:
-        raise WrongBoard(f"{pair.name} shows a chessboard without markers, not the {board}")
+        raise WrongBoard(f"{pair.name} shows a chessboard without a marker of the {board}")
     if {columns, rows} != {board.columns, board.rows}:
         raise WrongBoard(f"{pair.name} shows {columns} x {rows} inner corners, not the {board}")

@@ -72,7 +72,7 @@ def stereo(
     left: Annotated[str, typer.Option(help="Left images, a pattern such as 'left-*.png'.")],
     right: Annotated[str, typer.Option(help="Right images, in the same order by name.")],
     board: Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")],
-    square_mm: Annotated[float, typer.Option(help="Side of a square.")],
+    square_mm: Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)],
     out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
     charuco: Annotated[
         str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")

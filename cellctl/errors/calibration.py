@@ -156,8 +156,14 @@ class RobotCameraMismatch(CalibrationError):
 
     number = 624
     text = "Robot and camera motions do not fit each other"
-    cause = "Wrong setup (eye-in-hand or eye-to-hand), angle convention or unit, or mixed-up poses."
-    remedy = "Check the setup, the pose convention, mm and degrees, and the order of the poses."
+    cause = (
+        "Wrong setup (eye-in-hand or eye-to-hand), inverted poses, angle convention or unit, or "
+        "mixed-up poses."
+    )
+    remedy = (
+        "Check that poses are base_T_flange and camera_T_board and not their inverses; then the "
+        "setup, the pose convention, mm and degrees, and the order of the poses."
+    )
 
 
 class CalibrationRecordInvalid(CalibrationError):

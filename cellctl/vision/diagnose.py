@@ -9,7 +9,7 @@ from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown, HoleMissing,
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features import Hole
 from cellctl.vision.layout import Expectation, Spot, assignments, holes_without_spot
-from cellctl.vision.search import NEAR, ImagePair, spots_anywhere
+from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere
 
 _TOLERANCE_M = 1.5e-3
 
@@ -21,18 +21,9 @@ def fault_without_layout(
     expectation: Expectation | None,
 ) -> VisionError:
     """The fault to raise when no assignment of ``spots`` fits the drawing."""
-    if len(holes) >= 3:
-        if _fits(replace(pair, left=pair.right, right=pair.left), holes):
-            return CamerasSwapped("the holes are found with the images exchanged")
-        left, right = _turned(pair.left), _turned(pair.right)
-        turned = {
-            "the left image": replace(pair, left=left),
-            "the right image": replace(pair, right=right),
-            "both images": replace(pair, left=left, right=right),
-        }
-        for which, other in turned.items():
-            if _fits(other, holes):
-                return CameraUpsideDown(f"the holes are found with {which} turned by 180°")
+    for reach in (NEAR, WIDE) if len(holes) >= 3 else ():
+        if (fault := _wrong_images(pair, holes, reach)) is not None:
+            return fault
     missing = holes_without_spot(holes, spots, expectation)
     if missing:
         return HoleMissing(f"nothing like {', '.join(missing)} was seen by both cameras")
@@ -44,8 +35,26 @@ def fault_without_layout(
     return HoleMissing(f"no arrangement of the features seen fits the drawing of {names}")
 
 
-def _fits(pair: ImagePair, holes: Sequence[Hole]) -> bool:
-    spots = spots_anywhere(pair, holes, NEAR)
+def _wrong_images(
+    pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]
+) -> VisionError | None:
+    """The fault when the holes are found once the images are exchanged or turned."""
+    if _fits(replace(pair, left=pair.right, right=pair.left), holes, reach):
+        return CamerasSwapped("the holes are found with the images exchanged")
+    left, right = _turned(pair.left), _turned(pair.right)
+    turned = {
+        "the left image": replace(pair, left=left),
+        "the right image": replace(pair, right=right),
+        "both images": replace(pair, left=left, right=right),
+    }
+    for which, other in turned.items():
+        if _fits(other, holes, reach):
+            return CameraUpsideDown(f"the holes are found with {which} turned by 180°")
+    return None
+
+
+def _fits(pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]) -> bool:
+    spots = spots_anywhere(pair, holes, reach)
     return bool(assignments(holes, spots, tolerance_m=_TOLERANCE_M, expectation=None))
 
 

@@ -3,11 +3,13 @@
 import os
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from cellctl.calibration.files import read_stored, write_stored
 from cellctl.records.entries import RunHead
 from cellctl.records.store import RunStore
 from fakes.demo.control import Control
@@ -54,6 +56,17 @@ def heads(store: Path) -> list[RunHead]:
         opened.close()
 
 
+def calibrated_ten_degrees_aside(folder: Path) -> None:
+    """As if the heads had been taught there before the board transfer was made."""
+    stored = read_stored(folder, "board_transfer")
+    joints_deg = {
+        head: [joints[0] - 10.0, *joints[1:]]
+        for head, joints in stored.record["head_joints_deg"].items()
+    }
+    record = {**stored.record, "head_joints_deg": joints_deg}
+    write_stored(folder, replace(stored, record=record))
+
+
 def only_run_is_aborted(own: OwnCell) -> None:
     (head,) = heads(own.data)
     assert head.result == "aborted"
@@ -90,6 +103,7 @@ def test_idle_and_hung_up(visited: OwnCell) -> None:
 def test_while_heads_move(visited: OwnCell) -> None:
     slow, far = "speed_percent = 5", "measuring_joints_deg = [-1"  # ten degrees from where it is
     visited.change("measuring_joints_deg = [-", f"{slow}\n{far}")
+    calibrated_ten_degrees_aside(visited.calibration)
     daemon = visited.daemon()
     daemon.ready()
     plc = visited.plc()

@@ -126,7 +126,7 @@ def test_wrong_board_says_what_is_there() -> None:
 
 
 def test_chessboard_in_place_of_charuco() -> None:
-    with pytest.raises(WrongBoard, match="without markers"):
+    with pytest.raises(WrongBoard, match="without a marker"):
         detect_views(pairs(1), CHARUCO)
 
 

@@ -9,6 +9,7 @@ from benchmarks.drawn_looks import LOOKS
 from benchmarks.drawn_scenes import drawn_scene
 from benchmarks.metrology_figures import HoleErrors
 from benchmarks.metrology_looks import measure
+from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown
 from cellctl.vision.features import Hole
 from cellctl.vision.measure import measure_pair
 
@@ -50,3 +51,12 @@ def test_a_stated_width_of_a_narrow_cone_makes_its_centre_surer() -> None:
     for before, after in list(zip(vague.holes, sure.holes, strict=True))[1:]:
         variance, improved = before.left_covariance_px2, after.left_covariance_px2
         assert np.trace(improved) < 0.97 * np.trace(variance)
+
+
+def test_exchanged_and_turned_images_are_named_far_from_where_the_cameras_converge() -> None:
+    view = drawn_scene("disc", 3).view
+    left, right = view.images
+    with pytest.raises(CamerasSwapped):
+        measure_pair(right, left, view.head, view.holes)
+    with pytest.raises(CameraUpsideDown, match="right image"):
+        measure_pair(left, np.ascontiguousarray(right[::-1, ::-1]), view.head, view.holes)
