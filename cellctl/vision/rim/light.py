@@ -15,8 +15,9 @@ from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_GREY = 40.0
-"""How much the light of a wall may differ from an even fade at that rate."""
+_WALL_GREY, _RELIEF_GREY = 40.0, 10.0
+"""How much the light of a wall may differ from an even fade at that rate; less above turns, which
+are as free themselves."""
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
@@ -80,7 +81,7 @@ def surfaces(
         terms, sigma = _free(_around(points(0, rim), shape))
         found.append(Surface(0, rim, terms, sigma, ring=True))
     if shape.wall_ratio is not None:
-        found.append(Surface(rim, rim + 1, *_wall(points(rim, rim + 1), shape)))
+        found.append(Surface(rim, rim + 1, *_wall(points(rim, rim + 1), shape, light)))
     found.append(Surface(rim, None, *_inside(points(rim, None), shape, light)))
     return found
 
@@ -130,15 +131,18 @@ def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     return terms, np.array([*[np.inf] * 6, _CONE_SLOPE_GREY, _CONE_SLOPE_GREY])
 
 
-def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
+def _wall(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     depth = wall_depth(points, shape)
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
     deep = 1.0 - fade
     around = np.stack([np.ones_like(depth), met[0], met[1]])
-    terms = np.concatenate([fade * around, fade * depth * around, deep * around])
-    return terms, np.array([*[np.inf] * 3, *[_WALL_GREY] * 6])
+    faster, sigma = fade * depth * around, [_WALL_GREY] * 3
+    if light.turns_grey > 0.0:
+        faster, sigma = faster[:1], [_RELIEF_GREY]
+    terms = np.concatenate([fade * around, faster, deep * around])
+    return terms, np.array([*[np.inf] * 3, *sigma, *[_WALL_GREY] * 3])
 
 
 def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:

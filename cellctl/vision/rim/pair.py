@@ -82,6 +82,8 @@ def _tasks(
 def _ring_needed(hole: Hole, tasks: tuple[Task, Task], fits: tuple[Fitted, Fitted]) -> bool:
     """Whether a ring or an uneven inside must be modelled too."""
     if hole.kind == "thread":
+        if not all(fit.converged for fit in fits):
+            return True
         return any(doubt.ring() or doubt.uneven_inside() for doubt in map(Doubt, fits))
     if hole.kind == "countersink":
         narrow = any(task.clear_px < _NARROW_PX for task in tasks)
