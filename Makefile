@@ -55,7 +55,7 @@ imports: venv
 check: lint types imports
 
 test: check
-	$(BIN)/pytest -n 2 -m "not long"
+	$(BIN)/pytest -n 2 -m "not long" --durations 25
 
 test-long: venv
 	$(BIN)/pytest -n 2 -m long

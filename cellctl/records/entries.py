@@ -12,9 +12,6 @@ Six = tuple[float | None, ...]
 PRODUCTION = "production"
 """Mode of the runs that make parts."""
 
-RAW_FOLDER = "raw"
-"""Images of a run as they were taken, to measure them again; the report does not show them."""
-
 
 class RunResult(StrEnum):
     """How a run ended."""
@@ -66,11 +63,6 @@ class Artefact:
     sha256: str
     size: int
     media_type: str
-
-    @property
-    def shown(self) -> bool:
-        """Whether it is a picture for the report."""
-        return self.media_type.startswith("image/") and not self.name.startswith(f"{RAW_FOLDER}/")
 
 
 @dataclass(frozen=True, slots=True)

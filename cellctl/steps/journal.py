@@ -1,6 +1,5 @@
 """Writes down what the steps of one run find out."""
 
-import asyncio
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -15,7 +14,6 @@ from cellctl.clock import utc_now
 from cellctl.force.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.records.entries import RAW_FOLDER
 from cellctl.records.recording import MEDIA_TYPE, encode_curve
 from cellctl.records.store import RunStore
 from cellctl.steps.mating.plan import MatingPlan
@@ -28,8 +26,6 @@ from cellctl.vision.picture import annotate
 from cellctl.workers import VisionWorkers
 
 JPEG_QUALITY = 85
-PNG_COMPRESSION = 1
-"""Noise hardly shrinks further, and the run waits."""
 
 
 @dataclass(slots=True)
@@ -144,32 +140,22 @@ class Journal:
         self._names[kind] += 1
         if self._names[kind] > 1:
             kind = f"{kind}-again-{self._names[kind]}"
-        seen = [
-            (f"{kind}-head-{head}-{side}", image, found, side)
-            for head, (pair, found) in enumerate(
-                zip(measured.pairs, measured.heads, strict=True), start=1
-            )
-            for side, image in (("left", pair.left), ("right", pair.right))
-        ]
-        drawn = await asyncio.gather(
-            *(self.workers.run(draw, image, found, side) for _, image, found, side in seen)
-        )
-        for (name, *_), (picture, raw) in zip(seen, drawn, strict=True):
-            await self._artefact(f"{name}.jpg", picture, "image/jpeg")
-            await self._artefact(f"{RAW_FOLDER}/{name}.png", raw, "image/png")
+        for head, (pair, found) in enumerate(zip(measured.pairs, measured.heads, strict=True), 1):
+            for side, image in (("left", pair.left), ("right", pair.right)):
+                data = await self.workers.run(draw, image, found, side)
+                await self._artefact(f"{kind}-head-{head}-{side}.jpg", data, "image/jpeg")
 
     async def _artefact(self, name: str, data: bytes, media_type: str) -> None:
         await self.archive.do(RunStore.add_artefact, self.run, name, data, media_type)
 
 
-def draw(image: NDArray[np.uint8], found: PairMeasurement, side: str) -> tuple[bytes, bytes]:
-    """Annotated picture as JPEG, and the image itself as PNG; runs in a vision worker."""
+def draw(image: NDArray[np.uint8], found: PairMeasurement, side: str) -> bytes:
+    """Annotated picture as JPEG; runs in a vision worker."""
     import cv2
 
     picture = annotate(image, found, "left" if side == "left" else "right")
-    _, annotated = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-    _, raw = cv2.imencode(".png", image, [cv2.IMWRITE_PNG_COMPRESSION, PNG_COMPRESSION])
-    return bytes(annotated), bytes(raw)
+    _, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return bytes(data)
 
 
 def rms_um(measured: PartMeasurement) -> float:

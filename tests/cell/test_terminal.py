@@ -35,6 +35,7 @@ class Terminal:
         return report
 
 
+@pytest.mark.long
 def test_a_procedure_without_a_line(visited: OwnCell) -> None:
     visited.daemon().ready()
     terminal = Terminal(visited)

@@ -34,7 +34,7 @@ def export_run(store: RunStore, number: int, folder: Path, *, single_file: bool 
         name = _safe(artefact.name)
         if not single_file:
             _write(folder / name, data)
-        if artefact.shown:
+        if artefact.media_type.startswith("image/"):
             inline = f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
             addresses[artefact.name] = inline if single_file else name.as_posix()
         elif artefact.media_type == MEDIA_TYPE:

@@ -78,7 +78,7 @@ class DaemonRig:
         self.bench = bench
         self.contact = Contact()
         self.measurers: list[TruthMeasurer] = []
-        bench.cell.workers.answers["draw"] = lambda *_: (b"picture", b"image")
+        bench.cell.workers.answers["draw"] = lambda *_: b"picture"
         monkeypatch.setattr(preparation, "PartMeasurer", self._measurer)
         monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
         self._store = store
