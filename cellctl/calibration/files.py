@@ -18,11 +18,10 @@ from cellctl.calibration.board_transfer import TransferResult
 from cellctl.calibration.checks import require_passed
 from cellctl.calibration.invalidation import require_not_invalidated
 from cellctl.calibration.stereo_result import StereoResult
-from cellctl.durable import write_durably
+from cellctl.calibration.storing import write_file
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
-    CalibrationNotStored,
     CalibrationRecordInvalid,
     ClockNotTrusted,
 )
@@ -148,14 +147,6 @@ def write_stored(folder: Path, stored: StoredCalibration) -> None:
     }
     text = json.dumps(envelope, indent=1, allow_nan=False) + "\n"
     write_file(folder / f"{stored.kind}.json", text.encode())
-
-
-def write_file(path: Path, data: bytes) -> None:
-    """A file of the folder, durably; raises ``CalibrationNotStored``."""
-    try:
-        write_durably(path, data)
-    except OSError as error:
-        raise CalibrationNotStored(f"{path}: {error.strerror or error}") from error
 
 
 def read_calibration(folder: Path, kind: str) -> StoredCalibration:

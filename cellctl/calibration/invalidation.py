@@ -7,8 +7,9 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
-from cellctl.durable import remove_durably, write_durably
-from cellctl.errors.calibration import CalibrationInvalidated, CalibrationNotStored
+from cellctl.calibration.storing import storing, write_file
+from cellctl.durable import remove_durably
+from cellctl.errors.calibration import CalibrationInvalidated
 
 
 def marker(folder: Path, kind: str) -> Path:
@@ -22,19 +23,14 @@ def mark_invalid(folder: Path, kind: str, reason: str, time: datetime) -> None:
     if path.exists():
         return
     content = {"kind": kind, "time": time.astimezone(UTC).isoformat(), "reason": reason}
-    try:
-        write_durably(path, (json.dumps(content, indent=1) + "\n").encode())
-    except OSError as error:
-        raise CalibrationNotStored(f"{path}: {error.strerror or error}") from error
+    write_file(path, (json.dumps(content, indent=1) + "\n").encode())
 
 
 def lift_invalidation(folder: Path, kind: str) -> None:
     """A new calibration is in place; raises ``CalibrationNotStored``."""
     path = marker(folder, kind)
-    try:
+    with storing(path):
         remove_durably(path)
-    except OSError as error:
-        raise CalibrationNotStored(f"{path}: {error.strerror or error}") from error
 
 
 def require_not_invalidated(folder: Path, kind: str) -> None:

@@ -19,11 +19,11 @@ from cellctl.calibration.files import (
     read_calibration_set,
     read_stored,
     require_clock_after,
-    write_file,
     write_stored,
 )
 from cellctl.calibration.invalidation import lift_invalidation, mark_invalid, marker
 from cellctl.calibration.stereo_result import StereoResult
+from cellctl.calibration.storing import storing, write_file
 from cellctl.cell.commissioned import CONTACT_STIFFNESS, Commissioned, read_commissioned
 from cellctl.clock import utc_now
 from cellctl.config.base import JointsDeg
@@ -32,7 +32,6 @@ from cellctl.errors import CellError
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
-    CalibrationNotStored,
     CalibrationRecordInvalid,
     HeadPoseChanged,
 )
@@ -206,10 +205,8 @@ class CalibrationFolder:
 
     def require_writable(self) -> None:
         """Raise ``CalibrationNotStored`` when no result could be stored here."""
-        try:
+        with storing(self.path):
             require_writable(self.path)
-        except OSError as error:
-            raise CalibrationNotStored(f"{self.path}: {error.strerror or error}") from error
 
     def stored(self) -> list[StoredCalibration]:
         """Every record that production demands; raises when one is missing or damaged."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Collection
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Annotated
 
 import typer
 
@@ -11,6 +11,7 @@ from cellctl.daemon.local.messages import (
     CommandRequest,
     ModeCommand,
     PlainCommand,
+    PlainName,
     ProcedureCommand,
     StartCommand,
     made,
@@ -112,11 +113,7 @@ def mode(
     _tell(client.status())
 
 
-def _plain(
-    socket: SocketOption,
-    name: Literal["clear", "reset", "hold", "unhold", "stop", "abort"],
-    goal: Collection[str],
-) -> None:
+def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None:
     client = DaemonClient(socket)
     client.command(PlainCommand(request=name))
     _tell(_arrived(client.settled(), goal))

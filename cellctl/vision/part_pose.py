@@ -178,11 +178,6 @@ def _pose_covariance(gain: Array, points: _Points, transfer_covariance: Array) -
     return np.asarray(gain @ points.joint_covariance(transfer_covariance) @ gain.T)
 
 
-def _own_covariance(gain: Array, points: _Points) -> Array:
-    blocks = gain.reshape(6, -1, 3)
-    return np.asarray(np.einsum("anj,njk,bnk->ab", blocks, points.covariances_m2, blocks))
-
-
 def _result(
     points: _Points,
     kept: _Points,
@@ -192,21 +187,22 @@ def _result(
     pose: RigidTransform,
     outliers: tuple[str, ...],
 ) -> PartPose:
-    residuals_m = points.measured_m - pose.apply(points.nominal_m)
-    used = np.array([name not in outliers for name in points.names])
     design = by_pose(pose.rotation.apply(kept.nominal_m)).reshape(-1, 6)
-    unexplained = misfit(
-        residuals_m[used], kept.joint_covariance(transfer_covariance), design, gain
-    )
-    covariance = _pose_covariance(gain, kept, transfer_covariance) * unexplained.growth
+    joint = kept.joint_covariance(transfer_covariance)
+    unexplained = misfit(_residuals_m(kept, pose), joint, design, gain)
+    covariance = np.asarray(gain @ joint @ gain.T) * unexplained.growth
     return PartPose(
         UncertainPose(pose, covariance),
-        _own_covariance(gain, kept),
+        _pose_covariance(gain, kept, np.zeros((6, 6))),
         points.names,
-        residuals_m,
+        _residuals_m(points, pose),
         outliers,
         unexplained,
     )
+
+
+def _residuals_m(points: _Points, pose: RigidTransform) -> Array:
+    return np.asarray(points.measured_m - pose.apply(points.nominal_m))
 
 
 def _by_paper(points: _Points, transfer_covariance: Array) -> PartPose:

@@ -18,6 +18,9 @@ ProcedureNumber = Annotated[int, Field(ge=1, le=65535)]
 Serial = Annotated[str, Field(max_length=24)]
 
 
+PlainName = Literal["clear", "reset", "hold", "unhold", "stop", "abort"]
+
+
 class Message(BaseModel):
     """Strict: no unknown keys, no value of another type."""
 
@@ -33,7 +36,7 @@ class StatusRequest(Message):
 class PlainCommand(Message):
     """A PackML command without parameters."""
 
-    request: Literal["clear", "reset", "hold", "unhold", "stop", "abort"]
+    request: PlainName
 
 
 class StartCommand(Message):
