@@ -6,7 +6,7 @@ from typing import Any
 
 from benchmarks.campaign_mating_cell import MatingCell, SensorFault
 from benchmarks.campaign_mating_trial import Hook, Trial, run_trial
-from cellctl.steps.mating.result import MatingPhase, MatingProgress
+from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 
 STIFFNESS_N_M = 3e6
 STOP_LATENCY_MS = 250.0

@@ -19,7 +19,7 @@ from rich.table import Table
 from benchmarks.campaign_mating_cell import THRESHOLD
 from benchmarks.campaign_mating_trial import Trial, draw_trial, run_trial
 from cellctl.geometry.pose import MM, Array
-from cellctl.steps.mating.settings import PinSettings
+from cellctl.processes.deck_to_frame.mating.settings import PinSettings
 from fakes.scenario import Pins
 
 LIMIT_N = 50.0

@@ -13,10 +13,10 @@ from benchmarks.campaign_mating_loop import run_simulated
 from cellctl.errors.base import CellError
 from cellctl.force.approach import series
 from cellctl.force.curve import moving_average
-from cellctl.steps.mate import mate
-from cellctl.steps.mating.plan import MatingPlan, plan_mating
-from cellctl.steps.mating.result import MatingPhase, MatingProgress, MatingResult
-from cellctl.steps.mating.settings import MatingSettings
+from cellctl.processes.deck_to_frame.mating.mate import mate
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
+from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 
 ARM_STIFFNESS_N_M = 1e6
 STIFFEST_CONTACT_N_M = 1e7

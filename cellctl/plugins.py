@@ -6,7 +6,7 @@ from cellctl.errors.config import UnknownDriver
 
 ROBOT = "cellctl.robot"
 STOP_CHANNEL = "cellctl.stop_channel"
-CAMERA = "cellctl.camera"
+STEREO_CAMERA = "cellctl.stereo_camera"
 TARGET_TRACKER = "cellctl.target_tracker"
 FT_SENSOR = "cellctl.ft_sensor"
 

@@ -26,7 +26,7 @@ from cellctl.errors.calibration import (
     ClockNotTrusted,
 )
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.software import software
+from cellctl.version import software
 from cellctl.vision.stereo_head import StereoHead
 
 KINDS = ("head_1", "head_2", "base_frame", "board_transfer")

@@ -7,8 +7,8 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
+from cellctl.atomic_files import remove_durably
 from cellctl.calibration.storing import storing, write_file
-from cellctl.durable import remove_durably
 from cellctl.errors.calibration import CalibrationInvalidated
 
 

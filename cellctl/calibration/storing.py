@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from cellctl.durable import write_durably
+from cellctl.atomic_files import write_durably
 from cellctl.errors.calibration import CalibrationNotStored
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log, plugins
-from cellctl.cell.head_station import HeadStation
-from cellctl.cell.together import together
+from cellctl.cell.gather import together
+from cellctl.cell.stereo_station import HeadStation
 from cellctl.config import CellConfig
 from cellctl.config.devices import Device
 from cellctl.errors import CellError
@@ -36,8 +36,8 @@ class Cell:
         self.main: Robot = _build(plugins.ROBOT, "main", robots.main)
         self.aux_1: Robot = _build(plugins.ROBOT, "aux_1", robots.aux_1)
         self.aux_2: Robot = _build(plugins.ROBOT, "aux_2", robots.aux_2)
-        camera_1: StereoCamera = _build(plugins.CAMERA, "head_1", config.heads.head_1)
-        camera_2: StereoCamera = _build(plugins.CAMERA, "head_2", config.heads.head_2)
+        camera_1: StereoCamera = _build(plugins.STEREO_CAMERA, "head_1", config.heads.head_1)
+        camera_2: StereoCamera = _build(plugins.STEREO_CAMERA, "head_2", config.heads.head_2)
         self.head_1 = HeadStation("head_1", camera_1, self.aux_1, robots.aux_1)
         self.head_2 = HeadStation("head_2", camera_2, self.aux_2, robots.aux_2)
         self.tracker: TargetTracker = _build(plugins.TARGET_TRACKER, "tracker", config.tracker)

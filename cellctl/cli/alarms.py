@@ -5,8 +5,8 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cellctl.api.local.messages import AcknowledgeCommand, made
 from cellctl.cli.daemon_client import DaemonClient, SocketOption
-from cellctl.daemon.local.messages import AcknowledgeCommand, made
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 

@@ -6,9 +6,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cellctl.atomic_files import may_write
 from cellctl.config import load_cell, problems
-from cellctl.durable import may_write
-from cellctl.steps.plan_check import plan_problems
+from cellctl.processes.deck_to_frame.mating.plan_check import plan_problems
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.clock import now_s
-from cellctl.daemon.local.messages import (
+from cellctl.api.local.messages import (
     ANSWER_LIMIT,
     Answer,
     CommandRequest,
@@ -21,7 +20,8 @@ from cellctl.daemon.local.messages import (
     parse_answer,
     to_line,
 )
-from cellctl.daemon.local.report import StatusReport
+from cellctl.api.local.report import StatusReport
+from cellctl.clock import now_s
 from cellctl.errors.local import (
     CommandMissedItsGoal,
     CommandRefused,

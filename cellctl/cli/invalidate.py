@@ -6,11 +6,11 @@ from typing import Annotated
 import typer
 
 from cellctl.calibration.files import StoredCalibration
-from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.store import RunStore
+from cellctl.runtime.calibration_folder import CalibrationFolder
 
 INSTALLED = Path("/etc/cellctl/cell.toml")
 

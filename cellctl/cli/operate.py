@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.daemon_client import DaemonClient, SocketOption
-from cellctl.daemon.local.messages import (
+from cellctl.api.local.messages import (
     CommandRequest,
     ModeCommand,
     PlainCommand,
@@ -16,7 +15,8 @@ from cellctl.daemon.local.messages import (
     StartCommand,
     made,
 )
-from cellctl.daemon.local.report import StatusReport
+from cellctl.api.local.report import StatusReport
+from cellctl.cli.daemon_client import DaemonClient, SocketOption
 from cellctl.errors.local import CommandMissedItsGoal
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")

@@ -6,7 +6,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from cellctl.daemon.local.report import CalibrationReport, FaultReport, StatusReport
+from cellctl.api.local.report import CalibrationReport, FaultReport, StatusReport
 
 _COLOURS = {
     "ABORTED": "bold red",

@@ -7,7 +7,7 @@ from pydantic import Field, field_validator, model_validator
 
 from cellctl.config.base import JointsDeg, Section, WrittenPose
 from cellctl.config.devices import Device, Force, Heads, Robots
-from cellctl.config.recipe import Recipe
+from cellctl.processes.deck_to_frame.recipe import Recipe
 
 
 class Plc(Section):

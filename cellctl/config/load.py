@@ -9,17 +9,17 @@ from pydantic import BaseModel, ValidationError
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import Force
-from cellctl.config.features import feature_problems
-from cellctl.config.problem import Problem
+from cellctl.config.issue import Problem
 from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, MixedSimulation, UnknownDriver
+from cellctl.processes.deck_to_frame.feature_checks import feature_problems
 
 DRIVER_GROUPS = {
     "robots.main": plugins.ROBOT,
     "robots.aux_1": plugins.ROBOT,
     "robots.aux_2": plugins.ROBOT,
-    "heads.head_1": plugins.CAMERA,
-    "heads.head_2": plugins.CAMERA,
+    "heads.head_1": plugins.STEREO_CAMERA,
+    "heads.head_2": plugins.STEREO_CAMERA,
     "tracker": plugins.TARGET_TRACKER,
     "force.sensor": plugins.FT_SENSOR,
     "force.stop_channel": plugins.STOP_CHANNEL,

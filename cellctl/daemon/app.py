@@ -12,18 +12,18 @@ from types import TracebackType
 from typing import Any
 
 from cellctl import log
-from cellctl.cell.archive import Archive
+from cellctl.api.local.api import local_server
+from cellctl.api.modbus.interface import PlcPort
 from cellctl.cell.devices import Cell
+from cellctl.command.arbiter import Line
 from cellctl.config import CellConfig, load_cell
-from cellctl.daemon.line import Line
-from cellctl.daemon.local.api import local_server
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
-from cellctl.daemon.unit import Unit
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
-from cellctl.plc.port import PlcPort
+from cellctl.records.async_store import Archive
 from cellctl.records.store import RunStore
+from cellctl.runtime.unit import Unit
 
 _log = log.get(__name__)
 

@@ -3,14 +3,14 @@
 import asyncio
 from functools import partial
 
+from cellctl.api.modbus.interface import PlcPort
 from cellctl.cell.devices import Cell
-from cellctl.daemon.line import Line
+from cellctl.command.arbiter import Line
+from cellctl.daemon.device_poller import RollCall
 from cellctl.daemon.notify import Watchdog
-from cellctl.daemon.roll_call import RollCall
-from cellctl.daemon.unit import Unit
 from cellctl.errors import CellError
 from cellctl.guard.report import GuardTrip, TripReason
-from cellctl.plc.port import PlcPort
+from cellctl.runtime.unit import Unit
 
 PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25

@@ -6,9 +6,9 @@ from cellctl.calibration.axis_fit import AxisStop
 from cellctl.calibration.base_frame import ArmGeometry, calibrate_base_frame
 from cellctl.calibration.base_frame_picture import base_frame_picture
 from cellctl.geometry.pose import MM, Array
-from cellctl.procedures.beginning import clear_the_cell
+from cellctl.procedures.clear_cell import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.steps.positions import main_to_home
+from cellctl.processes.deck_to_frame.taught_poses import main_to_home
 
 
 async def calibrate_base(context: ProcedureContext) -> ProcedureOutcome:

@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from cellctl.cell.calibrations import CalibrationFolder
 from cellctl.cell.devices import Cell
-from cellctl.cell.job import HeldMeanwhile, SafePoint
-from cellctl.cell.job_record import JobRecord
-from cellctl.cell.progress import ProgressBoard
-from cellctl.config.recipe import Recipe
+from cellctl.processes.deck_to_frame.recipe import Recipe
+from cellctl.runtime.calibration_folder import CalibrationFolder
+from cellctl.runtime.job import HeldMeanwhile, SafePoint
+from cellctl.runtime.job_record import JobRecord
+from cellctl.runtime.progress import ProgressBoard
 
 
 @dataclass(frozen=True, slots=True)

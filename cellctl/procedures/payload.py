@@ -13,7 +13,7 @@ from cellctl.force.poses import PoseRole, plan_identification
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.report import Curve, GuardSample
 from cellctl.interfaces import Robot
-from cellctl.procedures.beginning import clear_the_cell
+from cellctl.procedures.clear_cell import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload_picture import residual_picture
 

@@ -6,8 +6,8 @@ from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.force.commissioning import LatencyEstimate
 from cellctl.geometry.pose import MM, Array
-from cellctl.procedures.contact_stiffness_result import readings_of
-from cellctl.steps.mating.commissioning import ContactStiffness
+from cellctl.processes.deck_to_frame.contact_stiffness_result import readings_of
+from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 
 
 def stiffness_picture(measured: ContactStiffness, checks: Checks) -> bytes:

@@ -7,12 +7,12 @@ from cellctl.calibration.board import BoardView, CalibrationBoard
 from cellctl.calibration.board_images import ImagePair, detect_view
 from cellctl.calibration.stereo import calibrate_stereo
 from cellctl.calibration.stereo_picture import stereo_picture
-from cellctl.cell.head_station import HeadStation
+from cellctl.cell.stereo_station import HeadStation
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.procedures.beginning import clear_the_cell
+from cellctl.procedures.calibration_poses import stereo_views
+from cellctl.procedures.clear_cell import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.procedures.views import stereo_views
 
 WORKING_DISTANCE_M = 0.5
 

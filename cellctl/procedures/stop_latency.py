@@ -9,16 +9,16 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Check, Checks, all_passed, evidence_to_record
-from cellctl.cell.commissioned import STOP_LATENCY
 from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
-from cellctl.procedures.beginning import clear_the_cell
+from cellctl.procedures.clear_cell import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.pictures import latency_picture
+from cellctl.runtime.commissioned import STOP_LATENCY
 
 SPEEDS_M_S = (2e-3, 4e-3, 6e-3, 8e-3)
 REPEATS = 3

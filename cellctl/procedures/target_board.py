@@ -12,12 +12,12 @@ from cellctl.calibration.board_transfer import (
     calibrate_board_transfer,
 )
 from cellctl.calibration.transfer_picture import transfer_picture
-from cellctl.cell.calibrations import HEAD_JOINTS, Placement
-from cellctl.cell.head_station import HeadStation
-from cellctl.cell.together import together
+from cellctl.cell.gather import together
+from cellctl.cell.stereo_station import HeadStation
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.procedures.beginning import clear_the_cell
+from cellctl.procedures.clear_cell import clear_the_cell
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.calibration_folder import HEAD_JOINTS, Placement
 from cellctl.vision.average import average
 from cellctl.vision.features import Hole
 from cellctl.vision.measure import measure_pair

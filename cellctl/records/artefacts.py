@@ -3,7 +3,7 @@
 import hashlib
 from pathlib import Path
 
-from cellctl.durable import write_durably
+from cellctl.atomic_files import write_durably
 from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
 
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cellctl.cell.calibrations import CalibrationFolder
-from cellctl.steps.preparation import PLANNED
+from cellctl.processes.deck_to_frame.preparation import PLANNED
+from cellctl.runtime.calibration_folder import CalibrationFolder
 from fakes.demo.calibration import PROCEDURES
 from tests.cell.own_cell import OwnCell
 

@@ -11,10 +11,10 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from cellctl.api.modbus.document import register_map_document
 from cellctl.cli.commands import app as cellctl_app
 from cellctl.cli.faults import fault_catalogue
 from cellctl.packml.document import state_machine_document
-from cellctl.plc.document import register_map_document
 from fakes.__main__ import app as fakes_app
 from fakes.demo.app import app as demo_app
 from fakes.wire.line_plc import app as plc_app

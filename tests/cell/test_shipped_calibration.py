@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.calibrations import CalibrationFolder, Calibrations
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.runtime.calibration_folder import CalibrationFolder, Calibrations
 from fakes import scenario as scenarios
 from fakes.world.frames import from_written
 from fakes.world.world import World

@@ -11,7 +11,7 @@ import pytest
 from cellctl.records.store import RunStore
 from tests.cell.outside_plc import OutsidePlc
 from tests.cell.own_cell import OwnCell, cellctl
-from tests.unit.daemon.test_line import audit
+from tests.unit.command.test_arbiter import audit
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -18,7 +18,7 @@ from tests.contracts.target_tracker import TargetTrackerContract
 KINDS: dict[str, tuple[type, type]] = {
     "cellctl.robot": (Robot, RobotContract),
     "cellctl.stop_channel": (StopChannel, StopChannelContract),
-    "cellctl.camera": (StereoCamera, StereoCameraContract),
+    "cellctl.stereo_camera": (StereoCamera, StereoCameraContract),
     "cellctl.target_tracker": (TargetTracker, TargetTrackerContract),
     "cellctl.ft_sensor": (FtSensor, FtSensorContract),
 }

@@ -8,10 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from cellctl.api.modbus.commands import LineCommand
+from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.status import CellStatus
+from cellctl.command.tracker import LineCoupling
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError, Reaction
 from cellctl.packml import PackMLMachine, RejectCode, State
-from cellctl.plc import CellStatus, LineCommand, LineCoupling, PlcPort, Result
+from cellctl.packml.result import Result
 
 ROOT = Path(__file__).parents[2]
 Action = Callable[[], Awaitable[None]]

@@ -6,11 +6,15 @@ from collections.abc import AsyncIterator, Callable
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
+from cellctl.api.modbus.commands import LineCommand
+from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.status import CellStatus
+from cellctl.command.tracker import LineCoupling
 from cellctl.config.cell import Plc
 from cellctl.errors.line import LineTaskDied
 from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
-from cellctl.plc import CellStatus, LineCommand, LineCoupling, PlcPort, Result
+from cellctl.packml.result import Result
 
 ACK, DONE, RESULT, REJECT, HEARTBEAT, STATUS, STATE = 7, 8, 9, 10, 11, 5, 2
 LOST = 1 << 5

@@ -6,11 +6,11 @@ from collections.abc import AsyncIterator
 
 import pytest
 
+from cellctl.api.modbus.pdu import Responder
+from cellctl.api.modbus.registers import RegisterFile
+from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.errors.line import CannotListen
 from cellctl.errors.link import PortInUse
-from cellctl.plc.pdu import Responder
-from cellctl.plc.registers import RegisterFile
-from cellctl.plc.server import ModbusServer, ServerLimits
 
 READ_TWO = bytes.fromhex("04 0000 0002")
 

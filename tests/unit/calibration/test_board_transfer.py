@@ -19,13 +19,13 @@ from cellctl.calibration.board_transfer import (
     head_2_in_base,
     head_2_in_head_1,
 )
-from cellctl.calibration.deck_flange import deck_on_flange
 from cellctl.calibration.pose_average import average
 from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.target_tracker import Target
+from cellctl.processes.deck_to_frame.deck_on_flange import deck_on_flange
 
 DISCS = target_board_discs()
 C_T_BASE = pose_from_xyzabc([1300, 30, 6000, 10, 1, 179]).inv()

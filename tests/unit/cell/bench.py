@@ -10,11 +10,10 @@ from typing import Any, cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.api.modbus.commands import LineCommand
 from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
-from cellctl.cell.calibrations import ALL_KINDS, PAYLOAD, CalibrationFolder
 from cellctl.cell.devices import Cell
-from cellctl.cell.head_station import HeadStation
-from cellctl.cell.measuring import HeadGeometry, PartMeasurement
+from cellctl.cell.stereo_station import HeadStation
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors import CellError
@@ -22,7 +21,8 @@ from cellctl.errors.internal import WorkerDied
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
-from cellctl.plc.commands import LineCommand
+from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement
+from cellctl.runtime.calibration_folder import ALL_KINDS, PAYLOAD, CalibrationFolder
 from cellctl.vision.features import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.misfit import Misfit

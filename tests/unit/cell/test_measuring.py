@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.cell import measuring
-from cellctl.cell.measuring import HeadGeometry, PartMeasurement, PartMeasurer
 from cellctl.errors.link import ReplyTimeout, StaleData
 from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import HoleMissing, UncertaintyTooLarge
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame import measuring
+from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement, PartMeasurer
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.misfit import Misfit
 from cellctl.vision.part_pose import PartPose

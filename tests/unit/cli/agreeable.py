@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cellctl.daemon.local.messages import Answer, Refused, Request, Status, StatusRequest, Taken
-from cellctl.daemon.local.report import StatusReport
-from cellctl.daemon.local.server import LocalServer
-from cellctl.daemon.local.socket_file import SocketFile
+from cellctl.api.local.messages import Answer, Refused, Request, Status, StatusRequest, Taken
+from cellctl.api.local.report import StatusReport
+from cellctl.api.local.server import LocalServer
+from cellctl.api.local.socket_file import SocketFile
 
 _LEADS_TO = {
     "clear": "STOPPED",

@@ -15,20 +15,20 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
-from cellctl.cli import app as entry
-from cellctl.cli import daemon_client, operator_commands
-from cellctl.cli.commands import app
-from cellctl.cli.status_screen import screen
-from cellctl.clock import utc_now
-from cellctl.daemon.local.messages import (
+from cellctl.api.local.messages import (
     AcknowledgeCommand,
     ModeCommand,
     ProcedureCommand,
     Refused,
     StartCommand,
 )
-from cellctl.daemon.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
-from cellctl.daemon.local.socket_file import default_path
+from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.api.local.socket_file import default_path
+from cellctl.cli import app as entry
+from cellctl.cli import daemon_client, operator_commands
+from cellctl.cli.commands import app
+from cellctl.cli.status_screen import screen
+from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.local import (
     CommandMissedItsGoal,

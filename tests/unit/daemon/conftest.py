@@ -5,7 +5,7 @@ import pytest
 
 from cellctl.cell import settling
 from tests.unit.cell.bench import Bench, make_bench
-from tests.unit.daemon.rig import DaemonRig
+from tests.unit.daemon_rig import DaemonRig
 
 
 @pytest.fixture

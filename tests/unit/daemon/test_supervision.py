@@ -5,7 +5,7 @@ from typing import cast
 
 import pytest
 
-from cellctl.cell.step import Step
+from cellctl.api.modbus.interface import PlcPort
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkWatch, supervise
 from cellctl.errors.force import GuardDied
@@ -16,8 +16,8 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.plc.port import PlcPort
-from tests.unit.daemon.rig import DaemonRig, PaperPort
+from cellctl.runtime.step import Step
+from tests.unit.daemon_rig import DaemonRig, PaperPort
 
 TRIP = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
 
@@ -173,7 +173,7 @@ async def test_a_defect_in_the_daemon_aborts_the_run_with_901(
 async def test_a_machine_that_hangs_is_given_up(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cellctl.daemon.unit.ABORT_TIMEOUT_S", 0.05)
+    monkeypatch.setattr("cellctl.runtime.unit.ABORT_TIMEOUT_S", 0.05)
     await rig.idle()
     async with rig.unit.machine._turn:
         await asyncio.wait_for(rig.unit.close(Unexpected("defect")), 5)

@@ -17,7 +17,7 @@ from cellctl.force.approach import (
 )
 from cellctl.force.detectors import Cusum
 from cellctl.geometry.pose import pose_from_xyzabc
-from cellctl.vision.compensation import flange_target
+from cellctl.processes.deck_to_frame.pose_correction import flange_target
 
 FIGURES = ApproachFigures(
     stop_latency_s=0.25,

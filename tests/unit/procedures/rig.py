@@ -5,16 +5,16 @@ from typing import Any
 
 from sqlalchemy import select
 
-from cellctl.cell.archive import Archive
-from cellctl.cell.job_record import JobRecord
-from cellctl.cell.progress import Progress, ProgressBoard
 from cellctl.procedures.context import ProcedureContext
-from cellctl.procedures.maintenance import Maintenance
-from cellctl.procedures.numbers import procedure_order
+from cellctl.records.async_store import Archive
 from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
+from cellctl.runtime.job_record import JobRecord
+from cellctl.runtime.maintenance import Maintenance
+from cellctl.runtime.procedure_registry import procedure_order
+from cellctl.runtime.progress import Progress, ProgressBoard
 from tests.unit.cell.bench import Bench, start_command
-from tests.unit.steps.rig import Pauses
+from tests.unit.processes.deck_to_frame.rig import Pauses
 
 
 class ProcedureRig:

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from cellctl.calibration.base_frame import BaseFrameResult
-from cellctl.cell.job import HeldMeanwhile
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
 from cellctl.procedures.base_frame import calibrate_base
+from cellctl.runtime.job import HeldMeanwhile
 from tests.unit.calibration.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
 from tests.unit.procedures.rig import ProcedureRig
 

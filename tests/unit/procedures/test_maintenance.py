@@ -5,14 +5,14 @@ import json
 import pytest
 
 from cellctl.calibration.files import read_calibration
-from cellctl.cell.job import HeldMeanwhile
-from cellctl.cell.step import Step
 from cellctl.errors.calibration import ResultOutOfLimits
-from cellctl.procedures import maintenance
 from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.procedures.maintenance import PROCEDURES
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
+from cellctl.runtime import maintenance
+from cellctl.runtime.job import HeldMeanwhile
+from cellctl.runtime.maintenance import PROCEDURES
+from cellctl.runtime.step import Step
 from tests.unit.procedures.rig import ProcedureRig
 
 CHECKS = [

@@ -1,0 +1,1 @@
+"""How others reach the daemon: the line PLC by Modbus TCP, operators by the local socket."""

@@ -1,0 +1,23 @@
+"""The local API of one daemon, put together."""
+
+from pathlib import Path
+
+from cellctl.api.local.reporter import Reporter
+from cellctl.api.local.server import LocalServer
+from cellctl.api.local.socket_file import SocketFile, default_path
+from cellctl.api.local.terminal import Terminal
+from cellctl.cell.devices import Cell
+from cellctl.command.arbiter import Line
+from cellctl.records.async_store import Archive
+from cellctl.runtime.unit import Unit
+
+
+def local_server(
+    cell: Cell, unit: Unit, line: Line, archive: Archive, data_dir: Path
+) -> LocalServer:
+    """Not yet listening; ``data_dir`` has the socket unless cell file or systemd say otherwise."""
+    settings = cell.config.local_api
+    path = Path(settings.socket) if settings.socket else default_path(data_dir)
+    reporter = Reporter(cell, unit, line, archive)
+    terminal = Terminal(cell.config, unit.machine, line, reporter)
+    return LocalServer(SocketFile(path, settings.group), terminal.handle)

@@ -1,0 +1,152 @@
+"""What goes through the socket: one JSON object a line, a request and then its answer."""
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from cellctl.api.local.report import StatusReport
+from cellctl.errors.local import MessageMalformed
+
+REQUEST_LIMIT = 4096
+"""Bytes of a request with its line end."""
+ANSWER_LIMIT = 1 << 20
+M = TypeVar("M")
+C = TypeVar("C", bound=BaseModel)
+FaultNumber = Annotated[int, Field(ge=1, le=999)]
+ProcedureNumber = Annotated[int, Field(ge=1, le=65535)]
+"""As in the line's register."""
+Serial = Annotated[str, Field(max_length=24)]
+
+
+PlainName = Literal["clear", "reset", "hold", "unhold", "stop", "abort"]
+
+
+class Message(BaseModel):
+    """Strict: no unknown keys, no value of another type."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class StatusRequest(Message):
+    """Asks, changes nothing."""
+
+    request: Literal["status"] = "status"
+
+
+class PlainCommand(Message):
+    """A PackML command without parameters."""
+
+    request: PlainName
+
+
+class StartCommand(Message):
+    """Start in Production."""
+
+    request: Literal["start"] = "start"
+    serial: Serial
+    recipe: Annotated[str, Field(max_length=64)] = ""
+    """Name or number; empty for the only recipe of the cell."""
+    order: Annotated[str, Field(max_length=16)] = ""
+    dry_run: bool = False
+    single_step: bool = False
+
+
+class ProcedureCommand(Message):
+    """Start in Maintenance."""
+
+    request: Literal["procedure"] = "procedure"
+    number: ProcedureNumber
+    serial: Serial
+
+
+class ModeCommand(Message):
+    """Change the unit mode."""
+
+    request: Literal["mode"] = "mode"
+    mode: Literal["production", "maintenance", "manual"]
+
+
+class AcknowledgeCommand(Message):
+    """Acknowledge every alarm with this number."""
+
+    request: Literal["acknowledge"] = "acknowledge"
+    number: FaultNumber
+
+
+CommandRequest = PlainCommand | StartCommand | ProcedureCommand | ModeCommand | AcknowledgeCommand
+Request = StatusRequest | CommandRequest
+
+
+class Taken(Message):
+    """The command is obeyed; where it leads shows in the status."""
+
+    answer: Literal["taken"] = "taken"
+    state: str
+
+
+class Refused(Message):
+    """The command is not obeyed."""
+
+    answer: Literal["refused"] = "refused"
+    code: int
+    """As in the line's ``reject_code``."""
+    text: str
+    state: str
+
+
+class Failed(Message):
+    """The request was not understood, or a fault kept the daemon from answering it."""
+
+    answer: Literal["failed"] = "failed"
+    number: int
+    """Of the fault catalogue."""
+    text: str
+
+
+class Status(Message):
+    """Answer to a status request."""
+
+    answer: Literal["status"] = "status"
+    report: StatusReport
+
+
+Answer = Taken | Refused | Failed | Status
+
+_REQUEST: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="request")])
+_ANSWER: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="answer")])
+
+
+def parse_request(line: bytes) -> Request:
+    """A request from its line; raises ``MessageMalformed``."""
+    return _parse(_REQUEST, line)
+
+
+def parse_answer(line: bytes) -> Answer:
+    """An answer from its line; raises ``MessageMalformed``."""
+    return _parse(_ANSWER, line)
+
+
+def made(kind: type[C], **values: object) -> C:
+    """A message with values that a user typed; raises ``MessageMalformed``."""
+    try:
+        return kind.model_validate(values)
+    except ValidationError as error:
+        raise _malformed(error) from error
+
+
+def to_line(message: Message) -> bytes:
+    """The line of a message."""
+    return message.model_dump_json().encode() + b"\n"
+
+
+def _parse(adapter: TypeAdapter[M], line: bytes) -> M:
+    try:
+        return adapter.validate_json(line)
+    except ValidationError as error:
+        raise _malformed(error) from error
+
+
+def _malformed(error: ValidationError) -> MessageMalformed:
+    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+    place = ".".join(str(part) for part in first["loc"])
+    return MessageMalformed(f"{place}: {first['msg']}" if place else first["msg"])

@@ -1,0 +1,134 @@
+"""The cell's status in words, for operators; changes nothing and moves nothing."""
+
+import asyncio
+from datetime import datetime
+from pathlib import Path
+
+from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.calibration.files import StoredCalibration, read_calibration
+from cellctl.cell.devices import Cell
+from cellctl.clock import utc_now
+from cellctl.command.arbiter import Line
+from cellctl.command.authority import line_in_control
+from cellctl.errors import CellError, catalogue
+from cellctl.records.async_store import Archive
+from cellctl.records.store import RunStore
+from cellctl.runtime.calibration_folder import ALL_KINDS
+from cellctl.runtime.step import Step
+from cellctl.runtime.unit import Unit
+
+
+class Reporter:
+    """Reads machine, devices and records; files and store in threads of their own."""
+
+    def __init__(self, cell: Cell, unit: Unit, line: Line, archive: Archive) -> None:
+        self._cell = cell
+        self._unit = unit
+        self._line = line
+        self._archive = archive
+
+    async def report(self) -> StatusReport:
+        """Everything at this moment; what cannot be read is said, not raised."""
+        calibrations = await asyncio.to_thread(self._calibrations)
+        texts, last_run, records = await self._from_store()
+        unit, machine = self._unit, self._unit.machine
+        shown = unit.view.snapshot(unit.work.shown, unit.work.result, unit.parts)
+        trip = self._cell.guard.trip
+        alive = self._line.alive
+        return StatusReport(
+            cell=self._cell.config.name,
+            simulated=self._cell.config.simulated,
+            state=machine.state.name,
+            state_requested=machine.state_requested.name,
+            mode=machine.mode.name,
+            control="line" if line_in_control(machine.mode, line_alive=alive) else "shared",
+            line_alive=alive,
+            connected=unit.live,
+            ready=shown.ready,
+            hold_requested=shown.hold_requested,
+            step=Step(shown.step).label if shown.step else "",
+            iteration=shown.iteration,
+            faults=tuple(_fault(fault) for fault in machine.faults),
+            alarms=tuple(_alarm(n, texts.get(n, "")) for n in unit.alarms.numbers),
+            guard_trip=f"{trip.reason.value}: {trip.detail}" if trip is not None else "",
+            links=self._links(),
+            calibrations=calibrations,
+            result=unit.work.result.name.lower(),
+            last_run=last_run,
+            good_parts=unit.parts,
+            records=records,
+        )
+
+    async def _from_store(self) -> tuple[dict[int, str], RunReport | None, str]:
+        """Texts of the alarms, the newest run, and what is wrong with the store."""
+        try:
+            alarms = await self._archive.do(RunStore.active_alarms)
+            heads = await self._archive.do(RunStore.runs, 1)
+        except CellError as error:
+            return {}, None, str(error)
+        runs = [
+            RunReport(
+                number=head.number,
+                serial=head.serial,
+                recipe=head.recipe_name,
+                mode=head.mode,
+                started=head.started,
+                result=head.result or "",
+            )
+            for head in heads
+        ]
+        texts = {alarm.number: alarm.text for alarm in alarms}
+        return texts, next(iter(runs), None), str(self._archive.fault or "")
+
+    def _links(self) -> dict[str, str]:
+        found = {}
+        for name, check in self._cell.health_checks().items():
+            found[name] = ""
+            try:
+                check()
+            except CellError as error:
+                found[name] = str(error)
+        return found
+
+    def _calibrations(self) -> tuple[CalibrationReport, ...]:
+        folder, now = self._unit.desk.calibrations.path, utc_now()
+        found = []
+        for kind in _kinds(folder):
+            try:
+                stored = read_calibration(folder, kind)
+            except CellError as error:
+                found.append(CalibrationReport(kind=kind, problem=str(error)))
+                continue
+            problem = _problem(stored, now)
+            found.append(
+                CalibrationReport(
+                    kind=kind, made=stored.made, valid_until=stored.valid_until, problem=problem
+                )
+            )
+        return tuple(found)
+
+
+def _kinds(folder: Path) -> tuple[str, ...]:
+    """What production demands, then whatever else there is; a marker's name has a dot in it."""
+    found = {path.stem for path in folder.glob("*.json") if "." not in path.stem}
+    return (*ALL_KINDS, *sorted(found.difference(ALL_KINDS)))
+
+
+def _problem(stored: StoredCalibration, now: datetime) -> str:
+    if not (stored.passed or stored.record.get("accepted") is True):
+        return "did not pass"
+    return "" if stored.valid_until > now else "expired"
+
+
+def _fault(error: CellError) -> FaultReport:
+    return FaultReport(number=error.number, text=str(error), cause=error.cause, remedy=error.remedy)
+
+
+def _alarm(number: int, text: str) -> FaultReport:
+    known = next((fault for fault in catalogue() if fault.number == number), CellError)
+    return FaultReport(
+        number=number,
+        text=text or f"F{number:03d} {known.text}",
+        cause=known.cause,
+        remedy=known.remedy,
+    )

@@ -1,0 +1,134 @@
+"""The local API's wire: connections, lines, limits; knows nothing of the cell."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+
+from cellctl import log
+from cellctl.api.local.messages import (
+    REQUEST_LIMIT,
+    Answer,
+    Failed,
+    Request,
+    parse_request,
+    to_line,
+)
+from cellctl.api.local.socket_file import SocketFile
+from cellctl.api.local.users import peer_uid
+from cellctl.errors import CellError
+from cellctl.errors.internal import Unexpected
+from cellctl.errors.local import MessageMalformed
+
+Handle = Callable[[Request, int], Awaitable[Answer]]
+"""Gets the request and the number of the user who asks."""
+
+_log = log.get(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class LocalLimits:
+    """What a connection may cost."""
+
+    clients: int = 16
+    idle_s: float = 30.0
+    request_s: float = 3.0
+    """From the first byte of a request to its last, and for an answer to be taken."""
+
+
+class LocalServer:
+    """Answers the requests of each connection one by one."""
+
+    def __init__(self, file: SocketFile, handle: Handle, limits: LocalLimits | None = None) -> None:
+        self._file = file
+        self._handle = handle
+        self._limits = limits or LocalLimits()
+        self._server: asyncio.Server | None = None
+        self._clients: dict[asyncio.Task[None], None] = {}
+        self._handling: set[asyncio.Task[Answer]] = set()
+
+    async def start(self) -> None:
+        """Listen; raises ``LocalApiInUse`` or ``CannotServeLocally``."""
+        listener = self._file.open()
+        self._server = await asyncio.start_unix_server(
+            self._connected, sock=listener, limit=REQUEST_LIMIT
+        )
+        _log.info("local API", socket=str(self._file.path))
+
+    async def stop(self) -> None:
+        """Stop listening, drop all clients, let what was begun end. Idempotent."""
+        if self._server is not None:
+            self._server.close()
+            self._server = None
+            self._file.remove()
+        clients = tuple(self._clients)
+        for client in clients:
+            client.cancel()
+        await asyncio.gather(*clients, *self._handling, return_exceptions=True)
+
+    async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        task = asyncio.current_task()
+        assert task is not None
+        if len(self._clients) >= self._limits.clients:
+            next(iter(self._clients)).cancel()  # the oldest: an Abort must always get in
+        self._clients[task] = None
+        writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
+        try:
+            await self._serve(reader, writer, peer_uid(writer.get_extra_info("socket")))
+        except (TimeoutError, OSError, asyncio.CancelledError) as error:
+            _log.info("local client dropped", reason=type(error).__name__)
+        finally:
+            self._clients.pop(task, None)
+            writer.transport.abort()
+
+    async def _serve(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, uid: int
+    ) -> None:
+        goes_on = True
+        while goes_on:
+            try:
+                line = await self._line(reader)
+                answer = await self._answer(line, uid)
+            except EOFError:
+                return
+            except asyncio.LimitOverrunError:
+                fault = MessageMalformed(f"longer than {REQUEST_LIMIT} bytes")
+                answer = Failed(number=fault.number, text=str(fault))
+                goes_on = False  # where the next request begins cannot be told
+            writer.write(to_line(answer))
+            async with asyncio.timeout(self._limits.request_s):
+                await writer.drain()
+
+    async def _line(self, reader: asyncio.StreamReader) -> bytes:
+        """A line; raises ``EOFError``, ``TimeoutError`` or ``LimitOverrunError``."""
+        async with asyncio.timeout(self._limits.idle_s):
+            first = await reader.readexactly(1)
+        if first == b"\n":
+            return b""
+        async with asyncio.timeout(self._limits.request_s):
+            return first + await reader.readuntil()
+
+    async def _answer(self, line: bytes, uid: int) -> Answer:
+        """Whoever asked may vanish: what was begun is carried out all the same."""
+        try:
+            request = parse_request(line)
+        except MessageMalformed as fault:
+            _log.warning("local request malformed", uid=uid, fault=str(fault))
+            return Failed(number=fault.number, text=str(fault))
+        task = asyncio.create_task(_run(self._handle, request, uid))
+        self._handling.add(task)
+        task.add_done_callback(self._handling.discard)
+        await asyncio.wait({task})
+        error = task.exception()
+        if error is None:
+            return task.result()
+        _log.error("local request failed", uid=uid, fault=str(error), exc_info=error)
+        known = error if isinstance(error, CellError) else _unexpected(error)
+        return Failed(number=known.number, text=str(known))
+
+
+def _unexpected(error: BaseException) -> CellError:
+    return Unexpected(f"{type(error).__name__} in the local API: {error}")
+
+
+async def _run(handle: Handle, request: Request, uid: int) -> Answer:
+    return await handle(request, uid)

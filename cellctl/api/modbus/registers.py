@@ -1,0 +1,64 @@
+"""The two blocks as a Modbus client may touch them, whatever the transport."""
+
+from collections.abc import Callable, Sequence
+
+from cellctl.api.modbus.register_map import HOLDING, HOLDING_SIZE, INPUT_SIZE, item
+
+_OWNER = {address: item.addresses for item in HOLDING for address in item.addresses}
+_COMMIT = item("cmd_seq").address
+_HEARTBEAT = item("plc_heartbeat").address
+
+
+class AddressRefused(Exception):  # an answer to the client, not a fault of the cell
+    """Outside the map, or part of an item only: Modbus exception 02."""
+
+
+class RegisterFile:
+    """Holding registers of the line and input registers of the cell.
+
+    Reads and writes do not await, so a request is never torn by another.
+    """
+
+    def __init__(
+        self, *, on_commit: Callable[[], None], on_heartbeat: Callable[[int], None]
+    ) -> None:
+        self._holding = [0] * HOLDING_SIZE
+        self._input: tuple[int, ...] = (0,) * INPUT_SIZE
+        self._on_commit = on_commit
+        self._on_heartbeat = on_heartbeat
+
+    @property
+    def holding(self) -> tuple[int, ...]:
+        """A copy of the holding block."""
+        return tuple(self._holding)
+
+    def publish(self, block: tuple[int, ...]) -> None:
+        """Replace all input registers at once."""
+        if len(block) != INPUT_SIZE:
+            raise ValueError(f"the input block has {INPUT_SIZE} registers, got {len(block)}")
+        self._input = block
+
+    def read_input(self, address: int, count: int) -> tuple[int, ...]:
+        """FC4. Spare registers read 0."""
+        if address + count > INPUT_SIZE:
+            raise AddressRefused
+        return self._input[address : address + count]
+
+    def read_holding(self, address: int, count: int) -> tuple[int, ...]:
+        """FC3."""
+        if any(register not in _OWNER for register in range(address, address + count)):
+            raise AddressRefused
+        return tuple(self._holding[address : address + count])
+
+    def write_holding(self, address: int, values: Sequence[int]) -> None:
+        """FC6, 16, 22, 23: all or nothing; an item is written whole or not at all."""
+        written = range(address, address + len(values))
+        for register in written:
+            owner = _OWNER.get(register)
+            if owner is None or owner[0] not in written or owner[-1] not in written:
+                raise AddressRefused
+        self._holding[address : address + len(values)] = values
+        if _HEARTBEAT in written:
+            self._on_heartbeat(self._holding[_HEARTBEAT])
+        if _COMMIT in written:
+            self._on_commit()

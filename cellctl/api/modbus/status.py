@@ -1,0 +1,128 @@
+"""What the daemon tells the line, and how it becomes registers."""
+
+from dataclasses import dataclass
+
+from cellctl.api.modbus.image import Value, millionths, thousandths
+from cellctl.api.modbus.register_map import MAP_VERSION, STATUS_BITS
+from cellctl.packml.mode import Mode
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+
+NO_VALUE = float("nan")
+_BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}
+_AXES = ("x", "y", "z", "rx", "ry", "rz")
+_WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
+_VALIDITY = ("stereo", "base_frame", "board_transfer", "payload")
+_U16_MAX = 0xFFFF
+
+
+@dataclass(frozen=True, slots=True)
+class CellStatus:
+    """A snapshot in the line's units (mm, degrees, N, N·m, h); NaN is a value that is missing."""
+
+    state: State = State.ABORTED
+    state_requested: State = State.ABORTED
+    mode: Mode = Mode.PRODUCTION
+    step: int = 0
+    iteration: int = 0
+    ready: bool = False
+    error: bool = False
+    warning: bool = False
+    calibration_ok: bool = False
+    simulation: bool = False
+    manual: bool = False
+    force_guard_tripped: bool = False
+    hold_requested: bool = False
+    alarms: tuple[int, ...] = ()
+    """Numbers of all active alarms, the oldest first."""
+    first_out_alarm: int = 0
+    recipe_active: int = 0
+    cycle_counter: int = 0
+    run_number: int = 0
+    run_result: Result = Result.NONE
+    validity_h: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """Heads, base frame, board transfer, payload."""
+    error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
+    """x, y, z in mm, rx, ry, rz in degrees."""
+    force_peaks: tuple[float, ...] = (NO_VALUE,) * 6
+    """Fx, Fy, Fz in N, Mx, My, Mz in N·m."""
+    force_z_n: float = NO_VALUE
+    force_limit_n: float = NO_VALUE
+    serial: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Handshake:
+    """The port's own part of the block."""
+
+    ack_seq: int = 0
+    done_seq: int = 0
+    result: int = 0
+    reject_code: int = 0
+    cell_heartbeat: int = 0
+    heartbeat_lost: bool = False
+
+
+def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Value]:
+    """Every item of the input block by name."""
+    alarms = (*status.alarms[:8], *(0,) * 8)[:8]
+    return {
+        "seq_head": seq,
+        "seq_tail": seq,
+        "map_version": MAP_VERSION,
+        "state": status.state,
+        "mode": status.mode,
+        "state_requested": status.state_requested,
+        "status": _status_word(status, handshake),
+        "step": status.step,
+        "iteration": status.iteration,
+        "ack_seq": handshake.ack_seq,
+        "done_seq": handshake.done_seq,
+        "result": handshake.result,
+        "reject_code": handshake.reject_code,
+        "cell_heartbeat": handshake.cell_heartbeat,
+        "alarm_count": len(status.alarms),
+        "first_out_alarm": status.first_out_alarm,
+        **{f"alarm_{index + 1}": number for index, number in enumerate(alarms)},
+        "recipe_active": status.recipe_active,
+        "cycle_counter": status.cycle_counter,
+        "run_number": status.run_number,
+        "run_result": status.run_result,
+        **{
+            f"validity_{name}": max(0, min(_U16_MAX, int(hours)))
+            for name, hours in zip(_VALIDITY, status.validity_h, strict=True)
+        },
+        **{
+            f"pose_error_{axis}": (thousandths if index < 3 else millionths)(value)
+            for index, (axis, value) in enumerate(zip(_AXES, status.error_mm_deg, strict=True))
+        },
+        **{
+            f"peak_{axis}": thousandths(value)
+            for axis, value in zip(_WRENCH, status.force_peaks, strict=True)
+        },
+        "force_z": thousandths(status.force_z_n),
+        "force_limit": thousandths(status.force_limit_n),
+        "serial_echo": status.serial,
+        "test_u32": 0x12345678,
+        "test_f32": 123.456,
+        "test_text": "ABCDEF",
+    }
+
+
+def _status_word(status: CellStatus, handshake: Handshake) -> int:
+    ended = handshake.ack_seq == handshake.done_seq
+    flags = {
+        "ready": status.ready,
+        "busy": not ended,
+        "done": ended and handshake.ack_seq != 0,
+        "error": status.error,
+        "warning": status.warning,
+        "heartbeat_lost": handshake.heartbeat_lost,
+        "calibration_ok": status.calibration_ok,
+        "simulation": status.simulation,
+        "manual": status.manual,
+        "force_guard_tripped": status.force_guard_tripped,
+        "state_change_in_process": status.state is not status.state_requested,
+        "hold_requested": status.hold_requested,
+    }
+    return sum(_BIT[name] for name, on in flags.items() if on)

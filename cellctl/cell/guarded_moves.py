@@ -1,0 +1,122 @@
+"""Moves of the main robot under the eyes of the force guard: a trip ends the move."""
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from typing import Any
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.devices import Cell
+from cellctl.cell.guard_limits import Sensing, guard_limits
+from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.settling import settle
+from cellctl.errors.base import CellError
+from cellctl.errors.robot import MotionAborted, NotRearmed
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.guard.report import GuardTrip
+from cellctl.interfaces import Robot, RobotState
+
+POLL_S = 0.01
+REPORT_WAIT_S = 0.5
+"""How long the guard's report of a trip may lag behind the robot's stop."""
+TARE_S = 0.5
+
+Motion = Coroutine[Any, Any, RobotState]
+Go = Callable[[Motion], Awaitable[None]]
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """By how much each component of the wrench in the deck frame may change, either way."""
+
+    force_n: float
+    moment_n_m: float
+
+
+@asynccontextmanager
+async def watched(cell: Cell, flange_T_deck: RigidTransform, most: Change) -> AsyncIterator[Go]:
+    """Take what is felt at standstill as zero; inside, give each move to what is yielded.
+
+    The limits are on the *change* since then: wherever the arm stands, contact or not, a move that
+    is free changes nothing but inertia. A trip stops the robot and raises its fault, and the guard
+    stays latched. Raises ``NotSettled``, ``GuardRefused`` and what the moves raise.
+    """
+    guard, config = cell.guard, cell.config
+    flange_T_sensor = pose_from_xyzabc(config.robots.main.flange_T_sensor)
+
+    async def go(motion: Motion) -> None:
+        trip = await guarded(cell.main, guard, motion)
+        if trip is not None:
+            raise trip.fault()
+
+    await guard.disarm()
+    await guard.set_deck_frame(flange_T_sensor.inv() * flange_T_deck)
+    await settle(guard)
+    await guard.tare(TARE_S)
+    force_n, moment_n_m = most.force_n, most.moment_n_m
+    filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
+    cell.awaits_trips = True
+    try:
+        await guard.arm(guard_limits(filtered, Sensing.of(config.force)))
+        yield go
+        await guard.disarm()
+    finally:
+        cell.awaits_trips = False
+
+
+async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip | None:
+    """Run a robot move; None at its target, the trip when the guard stopped it.
+
+    The guard has sent its own stop before it reports; the stop sent here is the second one and
+    waits for standstill. Faults of the robot and its link are raised as they are.
+    """
+    moving = asyncio.create_task(motion)
+    watching = asyncio.create_task(_tripped(guard))
+    try:
+        await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
+        if watching.done():
+            await _second_stop(robot, guard)
+        return await _outcome(robot, guard, moving)
+    finally:
+        watching.cancel()
+        moving.cancel()
+        await asyncio.gather(moving, watching, return_exceptions=True)
+
+
+async def _outcome(
+    robot: Robot, guard: GuardPort, moving: asyncio.Task[RobotState]
+) -> GuardTrip | None:
+    try:
+        await moving
+    except (MotionAborted, NotRearmed):
+        trip = await _late_trip(guard)
+        if trip is None:
+            raise
+        await _second_stop(robot, guard)
+        return trip
+    return guard.trip
+
+
+async def _second_stop(robot: Robot, guard: GuardPort) -> None:
+    """The daemon's own stop; a robot that does not confirm it must not hide the trip."""
+    try:
+        await robot.stop()
+    except CellError as fault:
+        fault.add_note(f"the guard had stopped the robot: {guard.trip}")
+        raise
+
+
+async def _late_trip(guard: GuardPort) -> GuardTrip | None:
+    try:
+        async with asyncio.timeout(REPORT_WAIT_S):
+            await _tripped(guard)
+    except TimeoutError:
+        return None
+    return guard.trip
+
+
+async def _tripped(guard: GuardPort) -> None:
+    while guard.trip is None:  # noqa: ASYNC110 - set by another process
+        await asyncio.sleep(POLL_S)

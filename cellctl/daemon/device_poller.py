@@ -1,0 +1,39 @@
+"""Who has no life of its own is asked while the unit rests: heads, tracker, vision workers."""
+
+from cellctl.cell.devices import Cell
+from cellctl.errors.internal import WorkerDied
+from cellctl.errors.link import DeviceAway
+from cellctl.runtime.unit import AT_REST, Unit
+
+
+class RollCall:
+    """Reports each of them once when it stops answering. In a run the steps find out themselves."""
+
+    def __init__(self, cell: Cell, unit: Unit) -> None:
+        self._cell = cell
+        self._unit = unit
+        self._away: set[str] = set()
+        self._worker_died = False
+
+    async def ask(self) -> None:
+        """One round; a head that is away refuses Start, a dead worker aborts."""
+        if not (self._unit.live and self._unit.machine.state in AT_REST):
+            return
+        await self._ask_workers()
+        await self._cell.ask_heads_and_tracker()
+        unanswered = self._cell.unanswered
+        for name, fault in unanswered.items():
+            if name not in self._away:
+                await self._unit.machine.fail(DeviceAway(f"{name}: {fault}"))
+        self._away = set(unanswered)
+
+    async def _ask_workers(self) -> None:
+        known = self._worker_died
+        try:
+            await self._cell.workers.check()
+        except WorkerDied as fault:
+            self._worker_died = True
+            if not known:
+                await self._unit.machine.fail(fault)
+        else:
+            self._worker_died = False

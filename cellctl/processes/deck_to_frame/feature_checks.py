@@ -1,0 +1,41 @@
+"""Can a part be measured with the feature files that the recipes name?"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import Problem
+from cellctl.errors.vision import FeatureFileInvalid
+from cellctl.vision.features import FeatureFile, read_features
+from cellctl.vision.registration import on_a_line
+
+
+def feature_problems(cell: CellConfig, folder: Path) -> Iterator[Problem]:
+    """Every feature file that cannot be read, or from which no pose would follow."""
+    for index, recipe in enumerate(cell.recipes):
+        for key in ("frame_features", "deck_features"):
+            name = getattr(recipe, key)
+            fault = _fault(folder / name)
+            if fault:
+                number = FeatureFileInvalid.number
+                yield Problem(f"recipes.{index}.{key}", repr(name), fault, number)
+
+
+def _fault(path: Path) -> str:
+    try:
+        features = read_features(path)
+    except FeatureFileInvalid as error:
+        return error.detail
+    return _unmeasurable(features)
+
+
+def _unmeasurable(features: FeatureFile) -> str:
+    for key, names in (("head_1", features.head_1), ("head_2", features.head_2)):
+        if not names:
+            return f"{key} must list the holes that this head sees"
+    seen = {hole.name: hole for head in (1, 2) for hole in features.seen_by(head)}
+    if on_a_line(np.array([hole.position_m for hole in seen.values()])):
+        return "head_1 and head_2 together need three holes that are not on a line"
+    return ""

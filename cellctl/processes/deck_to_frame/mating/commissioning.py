@@ -1,0 +1,50 @@
+"""Contact stiffness of the cell, measured by touching the frame a few times."""
+
+from dataclasses import dataclass
+
+from cellctl.cell.guard_port import GuardPort
+from cellctl.errors.force import CommissioningFailed, FalseSeat
+from cellctl.force.commissioning import StiffnessEstimate, joint_stiffness
+from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.mating.attempt import Report
+from cellctl.processes.deck_to_frame.mating.mate import mate
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult
+
+
+@dataclass(frozen=True, slots=True)
+class ContactStiffness:
+    """The measurement with its data."""
+
+    estimate: StiffnessEstimate
+    """Arm and contact in series, of all contacts together."""
+    single: tuple[StiffnessEstimate, ...]
+    """Of each contact."""
+    contacts: tuple[MatingResult, ...]
+
+
+async def measure_contact_stiffness(
+    robot: Robot, guard: GuardPort, plan: MatingPlan, report: Report, contacts: int = 3
+) -> ContactStiffness:
+    """Arm and contact in series from ``contacts`` matings with the same plan.
+
+    The plan must be made with an upper bound (the arm's own stiffness will do: a series is never
+    stiffer). The arm stands at the stand-off before and after. Raises ``CommissioningFailed``,
+    ``FalseSeat`` and what ``mate`` raises.
+    """
+    results, estimates = [], []
+    for _ in range(contacts):
+        result = await mate(robot, guard, plan, report)
+        if result.outcome is not MatingOutcome.SEATED:
+            gap_mm = result.verdict.gap_m * 1e3
+            raise FalseSeat(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)
+        await robot.move_linear(
+            plan.base_T_flange,
+            speed_m_s=plan.settings.back_off_speed_m_s,
+            acceleration_m_s2=plan.settings.acceleration_m_s2,
+        )
+        if result.stiffness is None:
+            raise CommissioningFailed("a contact gave too few readings for a stiffness")
+        results.append(result)
+        estimates.append(result.stiffness)
+    return ContactStiffness(joint_stiffness(estimates), tuple(estimates), tuple(results))

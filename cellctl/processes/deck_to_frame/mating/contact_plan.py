@@ -1,0 +1,89 @@
+"""The plan of one contact from recipe, commissioning and what was measured."""
+
+import math
+
+from cellctl.cell.readiness import require_full_speed
+from cellctl.config.cell import CellConfig
+from cellctl.config.sensor import sensor_rate_hz
+from cellctl.force.approach import planned_stiffness
+from cellctl.force.detectors import Cusum, touch_threshold_n
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
+from cellctl.processes.deck_to_frame.measuring import require_unmoved
+from cellctl.processes.deck_to_frame.recipe import Pins, Recipe
+from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.runtime.commissioned import Commissioned
+
+ABORT_MARGIN_N = 5.0
+"""The guard stops the robot this much below the limit: for its filter and the arm's way to stop."""
+RELEASE_BAND_N = 5.0
+
+
+def contact_plan(run: AssemblyRun, commissioned: Commissioned) -> MatingPlan:
+    """From the pose that was measured, which must still be the present one.
+
+    Raises ``HeadMoved`` when it is not, ``SpeedOverridden`` when the robot would not move as
+    planned, ``MatingPlanInvalid`` when no plan is safe.
+    """
+    assert run.flange_T_deck is not None
+    assert run.M_T_D is not None
+    assert run.measured_at is not None
+    require_unmoved("the main robot", run.cell.main, run.measured_at)
+    require_full_speed(run.cell.main)
+    recipe, config = run.recipe, run.cell.config
+    return plan_mating(
+        base_T_flange=run.cell.main.state().base_T_flange,
+        flange_T_deck=run.flange_T_deck,
+        flange_T_sensor=pose_from_xyzabc(config.robots.main.flange_T_sensor),
+        M_T_D=run.M_T_D,
+        deck_thickness_m=recipe.deck_thickness_mm * MM,
+        over_travel_m=recipe.over_travel_mm * MM,
+        settings=mating_settings(config, recipe, commissioned, run.payload_kg),
+    )
+
+
+def mating_settings(
+    config: CellConfig, recipe: Recipe, commissioned: Commissioned, payload_kg: float
+) -> MatingSettings:
+    """The recipe's figures in SI; its bounds where nothing was commissioned."""
+    mating = recipe.mating
+    length_mm, width_mm = recipe.face_mm
+    rate_hz = sensor_rate_hz(config.force)
+    latency_s, stiffness_n_m = commissioned.stop_latency_s, mating.stiffness_n_per_mm / MM
+    return MatingSettings(
+        stop_latency_s=mating.stop_latency_ms / 1e3 if latency_s is None else latency_s,
+        stiffness_n_m=planned_stiffness(
+            stiffness_n_m, commissioned.stiffness_n_m, mating.part_spread_ratio
+        ),
+        moving_mass_kg=payload_kg,
+        target_force_n=mating.target_force_n,
+        limit_force_n=mating.limit_force_n,
+        abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
+        release_low_n=mating.release_force_n - RELEASE_BAND_N,
+        release_high_n=mating.release_force_n + RELEASE_BAND_N,
+        touch=Cusum(mating.touch_force_n / 2, touch_threshold_n(rate_hz)),
+        sample_period_s=1.0 / rate_hz,
+        stale_s=config.force.stale_ms / 1e3,
+        flange_age_s=config.force.flange_age_ms / 1e3,
+        fast_speed_m_s=mating.fast_speed_mm_s * MM,
+        acceleration_m_s2=mating.acceleration_mm_s2 * MM,
+        greatest_past_m=mating.max_past_contact_mm * MM,
+        window_m=mating.contact_window_mm * MM,
+        half_size_m=(length_mm / 2 * MM, width_mm / 2 * MM),
+        plausible=(mating.max_untared_force_n, mating.max_untared_moment_n_m),
+        max_lateral_n=mating.max_lateral_force_n,
+        max_moment_n_m=mating.max_moment_n_m,
+        pins=_pin_settings(mating.pins) if mating.pins else None,
+    )
+
+
+def _pin_settings(pins: Pins) -> PinSettings:
+    return PinSettings(
+        engagement_m=pins.engagement_mm * MM,
+        compliant=pins.compliance,
+        greatest_travel_m=pins.max_travel_mm * MM,
+        greatest_yaw_rad=math.radians(pins.max_yaw_deg),
+        lateral_stiffness_n_m=pins.lateral_stiffness_n_per_mm / MM,
+        yaw_stiffness_n_m_rad=pins.yaw_stiffness_n_m_per_deg / math.radians(1.0),
+    )

@@ -1,0 +1,48 @@
+"""What the guard watches in each phase, and which fault a trip is."""
+
+from cellctl.cell.guard_limits import Sensing, guard_limits
+from cellctl.errors.base import CellError
+from cellctl.errors.force import LateralLoad, MatingOverforce
+from cellctl.guard.limits import CusumTouch, GuardLimits
+from cellctl.guard.report import GuardTrip
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
+
+_ALONG = 2
+
+
+def travel_limits(settings: MatingSettings) -> GuardLimits:
+    """Fast travel: nothing but inertia may be felt, in any direction."""
+    along_n = min(settings.fast_limit_n, settings.abort_force_n)
+    return _limits(settings, along_n, min(along_n, settings.max_lateral_n))
+
+
+def touch_limits(settings: MatingSettings) -> GuardLimits:
+    """Guarded travel: stop at the touch, and at the limits of contact if that fails."""
+    touch = CusumTouch(settings.touch.drift_n, settings.touch.threshold_n)
+    return _limits(settings, settings.abort_force_n, settings.max_lateral_n, touch)
+
+
+def contact_limits(settings: MatingSettings) -> GuardLimits:
+    """Creep, hold and relaxing."""
+    return _limits(settings, settings.abort_force_n, settings.max_lateral_n)
+
+
+def fault_of(trip: GuardTrip, settings: MatingSettings) -> CellError:
+    """The fault of a trip that ends an attempt."""
+    if trip.force and trip.component == _ALONG:
+        return MatingOverforce(f"abort limit {settings.abort_force_n:.0f} N: {trip}")
+    if trip.force:
+        return LateralLoad(str(trip))
+    return trip.fault()
+
+
+def _limits(
+    settings: MatingSettings, along_n: float, across_n: float, touch: CusumTouch | None = None
+) -> GuardLimits:
+    moment_n_m = settings.max_moment_n_m
+    return guard_limits(
+        (across_n, across_n, along_n, moment_n_m, moment_n_m, moment_n_m),
+        Sensing(1.0 / settings.sample_period_s, settings.stale_s, settings.flange_age_s),
+        touch=touch,
+        filter_s=settings.filter_delay_s,
+    )

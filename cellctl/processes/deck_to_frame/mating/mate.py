@@ -1,0 +1,130 @@
+"""Mating under force (paper 2.4.2, mission A4): from the stand-off to a judged seat."""
+
+from collections.abc import Awaitable, Callable
+
+from cellctl import log
+from cellctl.cell.guard_port import GuardPort
+from cellctl.errors.base import CellError
+from cellctl.errors.force import FalseSeat
+from cellctl.force.commissioning import StiffnessEstimate
+from cellctl.force.curve import curve_statistics
+from cellctl.force.seat import SeatVerdict
+from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report, loop_time_s
+from cellctl.processes.deck_to_frame.mating.phases import (
+    require_stand_off,
+    settle_and_tare,
+    take_over,
+    travel_clear,
+    travel_to_touch,
+)
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.recorder import Recorder
+from cellctl.processes.deck_to_frame.mating.result import (
+    MatingOutcome,
+    MatingPhase,
+    MatingProgress,
+    MatingResult,
+    Reading,
+)
+from cellctl.processes.deck_to_frame.mating.retreat import retreat
+from cellctl.processes.deck_to_frame.mating.seating import back_off, creep_to, hold, stiffness_of
+
+_log = log.get(__name__)
+
+
+async def mate(robot: Robot, guard: GuardPort, plan: MatingPlan, report: Report) -> MatingResult:
+    """One attempt: settle, tare, travel, touch, creep, hold, judge, relax.
+
+    Starts at the stand-off of the plan with both latches released. A seat that is not one comes
+    back as ``MatingOutcome.FALSE_SEAT`` with the arm backed off: measure again before the next
+    attempt. Any violation stops the robot, backs off where that is right (``retreat``) and raises
+    its own fault; a ``ForceError`` carries the force curve, and ``report`` gets it in any case.
+    """
+    require_stand_off(robot, plan)
+    async with Recorder(robot, guard, plan) as recorder:
+        attempt = Attempt(robot, guard, plan, recorder, report)
+        try:
+            return await _run(attempt)
+        except CellError as fault:
+            await retreat(attempt, fault)
+            raise
+        finally:
+            report(_ended(recorder))
+
+
+async def mate_until_seated(
+    robot: Robot,
+    guard: GuardPort,
+    measured_plan: Callable[[int], Awaitable[MatingPlan]],
+    report: Report,
+    max_tries: int = 3,
+) -> MatingResult:
+    """Attempts with a fresh measurement before each, until the deck is seated.
+
+    ``measured_plan(n)`` is called before attempt n = 1, 2, …; it measures, corrects, and leaves
+    the robot at the stand-off. Raises ``FalseSeat`` after ``max_tries``, and whatever ``mate``
+    raises.
+    """
+    for number in range(1, max_tries + 1):
+        result = await mate(robot, guard, await measured_plan(number), report)
+        if result.outcome is MatingOutcome.SEATED:
+            return result
+        _log.warning("false seat", attempt=number, gap_mm=result.verdict.gap_m * 1e3)
+    raise FalseSeat(
+        f"{max_tries} attempts, the last {result.verdict.gap_m * 1e3:.3f} mm above the seat at "
+        f"{result.verdict.force_n:.1f} N",
+        result.curve,
+    )
+
+
+async def _run(attempt: Attempt) -> MatingResult:
+    plan = attempt.plan
+    begin_s = loop_time_s()
+    tare = await settle_and_tare(attempt)
+    await travel_clear(attempt)
+    touch_travel_m = await travel_to_touch(attempt)
+    await take_over(attempt)
+    readings = await creep_to(attempt, plan.creep, MatingPhase.CREEP)
+    held, verdict = await hold(attempt, readings)
+    relaxing = await _leave(attempt, held, verdict, stiffness_of(readings))
+    curve = attempt.recorder.curve()
+    return MatingResult(
+        outcome=MatingOutcome.SEATED if verdict.seated else MatingOutcome.FALSE_SEAT,
+        window=plan.window,
+        speed=plan.speed,
+        segment_m=plan.segment_m,
+        tare=tare,
+        touch_travel_m=touch_travel_m,
+        touch_force_n=readings[0].force_n,
+        creep=readings,
+        stiffness=stiffness_of((*readings, *relaxing)),
+        hold=held,
+        verdict=verdict,
+        relaxing=relaxing,
+        gave_way=tuple(attempt.gave_way),
+        curve=curve,
+        statistics=curve_statistics(curve.time_s, curve.wrench),
+        duration_s=loop_time_s() - begin_s,
+    )
+
+
+async def _leave(
+    attempt: Attempt, held: Reading, verdict: SeatVerdict, stiffness: StiffnessEstimate | None
+) -> tuple[Reading, ...]:
+    """Relax a good seat for fastening, back off from a false one; readings while relaxing."""
+    if not verdict.seated:
+        await back_off(attempt)
+        return ()
+    shown_n_m = stiffness.stiffness_n_m if stiffness else None
+    law = attempt.plan.release
+    readings = await creep_to(attempt, law, MatingPhase.RELEASE, held, shown_n_m)
+    await attempt.guard.disarm()
+    return readings
+
+
+def _ended(recorder: Recorder) -> MatingProgress:
+    curve = recorder.curve()
+    travel_m = float(curve.travel_m[-1]) if len(curve.travel_m) else float("nan")
+    force_n = float(curve.wrench[-1, 2]) if len(curve.wrench) else float("nan")
+    return MatingProgress(MatingPhase.ENDED, travel_m, force_n, curve=curve)

@@ -1,0 +1,85 @@
+"""A mating as plain data for the record: mm, mm/s, N, N·m."""
+
+from typing import Any
+
+import numpy as np
+
+from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.result import MatingResult
+
+
+def plan_record(plan: MatingPlan) -> dict[str, Any]:
+    """Window, and the speed with its formula and every figure behind it."""
+    speed, figures, window = plan.speed, plan.speed.figures, plan.window
+    return {
+        "approach": {
+            "formula": speed.FORMULA,
+            "speed_mm_s": speed.speed_m_s / MM,
+            "predicted_peak_n": speed.peak_n,
+            "touch_n": speed.touch_n,
+            "latency_n": speed.latency_n,
+            "ramp_n": speed.ramp_n,
+            "impact_n": speed.impact_n,
+            "tare_n": speed.tare_n,
+            "stop_latency_s": figures.stop_latency_s,
+            "stale_s": figures.stale_s,
+            "stiffness_n_per_mm": figures.stiffness_n_m * MM,
+        },
+        "window": {
+            "expected_mm": window.expected_m / MM,
+            "earliest_mm": window.earliest_m / MM,
+            "latest_mm": window.latest_m / MM,
+            "clear_mm": window.clear_m / MM,
+        },
+        "target_force_n": plan.settings.target_force_n,
+        "limit_force_n": plan.settings.limit_force_n,
+    }
+
+
+def result_record(result: MatingResult) -> dict[str, Any]:
+    """Touch, creep, hold, verdict and peaks."""
+    statistics, verdict = result.statistics, result.verdict
+    return {
+        "outcome": result.outcome.value,
+        "touch_travel_mm": result.touch_travel_m / MM,
+        "touch_force_n": result.touch_force_n,
+        "creep_steps": len(result.creep),
+        "stiffness_n_per_mm": result.stiffness.stiffness_n_m * MM if result.stiffness else None,
+        "hold_force_n": result.hold.force_n,
+        "hold_wrench": result.hold.wrench.tolist(),
+        "seat_gap_mm": verdict.gap_m / MM,
+        "released_force_n": result.released.force_n if result.released else None,
+        "tare_mean": result.tare.mean.tolist(),
+        "tare_sigma": result.tare.sigma.tolist(),
+        "peak_force_n": statistics.peak_fz_n,
+        "peak_filtered_force_n": statistics.peak_filtered_fz_n,
+        "peak_lateral_n": statistics.peak_lateral_n,
+        "peak_moment_n_m": statistics.peak_moment_n_m,
+        "duration_s": result.duration_s,
+        **_compliance_record(result),
+    }
+
+
+def _compliance_record(result: MatingResult) -> dict[str, Any]:
+    """Every move that gave way to pins, with the force that asked for it."""
+    if not result.gave_way:
+        return {}
+    last = result.gave_way[-1].total
+    return {
+        "gave_way": {
+            "x_mm": last.x_m / MM,
+            "y_mm": last.y_m / MM,
+            "yaw_deg": float(np.degrees(last.yaw_rad)),
+            "moves": [
+                {
+                    "travel_mm": each.reading.travel_m / MM,
+                    "wrench": each.reading.wrench.tolist(),
+                    "x_mm": each.move.x_m / MM,
+                    "y_mm": each.move.y_m / MM,
+                    "yaw_deg": float(np.degrees(each.move.yaw_rad)),
+                }
+                for each in result.gave_way
+            ],
+        }
+    }

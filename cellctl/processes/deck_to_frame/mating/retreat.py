@@ -1,0 +1,65 @@
+"""After a fault of the mating: stop, and where that is right take the deck off the frame."""
+
+from dataclasses import replace
+
+from cellctl import log
+from cellctl.errors.base import CellError
+from cellctl.errors.force import (
+    ContactEarly,
+    ContactLate,
+    CreepNotConverged,
+    ForceError,
+    ForceLimitExceeded,
+    LateralLoad,
+    MatingOverforce,
+    SensorDataInvalid,
+    SensorFrozen,
+    SensorRateWrong,
+    SensorSaturated,
+    SensorSilent,
+)
+from cellctl.processes.deck_to_frame.mating.attempt import Attempt
+from cellctl.processes.deck_to_frame.mating.seating import back_off
+
+_log = log.get(__name__)
+
+_PRESSES_ON = (
+    ContactEarly,
+    ContactLate,
+    LateralLoad,
+    CreepNotConverged,
+    MatingOverforce,
+    ForceLimitExceeded,
+    SensorSilent,
+    SensorSaturated,
+    SensorDataInvalid,
+    SensorFrozen,
+    SensorRateWrong,
+)
+"""Faults found by mating or guard while the arm may press on the frame with a force that nobody
+knows or wants. Robot, guard and links work with these; any other fault leaves the arm alone."""
+
+
+async def retreat(attempt: Attempt, fault: CellError) -> None:
+    """Stop, attach the curve, back off where that is right; what fails is noted on the fault.
+
+    Aborts, stops and mode changes never come here: they cancel the mating.
+    """
+    if isinstance(fault, ForceError):
+        fault.curve = attempt.recorder.curve()
+    try:
+        await attempt.robot.stop()
+        if isinstance(fault, _PRESSES_ON) and _healthy(attempt):
+            await attempt.guard.acknowledge()
+            await attempt.robot.rearm()
+            await back_off(attempt)
+    except CellError as second:
+        fault.add_note(f"while retreating: {second}")
+        _log.warning("retreat incomplete", fault=str(fault), second=str(second))
+
+
+def _healthy(attempt: Attempt) -> bool:
+    """The robot lacks nothing but the release of its latch, the guard could stop it again."""
+    robot, guard = attempt.robot.state(), attempt.guard.health()
+    able = replace(robot, stop_latched=False).ready
+    return able and guard.alive and guard.stop_channel_up

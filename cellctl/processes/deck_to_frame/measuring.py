@@ -1,0 +1,182 @@
+"""Measure a part with both heads: grab, find holes, average, fit, until it is certain enough."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl import log
+from cellctl.cell.devices import Cell
+from cellctl.cell.gather import together
+from cellctl.cell.stereo_station import HeadStation
+from cellctl.errors.robot import HeadMoved
+from cellctl.errors.vision import UncertaintyTooLarge
+from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import Robot, StereoPair
+from cellctl.vision.average import average
+from cellctl.vision.features import FeatureFile, Hole
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method, PairMeasurement
+from cellctl.vision.part_pose import PartPose, part_pose
+from cellctl.vision.stereo_head import StereoHead
+
+_log = log.get(__name__)
+
+MOVED_M = 0.05 * MM
+MOVED_RAD = np.radians(0.005)
+"""A robot whose encoders changed by more has moved since the reference was taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class HeadGeometry:
+    """What calibration says about the two heads at the measuring poses that it was made at."""
+
+    head_1: StereoHead
+    head_2: StereoHead
+    c1_T_c2: UncertainPose
+
+    def camera_T_part(self, c1_T_part: RigidTransform) -> tuple[RigidTransform, RigidTransform]:
+        """A pose predicted in head I, for both heads."""
+        return c1_T_part, self.c1_T_c2.pose.inv() * c1_T_part
+
+
+@dataclass(frozen=True, slots=True)
+class PartMeasurement:
+    """A part measured by both heads, with what is needed to show and to repeat it."""
+
+    pose: PartPose
+    """``c1_T_part`` with covariance and residuals."""
+    heads: tuple[PairMeasurement, PairMeasurement]
+    pairs: tuple[StereoPair, StereoPair]
+    """The last images of each head."""
+    frames: int
+    base_T_flange: RigidTransform
+    """Main robot, as reported while the images were taken."""
+
+    @property
+    def own(self) -> UncertainPose:
+        """The pose with the uncertainty of the hole measurements alone."""
+        return UncertainPose(self.c1_T_part, self.pose.own_covariance)
+
+    @property
+    def c1_T_part(self) -> RigidTransform:
+        """The pose alone."""
+        return self.pose.pose.pose
+
+    @property
+    def sigma_mm_deg(self) -> Array:
+        """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the holes alone.
+
+        Frame and deck are measured through the same C1_T_C2: its error cancels between them and is
+        no part of the uncertainty that the loop is judged by.
+        """
+        sigma = np.sqrt(np.diag(self.pose.own_covariance))
+        return np.concatenate([sigma[:3] / MM, np.degrees(sigma[3:])])
+
+
+class PartMeasurer:
+    """Measures parts with the heads standing still; remembers where they stood at first."""
+
+    def __init__(self, cell: Cell, geometry: HeadGeometry, method: Method) -> None:
+        self._cell = cell
+        self._geometry = geometry
+        self._method = method
+        self._reference = [head.robot.state().base_T_flange for head in cell.heads]
+
+    async def measure(
+        self,
+        features: FeatureFile,
+        c1_T_part: RigidTransform,
+        *,
+        frames: int,
+        max_frames: int,
+        wanted_sigma_mm_deg: Array,
+    ) -> PartMeasurement:
+        """Measure a part near a predicted pose.
+
+        Takes ``frames`` pairs, then more until every standard deviation is below the wanted one;
+        raises ``UncertaintyTooLarge`` after ``max_frames``, ``HeadMoved`` when a head or the main
+        robot moved while the pictures were taken, and the faults of ``cellctl.vision`` when holes
+        are missing or do not fit.
+        """
+        predictions = self._geometry.camera_T_part(c1_T_part)
+        base_T_flange = self._cell.main.state().base_T_flange
+        taken: list[tuple[PairMeasurement, PairMeasurement]] = []
+        while True:
+            wanted = min(len(taken) or frames, max_frames - len(taken))
+            for _ in range(wanted):
+                pairs, found = await self._one_frame(features, predictions)
+                taken.append(found)
+            self._check_standstill(base_T_flange)
+            measurement = self._combine(features, taken, pairs, base_T_flange)
+            if (measurement.sigma_mm_deg <= wanted_sigma_mm_deg).all():
+                return measurement
+            if len(taken) >= max_frames:
+                raise UncertaintyTooLarge(_sigma_text(measurement, wanted_sigma_mm_deg))
+            _log.info("more frames needed", sigma=measurement.sigma_mm_deg.round(5).tolist())
+
+    async def _one_frame(
+        self, features: FeatureFile, predictions: tuple[RigidTransform, RigidTransform]
+    ) -> tuple[tuple[StereoPair, StereoPair], tuple[PairMeasurement, PairMeasurement]]:
+        stations = self._cell.heads
+        models = (self._geometry.head_1, self._geometry.head_2)
+        holes = (features.seen_by(1), features.seen_by(2))
+        results = await together(
+            *(
+                self._grab_and_find(station, model, hole, prediction)
+                for station, model, hole, prediction in zip(
+                    stations, models, holes, predictions, strict=True
+                )
+            )
+        )
+        return (results[0][0], results[1][0]), (results[0][1], results[1][1])
+
+    async def _grab_and_find(
+        self,
+        station: HeadStation,
+        model: StereoHead,
+        holes: Sequence[Hole],
+        camera_T_part: RigidTransform,
+    ) -> tuple[StereoPair, PairMeasurement]:
+        pair = await station.camera.grab()
+        found = await self._cell.workers.run(
+            measure_pair,
+            pair.left,
+            pair.right,
+            model,
+            holes,
+            camera_T_part=camera_T_part,
+            method=self._method,
+        )
+        return pair, found
+
+    def _combine(
+        self,
+        features: FeatureFile,
+        taken: Sequence[tuple[PairMeasurement, PairMeasurement]],
+        pairs: tuple[StereoPair, StereoPair],
+        base_T_flange: RigidTransform,
+    ) -> PartMeasurement:
+        heads = (average([one for one, _ in taken]), average([two for _, two in taken]))
+        pose = part_pose(*heads, self._geometry.c1_T_c2, features.holes, self._method)
+        return PartMeasurement(pose, heads, pairs, len(taken), base_T_flange)
+
+    def _check_standstill(self, base_T_flange: RigidTransform) -> None:
+        for head, reference in zip(self._cell.heads, self._reference, strict=True):
+            require_unmoved(head.name, head.robot, reference)
+        require_unmoved("the main robot", self._cell.main, base_T_flange)
+
+
+def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
+    """Raise ``HeadMoved`` when a robot is not where it was."""
+    distance_m, angle_rad = robot.state().distance_to(base_T_flange)
+    if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):
+        raise HeadMoved(f"{name} by {distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°")
+
+
+def _sigma_text(measurement: PartMeasurement, wanted: Array) -> str:
+    got = ", ".join(f"{value:.4f}" for value in measurement.sigma_mm_deg)
+    limit = ", ".join(f"{value:.4f}" for value in wanted)
+    return f"after {measurement.frames} frames σ = ({got}) mm/deg, needed ({limit})"

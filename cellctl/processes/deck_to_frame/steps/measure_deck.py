@@ -1,0 +1,31 @@
+"""Step 20: how the deck is gripped (paper 2.1.3, eq. 4)."""
+
+import numpy as np
+
+from cellctl.cell.settling import settle
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.deck_on_flange import deck_on_flange
+from cellctl.processes.deck_to_frame.pose_limits import require_near
+from cellctl.processes.deck_to_frame.run import AssemblyRun
+
+
+async def measure_deck(run: AssemblyRun) -> None:
+    """Bring the deck above the station, measure it, and solve its pose on the flange."""
+    main = run.cell.config.robots.main
+    await run.cell.main.move_joint(
+        np.radians(main.deck_measure_joints_deg), speed_ratio=main.speed_percent / 100
+    )
+    await settle(run.cell.guard)
+    nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
+    predicted = run.base_T_c1.inv() * run.cell.main.state().base_T_flange * nominal
+    measurement = await run.measure(run.deck_features, predicted)
+    flange_T_deck = deck_on_flange(
+        UncertainPose.exact(measurement.base_T_flange),
+        run.calibrations.geometry.base_T_c1,
+        measurement.pose.pose,
+    )
+    require_near("deck on flange", run.recipe, nominal, flange_T_deck.pose)
+    run.flange_T_deck = flange_T_deck.pose
+    await run.journal.measurement("deck", measurement)
+    await run.journal.deck_on_flange(flange_T_deck)

@@ -1,0 +1,49 @@
+"""Bringing robots to where a run begins."""
+
+import numpy as np
+
+from cellctl.cell.devices import Cell
+from cellctl.cell.gather import together
+from cellctl.cell.stereo_station import HeadStation
+from cellctl.config.base import JointsDeg
+from cellctl.geometry.pose import Array
+from cellctl.interfaces import RobotState
+from cellctl.processes.deck_to_frame.lift_off import lift_off
+
+AT_POSE_RAD = np.radians(0.001)
+"""Joints this near a taught pose count as there: 0.04 mm at the end of a head's arm."""
+
+
+async def heads_to_measuring_poses(cell: Cell) -> None:
+    """Both heads at once; a head that is there already does not move."""
+    await together(*(head_to_measuring_pose(head) for head in cell.heads))
+
+
+async def head_to_measuring_pose(head: HeadStation) -> None:
+    """One head; it does not move when it is there already."""
+    await _head_to(head, head.config.measuring_joints_deg)
+
+
+async def head_to_retracted_pose(head: HeadStation) -> None:
+    """One head out of the way; it does not move when it is there already."""
+    await _head_to(head, head.config.retracted_joints_deg)
+
+
+async def _head_to(head: HeadStation, joints_deg: JointsDeg) -> None:
+    target_rad = np.radians(joints_deg)
+    if not _is_at(head.robot.state(), target_rad):
+        await head.robot.move_joint(target_rad, speed_ratio=head.config.speed_percent / 100)
+
+
+async def main_to_home(cell: Cell) -> None:
+    """The main robot with its deck clear of station and heads; off the station first if low."""
+    main = cell.config.robots.main
+    home_rad = np.radians(main.home_joints_deg)
+    if _is_at(cell.main.state(), home_rad):
+        return
+    await lift_off(cell)
+    await cell.main.move_joint(home_rad, speed_ratio=main.speed_percent / 100)
+
+
+def _is_at(state: RobotState, joints_rad: Array) -> bool:
+    return bool(np.abs(state.joints_rad - joints_rad).max() < AT_POSE_RAD)

@@ -1,0 +1,44 @@
+"""Alarms stay active until somebody acknowledges them, over restarts too."""
+
+from cellctl import log
+from cellctl.errors import CellError
+from cellctl.records.async_store import Archive
+from cellctl.records.store import RunStore
+from cellctl.runtime.background import Background
+
+_log = log.get(__name__)
+
+
+class Alarms:
+    """The active alarms by number, the oldest first; the store has every single one."""
+
+    def __init__(self, archive: Archive, background: Background) -> None:
+        self._archive = archive
+        self._background = background
+        self._active: dict[int, None] = {}
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Each fault number once."""
+        return tuple(self._active)
+
+    async def open(self) -> None:
+        """Take over what was active before the restart."""
+        for alarm in await self._archive.do(RunStore.active_alarms):
+            self._active.setdefault(alarm.number)
+        if self._active:
+            _log.warning("alarms not yet acknowledged", numbers=self.numbers)
+
+    def add(self, error: CellError, run: int | None) -> None:
+        """A fault has come; written to the store in the background."""
+        self._active.setdefault(error.number)
+        text = "; ".join([str(error), *getattr(error, "__notes__", ())])
+        self._background.start(self._archive.do(RunStore.add_alarm, run, error.number, text))
+
+    async def acknowledge(self, number: int, who: str) -> bool:
+        """Acknowledge every alarm with this number; False when none is active."""
+        if number not in self._active:
+            return False
+        await self._archive.do(RunStore.acknowledge_alarms, number, who)
+        self._active.pop(number, None)
+        return True

@@ -1,0 +1,92 @@
+"""The record of one job with contact: opened before anything moves, closed whatever happens."""
+
+import asyncio
+from collections.abc import Mapping, Sequence
+
+from cellctl import log
+from cellctl.api.modbus.commands import LineCommand
+from cellctl.calibration.files import StoredCalibration
+from cellctl.cell.devices import Cell
+from cellctl.errors import CellError
+from cellctl.processes.deck_to_frame.recipe import Recipe
+from cellctl.records.async_store import Archive
+from cellctl.records.entries import RunResult
+from cellctl.records.store import RunStore
+from cellctl.runtime.provenance import provenance
+from cellctl.version import software
+
+_log = log.get(__name__)
+
+
+class JobRecord:
+    """At most one run row."""
+
+    def __init__(self, cell: Cell, archive: Archive, command: LineCommand) -> None:
+        self.archive = archive
+        self.number = 0
+        """Of the run; 0 until it is open."""
+        self._cell = cell
+        self._command = command
+        self._opening: asyncio.Task[None] | None = None
+
+    async def open(
+        self,
+        recipe: Recipe,
+        mode: str,
+        stored: Sequence[StoredCalibration],
+        used: Mapping[str, str],
+    ) -> int:
+        """The number of the run, opened at the first call; ``used`` are identities by kind.
+
+        Cell file, recipe and feature files go into it whole. The row is written by a task of its
+        own: a Stop must not leave one that nobody closes.
+        """
+        if self._opening is None:
+            self._opening = asyncio.create_task(self._write(recipe, mode, stored, used))
+        await asyncio.shield(self._opening)
+        return self.number
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
+        """Close it; nothing to close when it was not or could not be opened."""
+        if self._opening is None:
+            return
+        try:
+            await self._opening
+        except CellError:
+            if not self.number:
+                return  # there is no record; this is the fault that has ended the run
+        await self.archive.do(
+            RunStore.close_run,
+            self.number,
+            outcome,
+            fault_number=fault.number if fault else None,
+            fault=str(fault) if fault else None,
+        )
+        _log.info("run closed", run=self.number, result=outcome.value)
+
+    async def _write(
+        self,
+        recipe: Recipe,
+        mode: str,
+        stored: Sequence[StoredCalibration],
+        used: Mapping[str, str],
+    ) -> None:
+        for calibration in stored:
+            await self.archive.do(RunStore.add_calibration, calibration)
+        cell, command = self._cell, self._command
+        made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
+        self.number = await self.archive.do(
+            RunStore.start_run,
+            serial=command.serial,
+            recipe_id=recipe.id,
+            recipe_name=recipe.name,
+            recipe_hash=made_with.recipe_hash,
+            mode=mode,
+            software=await asyncio.to_thread(software),
+            config_hash=made_with.cell_hash,
+            calibration_ids=used,
+            simulated=cell.config.simulated,
+            operator=command.order or command.by,
+        )
+        for artefact in made_with.artefacts():
+            await self.archive.do(RunStore.add_artefact, self.number, *artefact)

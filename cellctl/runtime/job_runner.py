@@ -1,0 +1,106 @@
+"""The job that the unit works on: from its start to the one closing of its record."""
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from cellctl import log
+from cellctl.errors import CellError
+from cellctl.packml.result import Result
+from cellctl.records.entries import RunResult
+from cellctl.runtime.job import Job, SafePoint
+
+_log = log.get(__name__)
+
+LEAVE_TIMEOUT_S = 8.0
+"""For a cancelled job to stop its robots and write down what it has; the machine waits longer."""
+
+_TO_THE_LINE = {
+    RunResult.GOOD: Result.GOOD,
+    RunResult.BAD: Result.BAD,
+    RunResult.STOPPED: Result.STOPPED,
+    RunResult.ABORTED: Result.ABORTED,
+}
+
+
+class Work:
+    """Present and last job. Belongs to one event loop."""
+
+    def __init__(self) -> None:
+        self._job: Job | None = None
+        self._shown: Job | None = None
+        self._closing: asyncio.Task[None] | None = None
+        self._resting = asyncio.Event()
+        self._resting.set()
+        self._finished = False
+        self.result = Result.NONE
+        """Of the run that is shown; NONE while it is open."""
+
+    @property
+    def shown(self) -> Job | None:
+        """The present job, else the last one."""
+        return self._shown
+
+    @property
+    def run_number(self) -> int | None:
+        """The open run, if there is one with a record."""
+        return (self._job.run_number or None) if self._job else None
+
+    @property
+    def assembles(self) -> bool:
+        """True while the present job makes a part."""
+        return self._job is not None and self._job.assembles
+
+    @property
+    def outcome(self) -> RunResult | None:
+        """How a job that did all it had to do ends; None for one that was cut short."""
+        return self._job.outcome if self._job and self._finished else None
+
+    async def start(self, job: Job) -> None:
+        """Starting."""
+        self._job = self._shown = job
+        self._finished, self.result = False, Result.NONE
+        with self._at_work():
+            await job.start()
+
+    async def execute(self, safe_point: SafePoint) -> None:
+        """Execute."""
+        assert self._job is not None
+        with self._at_work():
+            await self._job.execute(safe_point)
+            self._finished = True
+
+    async def left(self) -> None:
+        """Wait until a cancelled job has cleaned up: its record must not be closed before."""
+        try:
+            async with asyncio.timeout(LEAVE_TIMEOUT_S):
+                await self._resting.wait()
+        except TimeoutError:
+            _log.error("the job does not end", timeout_s=LEAVE_TIMEOUT_S)
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
+        """Close the record, once, however often it is asked for: an Abort may overtake a Stop."""
+        if self._job is None:
+            return
+        if self._closing is None:
+            self._closing = asyncio.create_task(self._close(self._job, outcome, fault))
+        await asyncio.shield(self._closing)
+
+    async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:
+        try:
+            with log.bound(run=job.run_number):
+                outcome = await job.close(outcome, fault)
+            self.result = _TO_THE_LINE[outcome]
+        except CellError:
+            self.result = Result.ABORTED  # a part without a record is not a good one
+            raise
+        finally:
+            self._job = self._closing = None
+
+    @contextmanager
+    def _at_work(self) -> Iterator[None]:
+        self._resting.clear()
+        try:
+            yield
+        finally:
+            self._resting.set()

@@ -1,0 +1,66 @@
+"""What a run was made with, in full: each hash of its record is that of one of these files."""
+
+import json
+from dataclasses import dataclass
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from cellctl.config import CellConfig
+from cellctl.errors.vision import FeatureFileInvalid
+from cellctl.processes.deck_to_frame.recipe import Recipe
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Files for the record of a run."""
+
+    cell: bytes
+    """The whole cell file as it was understood, defaults included."""
+    recipe: bytes
+    """The recipe likewise, with the SHA-256 of its feature files."""
+    features: dict[str, bytes]
+    """The feature files as they are, by the name of their artefact."""
+
+    @property
+    def cell_hash(self) -> str:
+        """SHA-256 of the cell file's content, independent of its layout."""
+        return sha256(self.cell).hexdigest()
+
+    @property
+    def recipe_hash(self) -> str:
+        """SHA-256 of the recipe with the content of its feature files."""
+        return sha256(self.recipe).hexdigest()
+
+    def artefacts(self) -> list[tuple[str, bytes, str]]:
+        """Name, bytes and media type of each file."""
+        return [
+            ("cell.json", self.cell, "application/json"),
+            ("recipe.json", self.recipe, "application/json"),
+            *((name, data, "application/toml") for name, data in self.features.items()),
+        ]
+
+
+def provenance(config: CellConfig, folder: Path, recipe: Recipe) -> Provenance:
+    """Of a run with a recipe; ``folder`` holds the cell file. Raises ``FeatureFileInvalid``."""
+    features = {
+        "frame_features.toml": _read(folder / recipe.frame_features),
+        "deck_features.toml": _read(folder / recipe.deck_features),
+    }
+    hashes = {name: sha256(data).hexdigest() for name, data in features.items()}
+    return Provenance(
+        cell=_canonical(config.model_dump(mode="json")),
+        recipe=_canonical({"recipe": recipe.model_dump(mode="json"), "sha256": hashes}),
+        features=features,
+    )
+
+
+def _canonical(document: dict[str, Any]) -> bytes:
+    return json.dumps(document, sort_keys=True, indent=1).encode()
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise FeatureFileInvalid(f"{path}: {error.strerror or error}") from error

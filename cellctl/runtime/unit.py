@@ -1,0 +1,197 @@
+"""The unit: what the cell does in each PackML state."""
+
+import asyncio
+
+from cellctl import log
+from cellctl.cell.devices import Cell
+from cellctl.cell.readiness import require_ready
+from cellctl.command.job_factory import OrderDesk
+from cellctl.errors import CellError
+from cellctl.errors.internal import StateDidNotEnd
+from cellctl.errors.line import LineLost
+from cellctl.packml.command import Command
+from cellctl.packml.machine import PackMLMachine
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import STATES, State
+from cellctl.processes.deck_to_frame.lift_off import lift_off
+from cellctl.records.async_store import Archive
+from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.store import RunStore
+from cellctl.runtime.alarms import Alarms
+from cellctl.runtime.background import Background
+from cellctl.runtime.invalidation import invalidate_after
+from cellctl.runtime.job_runner import Work
+from cellctl.runtime.progress import ProgressBoard
+from cellctl.runtime.status_view import StatusView
+from cellctl.runtime.step import Step
+
+_log = log.get(__name__)
+
+ABORT_TIMEOUT_S = 20.0
+MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
+"""Commands after which a robot may move."""
+_IN_CONTACT = frozenset({Step.MATE, Step.MEASURE_CONTACT_STIFFNESS})
+_AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
+AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
+
+
+class Unit:
+    """Joins state machine, devices and records. Belongs to one event loop."""
+
+    def __init__(self, cell: Cell, archive: Archive) -> None:
+        self._cell = cell
+        self._archive = archive
+        self._work = Work()
+        self.board = ProgressBoard()
+        self.background = Background()
+        self.alarms = Alarms(archive, self.background)
+        self.desk = OrderDesk(cell, archive, self.board)
+        self.machine = PackMLMachine(
+            {
+                State.CLEARING: self._clearing,
+                State.RESETTING: self._resetting,
+                State.STARTING: self._starting,
+                State.EXECUTE: self._execute,
+                State.COMPLETING: self._completing,
+                State.STOPPING: self._stopping,
+                State.ABORTING: self._aborting,
+            },
+            gate=self._gate,
+        )
+        self._ending = False
+        self.machine.on_change.append(self._changed)
+        self.machine.on_fault.append(self._faulted)
+        self.view = StatusView(cell, self.machine, self.board, self.desk, self.alarms)
+        self.parts = 0
+        """Good parts since installation."""
+
+    async def open(self) -> None:
+        """Close runs that an earlier process left open, as interrupted; take over its alarms.
+
+        Raises the faults of the store, and ``CalibrationNotStored`` while no procedure could keep
+        its result.
+        """
+        await asyncio.to_thread(self.desk.calibrations.require_writable)
+        interrupted = await self._archive.do(RunStore.mark_interrupted)
+        if interrupted:
+            _log.warning("an earlier process left runs open", runs=interrupted)
+        await self.alarms.open()
+        heads = await self._archive.do(RunStore.runs, limit=1_000_000)
+        self.parts = sum(
+            head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
+        )
+
+    async def come_up(self) -> None:
+        """Connect the devices, as Clear does; then the unit is Stopped, else Aborted by a fault."""
+        await self.machine.command(Command.CLEAR)
+        await self.machine.wait_for(*_AT_WORK, State.ABORTED)
+
+    async def until_live(self) -> None:
+        """Wait until a Clear has connected the devices."""
+        await self.machine.wait_for(*_AT_WORK)
+
+    @property
+    def live(self) -> bool:
+        """True while all devices are connected and the daemon does not end: robots may move."""
+        return self._cell.connected and not self._ending
+
+    @property
+    def work(self) -> Work:
+        """Present and last job."""
+        return self._work
+
+    @property
+    def expects_trips(self) -> bool:
+        """True while a step or a move deals with the trips of the guard itself."""
+        return self._cell.awaits_trips or self.board.current.step in _IN_CONTACT
+
+    def line_lost(self) -> None:
+        """The line's heartbeat stopped: hold at the next safe point."""
+        self.background.start(self.machine.fail(LineLost()))
+
+    async def close(self, fault: CellError | None = None) -> None:
+        """Abort what runs, because of ``fault`` if there is one, and wait for the records.
+
+        Nothing begins to move any more, whatever the line asks for. Gives up after a while: the
+        links are dropped next, and robots without a link stop.
+        """
+        self._ending = True
+        try:
+            async with asyncio.timeout(ABORT_TIMEOUT_S):
+                if fault is not None:
+                    await self.machine.fail(fault)
+                if self.machine.state not in AT_REST:
+                    await self.machine.command(Command.ABORT)
+                    await self.machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+        except TimeoutError:
+            state = self.machine.state.name
+            late = StateDidNotEnd(f"{state} lasts more than {ABORT_TIMEOUT_S:g} s")
+            _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
+        await self.machine.close()
+        await self.background.drain()
+
+    async def _clearing(self) -> None:
+        self._cell.workers.revive()
+        if not self._cell.connected:
+            await self._cell.connect()
+
+    async def _resetting(self) -> None:
+        await self._cell.rearm()
+        require_ready(self._cell.robots)
+        await lift_off(self._cell)
+
+    async def _starting(self) -> None:
+        self.board.reset()
+        await self._work.start(self.desk.job())
+
+    async def _execute(self) -> None:
+        await self._work.execute(self._safe_point)
+
+    async def _completing(self) -> None:
+        """A run that Complete cut short ends like a stopped one, and its part is not good."""
+        outcome = self._work.outcome
+        if outcome is None:
+            await self._halt(RunResult.BAD)
+            return
+        assembled = self._work.assembles and outcome is RunResult.GOOD
+        await self._work.close(outcome, None)
+        self.parts += assembled
+
+    async def _stopping(self) -> None:
+        await self._halt(RunResult.STOPPED)
+
+    async def _aborting(self) -> None:
+        await self._halt(RunResult.ABORTED)
+
+    async def _halt(self, outcome: RunResult) -> None:
+        """Stop everything that moves, then write down how the run ended, in this order."""
+        stopping = self._cell.stop_motion()
+        [error] = await asyncio.gather(stopping, return_exceptions=True)
+        await self._work.left()
+        await self._work.close(outcome, self.machine.fault)
+        if error is not None:
+            raise error
+
+    async def _safe_point(self, *, hold: bool = False) -> bool:
+        if hold:
+            await self.machine.command(Command.HOLD)
+        return await self.machine.safe_point()
+
+    def _gate(self, _state: State, command: Command) -> RejectCode:
+        refused = command in MAY_MOVE and not self.live
+        return RejectCode.DEVICE_NOT_READY if refused else RejectCode.NONE
+
+    def _changed(self, before: State, after: State) -> None:
+        if before is not after:
+            _log.info("state", state=after.name, was=before.name, mode=self.machine.mode.name)
+
+    def _faulted(self, error: CellError) -> None:
+        _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
+        self.alarms.add(error, self._work.run_number)
+        self.background.start(self._invalidate_after(error))
+
+    async def _invalidate_after(self, error: CellError) -> None:
+        try:
+            await invalidate_after(error, self.desk.calibrations, self._archive)
+        except CellError as fault:
+            await self.machine.fail(fault)

@@ -1,1 +1,0 @@
-"""The phases of a force-limited mating and what they share."""

@@ -1,0 +1,183 @@
+"""From requests to the judge and back, around a cell in memory."""
+
+import os
+import pwd
+from datetime import timedelta
+
+import pytest
+
+from cellctl.api.local.messages import (
+    AcknowledgeCommand,
+    ModeCommand,
+    PlainCommand,
+    ProcedureCommand,
+    Refused,
+    Request,
+    StartCommand,
+    Status,
+    StatusRequest,
+    Taken,
+    parse_answer,
+    to_line,
+)
+from cellctl.api.local.report import StatusReport
+from cellctl.api.local.reporter import Reporter
+from cellctl.api.local.terminal import Terminal
+from cellctl.api.local.users import Users
+from cellctl.errors.link import LinkLost, StaleData
+from cellctl.errors.records import StoreUnavailable
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import State
+from cellctl.records.store import RunStore
+from tests.unit.cell.bench import renew_calibrations
+from tests.unit.command.test_arbiter import audit
+from tests.unit.daemon_rig import DaemonRig
+
+UID = os.getuid()
+ME = f"terminal:{pwd.getpwuid(UID).pw_name}"
+
+
+class Operator:
+    def __init__(self, rig: DaemonRig) -> None:
+        cell = rig.bench.as_cell
+        reporter = Reporter(cell, rig.unit, rig.line, rig.archive)
+        self._terminal = Terminal(cell.config, rig.unit.machine, rig.line, reporter)
+
+    async def ask(self, request: Request, uid: int = UID) -> Taken | Refused:
+        answer = await self._terminal.handle(request, uid)
+        assert isinstance(answer, Taken | Refused)
+        return answer
+
+    async def plain(self, name: str) -> Taken | Refused:
+        return await self.ask(PlainCommand.model_validate({"request": name}))
+
+    async def status(self) -> StatusReport:
+        answer = await self._terminal.handle(StatusRequest(), UID)
+        assert isinstance(answer, Status)
+        assert parse_answer(to_line(answer)) == answer, "survives the wire"
+        return answer.report
+
+
+@pytest.fixture
+def operator(rig: DaemonRig) -> Operator:
+    return Operator(rig)
+
+
+async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
+    assert await operator.plain("reset") == Taken(state="RESETTING")
+    await rig.to(State.IDLE)
+    assert (await operator.status()).ready
+    recipe = rig.bench.cell.config.recipes[0]
+    start = StartCommand(serial="SAT-7", recipe=recipe.name, order="OP-3", dry_run=True)
+    assert isinstance(await operator.ask(start), Taken)
+    await rig.to(State.COMPLETED)
+    report = await operator.status()
+    assert (report.state, report.mode, report.result) == ("COMPLETED", "PRODUCTION", "bad")
+    assert report.last_run is not None
+    assert (report.last_run.number, report.last_run.serial) == (1, "SAT-7")
+    entries = await rig.archive.do(audit)
+    assert [(actor, action) for actor, action, _ in entries] == [(ME, "reset"), (ME, "start")]
+    assert entries[1][2]["options"] == 1
+
+
+@pytest.mark.parametrize(
+    ("request_", "code"),
+    [
+        (PlainCommand(request="clear"), RejectCode.COMMAND_NOT_ALLOWED),
+        (StartCommand(serial="lower"), RejectCode.SERIAL_INVALID),
+        (StartCommand(serial=""), RejectCode.SERIAL_INVALID),
+        (StartCommand(serial="S", order="a b"), RejectCode.ORDER_INVALID),
+        (StartCommand(serial="S", recipe="unknown"), RejectCode.RECIPE_UNKNOWN),
+        (StartCommand(serial="S", recipe="101"), RejectCode.RECIPE_UNKNOWN),
+        (ProcedureCommand(number=1, serial="P"), RejectCode.RECIPE_UNKNOWN),
+        (AcknowledgeCommand(number=999), RejectCode.ALARM_UNKNOWN),
+    ],
+)
+async def test_refusals_have_the_lines_codes(
+    rig: DaemonRig, operator: Operator, request_: Request, code: RejectCode
+) -> None:
+    await rig.idle()
+    refused = Refused(code=code, text=code.text, state="IDLE")
+    assert await operator.ask(request_) == refused
+    assert rig.unit.machine.state is State.IDLE
+
+
+async def test_a_mode_that_is_set_already_is_reached(rig: DaemonRig, operator: Operator) -> None:
+    for name in ("maintenance", "maintenance", "manual", "production"):
+        answer = await operator.ask(ModeCommand.model_validate({"mode": name}))
+        assert isinstance(answer, Taken), name
+    assert (await operator.status()).mode == "PRODUCTION"
+
+
+async def test_who_is_in_control_is_shown(rig: DaemonRig, operator: Operator) -> None:
+    assert (await operator.status()).control == "shared"
+    rig.port.line_alive = True
+    assert (await operator.status()).control == "line"
+    refused = await operator.plain("reset")
+    assert isinstance(refused, Refused)
+    assert refused.code == RejectCode.LINE_IN_CONTROL
+
+
+async def test_a_stop_waits_for_no_directory_of_users(
+    rig: DaemonRig, operator: Operator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def never(*_: object) -> None:
+        raise AssertionError("a Stop must not look up names")
+
+    await rig.idle()
+    monkeypatch.setattr(Users, "look_up", never)
+    assert isinstance(await operator.ask(PlainCommand(request="stop"), 4_000_000), Taken)
+    await rig.to(State.STOPPED)
+    await rig.unit.background.drain()
+    assert (await rig.archive.do(audit))[-1][:2] == ("terminal:4000000", "stop")
+
+
+async def test_an_unknown_user_is_a_number() -> None:
+    users = Users()
+    await users.look_up(4_000_000)
+    assert users.actor(4_000_000) == "terminal:4000000"
+    assert users.actor(UID) == ME
+
+
+async def test_faults_and_alarms_come_with_their_remedy(rig: DaemonRig, operator: Operator) -> None:
+    await rig.idle()
+    await rig.unit.machine.fail(LinkLost("aux_1"))
+    await rig.to(State.ABORTED)
+    await rig.unit.background.drain()
+    report = await operator.status()
+    assert [fault.text for fault in report.faults] == [str(LinkLost("aux_1"))]
+    assert [(alarm.number, alarm.text) for alarm in report.alarms] == [
+        (202, str(LinkLost("aux_1")))
+    ]
+    assert report.alarms[0].remedy == LinkLost.remedy
+    assert isinstance(await operator.ask(AcknowledgeCommand(number=202)), Taken)
+    report = await operator.status()
+    assert report.alarms == ()
+    assert len(report.faults) == 1, "acknowledging releases nothing"
+
+
+async def test_what_is_broken_is_said_and_not_raised(
+    rig: DaemonRig, operator: Operator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(*_: object) -> None:
+        raise StoreUnavailable("disk gone")
+
+    rig.bench.cell.aux_2.faults["state"] = StaleData("2 s")
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
+    (rig.bench.calibrations.path / "head_1.json").unlink()
+    monkeypatch.setattr(RunStore, "active_alarms", gone)
+    report = await operator.status()
+    assert "F207" in report.links["robots.aux_2"]
+    assert report.links["robots.main"] == ""
+    assert report.guard_trip == "raw limit: Fz 60 N"
+    assert "disk gone" in report.records
+    assert "F632" in report.calibrations[0].problem
+    assert [item.problem for item in report.calibrations[1:5]] == [""] * 4
+
+
+async def test_an_expired_calibration_is_called_so(rig: DaemonRig, operator: Operator) -> None:
+    renew_calibrations(rig.bench.calibrations.path, timedelta(minutes=-1))
+    report = await operator.status()
+    assert report.calibrations[0].problem == "expired"
+    assert report.calibrations[0].made is not None

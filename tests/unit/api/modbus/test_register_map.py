@@ -1,0 +1,121 @@
+"""The map: no overlaps, the agreed addresses, values there and back."""
+
+import math
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cellctl.api.modbus.image import WordOrder, decode, encode, input_block, millionths, thousandths
+from cellctl.api.modbus.register_map import (
+    HOLDING,
+    HOLDING_SIZE,
+    INPUT,
+    INPUT_SIZE,
+    STATUS_BITS,
+    UNDEFINED_I32,
+    Item,
+    Kind,
+    item,
+)
+from cellctl.api.modbus.status import CellStatus, Handshake, values
+from cellctl.packml import State
+
+# Written out from the agreed map, not derived from it.
+AGREED = {
+    "unit_mode": 0, "cntrl_cmd": 1, "recipe_id": 2, "options": 3, "serial": 6, "order": 18,
+    "alarm_ack_id": 26, "cmd_seq": 27, "plc_heartbeat": 40,
+    "seq_head": 0, "map_version": 1, "state": 2, "mode": 3, "state_requested": 4, "status": 5,
+    "step": 6, "ack_seq": 7, "done_seq": 8, "result": 9, "reject_code": 10, "cell_heartbeat": 11,
+    "alarm_count": 12, "first_out_alarm": 13, "alarm_1": 14, "alarm_8": 21, "recipe_active": 22,
+    "cycle_counter": 23, "run_number": 25, "validity_stereo": 27, "validity_payload": 30,
+    "pose_error_x": 31, "pose_error_rz": 41, "peak_fx": 43, "peak_mz": 53, "serial_echo": 55,
+    "test_u32": 67, "test_f32": 69, "test_text": 71,
+    "iteration": 74, "force_z": 75, "force_limit": 77, "run_result": 79, "seq_tail": 124,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("block", "size"), [(HOLDING, HOLDING_SIZE), (INPUT, INPUT_SIZE)])
+def test_items_neither_overlap_nor_leave_the_block(block: tuple[Item, ...], size: int) -> None:
+    used = [address for entry in block for address in entry.addresses]
+    assert len(used) == len(set(used))
+    assert max(used) == size - 1
+    assert size <= 125
+
+
+def test_the_addresses_are_the_agreed_ones() -> None:
+    assert {name: item(name).address for name in AGREED} == AGREED
+
+
+@pytest.mark.parametrize("order", ["big", "little"])
+def test_test_patterns_tell_the_word_order(order: WordOrder) -> None:
+    block = input_block(values(CellStatus(), Handshake(), 1), order)
+    words = list(block[67:74])
+    expected = [0x1234, 0x5678] if order == "big" else [0x5678, 0x1234]
+    assert words[:2] == expected
+    assert words[2:4] == ([0x42F6, 0xE979] if order == "big" else [0xE979, 0x42F6])
+    assert words[4:] == [0x4142, 0x4344, 0x4546]
+
+
+@given(st.integers(-(2**31), 2**31 - 1), st.sampled_from(["big", "little"]))
+def test_i32_survives_the_wire(value: int, order: WordOrder) -> None:
+    entry = Item(0, "x", "", Kind.I32, length=2)
+    assert decode(entry, encode(entry, value, order), order) == value
+
+
+@given(st.text("ABCXYZ0189._-", max_size=24))
+def test_text_survives_the_wire(text: str) -> None:
+    entry = Item(0, "x", "", Kind.TEXT, length=12)
+    assert decode(entry, encode(entry, text, "big"), "big") == text
+
+
+def test_lengths_become_micrometres_and_angles_microdegrees() -> None:
+    status = CellStatus(
+        error_mm_deg=(0.0123, -0.05, 12.0, 0.005, -0.0049999, 180.0),
+        force_peaks=(35.0, -0.5, 49.999, 1.25, 0.0, -2.0),
+    )
+    shown = values(status, Handshake(), 7)
+    assert [shown[f"pose_error_{a}"] for a in ("x", "y", "z", "rx", "ry", "rz")] == [
+        12, -50, 12000, 5000, -5000, 180_000_000,
+    ]  # fmt: skip
+    assert [shown[f"peak_{a}"] for a in ("fx", "fy", "fz", "mx", "my", "mz")] == [
+        35000, -500, 49999, 1250, 0, -2000,
+    ]  # fmt: skip
+
+
+def test_what_does_not_exist_is_undefined_and_what_is_too_large_is_clipped() -> None:
+    assert thousandths(math.nan) == UNDEFINED_I32
+    assert millionths(1e9) == 2**31 - 1
+    assert thousandths(-math.inf) == -(2**31 - 1)
+    assert values(CellStatus(), Handshake(), 1)["force_z"] == UNDEFINED_I32
+
+
+def test_the_status_word_has_its_bits() -> None:
+    names = [name for name, _ in STATUS_BITS]
+    busy = values(CellStatus(simulation=True), Handshake(ack_seq=3, done_seq=2), 1)["status"]
+    assert busy == (1 << names.index("busy")) | (1 << names.index("simulation"))
+    changing = CellStatus(state=State.CLEARING, state_requested=State.STOPPED)
+    done = values(changing, Handshake(ack_seq=3, done_seq=3, heartbeat_lost=True), 1)["status"]
+    assert done == sum(
+        1 << names.index(n) for n in ("done", "heartbeat_lost", "state_change_in_process")
+    )
+    assert values(CellStatus(), Handshake(), 1)["status"] == 0
+
+
+def test_alarms_beyond_eight_are_counted() -> None:
+    shown = values(CellStatus(alarms=tuple(range(501, 511))), Handshake(), 1)
+    assert shown["alarm_count"] == 10
+    assert (shown["alarm_1"], shown["alarm_8"]) == (501, 508)
+
+
+def test_head_and_tail_agree() -> None:
+    block = input_block(values(CellStatus(), Handshake(), 0xBEEF), "big")
+    assert block[0] == block[124] == 0xBEEF
+
+
+def test_the_documented_map_is_current() -> None:
+    from cellctl.api.modbus.document import register_map_document
+
+    page = Path(__file__).parents[3] / "docs/register-map.md"
+    assert page.read_text(encoding="utf-8") == register_map_document()

@@ -1,0 +1,57 @@
+"""`cellctl calibrate invalidate`: by hand, with a reason, on record."""
+
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.calibration.invalidation import require_not_invalidated
+from cellctl.cli.commands import app
+from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
+from cellctl.records.store import RunStore
+from cellctl.runtime.calibration_folder import CalibrationFolder
+from tests.unit.cell.bench import CELL_FILE, renew_calibrations
+
+ARGUMENTS = ("--reason", "camera knocked", "--by", "OP-3")
+
+
+@pytest.fixture
+def cell(tmp_path: Path) -> Path:
+    text = CELL_FILE.read_text(encoding="utf-8")
+    text = text.replace("demo-calibration", "calibration")
+    (tmp_path / "features").symlink_to(CELL_FILE.parent / "features")
+    (tmp_path / "cell.toml").write_text(text.replace("runs/cell", str(tmp_path / "store")))
+    renew_calibrations(tmp_path / "calibration")
+    return tmp_path / "cell.toml"
+
+
+def invalidate(cell: Path, name: str) -> str:
+    arguments = ["calibrate", "invalidate", name, *ARGUMENTS, "--cell", str(cell)]
+    result = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_production_is_refused_and_the_store_knows_who_said_so(cell: Path) -> None:
+    RunStore(cell.parent / "store").close()
+    assert "head_1 is invalid until it is made anew" in invalidate(cell, "head_1")
+    folder = CalibrationFolder(cell.parent / "calibration")
+    fault = folder.fault(timedelta(0))
+    assert isinstance(fault, CalibrationInvalidated)
+    assert "camera knocked (OP-3)" in fault.detail
+    store = RunStore(cell.parent / "store", create=False)
+    (known,) = store.calibrations()
+    store.close()
+    assert known.kind == "head_1"
+
+
+def test_it_holds_without_a_store_too(cell: Path) -> None:
+    assert "not in the audit log" in invalidate(cell, "payload")
+    with pytest.raises(CalibrationInvalidated):
+        require_not_invalidated(cell.parent / "calibration", "payload")
+
+
+def test_a_mistyped_name_is_said(cell: Path) -> None:
+    with pytest.raises(CalibrationMissing, match="head_3"):
+        invalidate(cell, "head_3")

@@ -1,0 +1,193 @@
+"""What the line may ask for, and what becomes of its numbers and alarms."""
+
+import threading
+from datetime import timedelta
+from typing import Any
+
+import pytest
+from sqlalchemy import select
+
+from cellctl.command import arbiter as line
+from cellctl.errors.force import SensorSilent
+from cellctl.errors.link import LinkLost
+from cellctl.errors.records import RecordNotWritten
+from cellctl.packml.command import Command
+from cellctl.packml.mode import Mode
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+from cellctl.records.schema import AuditRow
+from cellctl.records.store import RunStore
+from tests.unit.cell.bench import renew_calibrations
+from tests.unit.daemon_rig import DaemonRig
+
+
+def audit(store: RunStore) -> list[tuple[str, str, dict[str, Any]]]:
+    with store._database.read() as session:
+        rows = session.scalars(select(AuditRow).order_by(AuditRow.id)).all()
+        return [(row.actor, row.action, row.detail) for row in rows]
+
+
+@pytest.mark.parametrize(
+    ("fields", "code"),
+    [
+        ({"recipe_id": 99}, RejectCode.RECIPE_UNKNOWN),
+        ({"unit_mode": 2, "recipe_id": 1}, RejectCode.RECIPE_UNKNOWN),
+        ({"unit_mode": 2, "recipe_id": 103, "options": 1}, RejectCode.OPTIONS_UNKNOWN),
+        ({"unit_mode": 3, "recipe_id": 1}, RejectCode.STATE_NOT_IN_MODE),
+        ({"unit_mode": 9}, RejectCode.MODE_NOT_CONFIGURED),
+        ({"unit_mode": 77}, RejectCode.MODE_UNDEFINED),
+    ],
+)
+async def test_a_start_is_refused_with_its_reason(
+    rig: DaemonRig, fields: dict[str, int], code: RejectCode
+) -> None:
+    await rig.idle()
+    assert await rig.take(Command.START, **fields) is code
+    assert rig.unit.machine.state is State.IDLE
+    assert rig.unit.work.shown is None
+
+
+async def test_an_expiring_calibration_refuses_production_only(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert rig.shown().ready
+    renew_calibrations(rig.bench.calibrations.path, timedelta(minutes=10))
+    assert not rig.shown().ready
+    assert rig.shown().calibration_ok
+    assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+    assert await rig.take(Command.UNDEFINED, unit_mode=2) is RejectCode.NONE
+    assert rig.shown().ready
+
+
+async def test_devices_that_are_not_ready_refuse_a_start(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert rig.shown().ready
+    rig.bench.cell.aux_1.looks["emergency_stop"] = True
+    assert not rig.shown().ready
+    assert await rig.take(Command.START) is RejectCode.DEVICE_NOT_READY
+    rig.bench.cell.aux_1.looks.clear()
+    rig.bench.cell.guard.faults["check"] = SensorSilent("2 s")
+    assert not rig.shown().ready
+    assert await rig.take(Command.START) is RejectCode.DEVICE_NOT_READY
+    rig.bench.cell.guard.faults.clear()
+    assert await rig.take(Command.START) is RejectCode.NONE
+    await rig.to(State.COMPLETED)
+
+
+async def test_nothing_moves_before_the_devices_are_connected(rig: DaemonRig) -> None:
+    rig.bench.cell.connected = False
+    assert await rig.take(Command.RESET) is RejectCode.DEVICE_NOT_READY
+    rig.bench.cell.connected = True
+    assert await rig.take(Command.RESET) is RejectCode.NONE
+
+
+async def test_the_number_is_noted_before_anything_moves(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert await rig.archive.do(RunStore.line_seq) == rig._seq
+    await rig.take(Command.STOP)
+    await rig.unit.background.drain()
+    assert await rig.archive.do(RunStore.line_seq) == rig._seq
+    assert rig._seq == 2
+
+
+async def test_a_number_that_cannot_be_noted_stops_motion_but_not_stop(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    await rig.idle()
+    monkeypatch.setattr(RunStore, "note_line_seq", full)
+    assert await rig.take(Command.START) is RejectCode.RECORDS_NOT_READY
+    assert rig.unit.machine.state is State.IDLE
+    assert await rig.take(Command.STOP) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+
+
+async def test_a_disk_that_hangs_refuses_what_may_move_and_holds_nothing_up(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = threading.Event()
+    monkeypatch.setattr(RunStore, "note_line_seq", lambda *_: disk.wait(10))
+    monkeypatch.setattr(line, "DISK_TIMEOUT_S", 0.05)
+    try:
+        assert await rig.take(Command.RESET) is RejectCode.RECORDS_NOT_READY
+        assert rig.unit.machine.state is State.STOPPED
+        assert rig.shown().alarms == (809,)
+        assert await rig.take(Command.ABORT) is RejectCode.NONE
+        await rig.to(State.ABORTED)
+    finally:
+        disk.set()
+
+
+async def test_alarms_live_until_they_are_acknowledged(rig: DaemonRig) -> None:
+    await rig.idle()
+    await rig.unit.machine.fail(LinkLost("aux_1"))
+    await rig.to(State.ABORTED)
+    assert (rig.shown().alarms, rig.shown().error, rig.shown().warning) == ((202,), True, False)
+    await rig.idle()
+    status = rig.shown()
+    assert (status.alarms, status.error, status.warning) == ((202,), False, True)
+    assert status.first_out_alarm == 0
+    await rig.restart()
+    assert rig.shown().alarms == (202,)
+
+    assert await rig.take(Command.UNDEFINED, alarm_ack_id=501) is RejectCode.ALARM_UNKNOWN
+    assert await rig.take(Command.UNDEFINED, alarm_ack_id=202, order="OP-3") is RejectCode.NONE
+    assert rig.port.ended[rig._seq] is Result.GOOD
+    assert (rig.shown().alarms, rig.shown().warning) == ((), False)
+    assert await rig.archive.do(RunStore.active_alarms) == []
+    await rig.unit.background.drain()
+    last = await rig.archive.do(audit)
+    assert last[-1][0] == "OP-3"
+    assert last[-1][2]["acknowledged"] == 202
+
+
+async def test_a_latched_fault_stays_though_it_is_acknowledged(rig: DaemonRig) -> None:
+    await rig.idle()
+    await rig.unit.machine.fail(LinkLost("aux_1"))
+    await rig.to(State.ABORTED)
+    assert await rig.take(Command.UNDEFINED, alarm_ack_id=202) is RejectCode.NONE
+    assert (rig.shown().alarms, rig.shown().error) == ((202,), True)
+    await rig.idle()
+    assert rig.shown().alarms == ()
+
+
+async def test_stop_is_obeyed_whatever_else_it_asks_for(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert await rig.take(Command.STOP, alarm_ack_id=999, unit_mode=77) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+
+
+async def test_the_mode_changes_without_a_command(rig: DaemonRig) -> None:
+    for _ in range(2):
+        assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
+        assert rig.port.ended[rig._seq] is Result.GOOD
+    assert rig.unit.machine.mode is Mode.MANUAL
+    assert await rig.take(Command.UNDEFINED, unit_mode=0) is RejectCode.COMMAND_UNDEFINED
+
+
+async def test_nothing_is_armed_or_moved_in_manual(rig: DaemonRig) -> None:
+    assert await rig.take(Command.RESET, unit_mode=3) is RejectCode.STATE_NOT_IN_MODE
+    assert rig.unit.machine.mode is Mode.PRODUCTION
+    await rig.idle()
+    assert await rig.take(Command.STOP) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+    moves = len(rig.bench.cell.main.moves)
+    assert await rig.take(Command.UNDEFINED, unit_mode=3) is RejectCode.NONE
+    assert await rig.take(Command.RESET) is RejectCode.STATE_NOT_IN_MODE
+    assert rig.bench.cell.main.latched
+    assert len(rig.bench.cell.main.moves) == moves
+    assert not rig.shown().ready
+
+
+async def test_what_was_commanded_is_in_the_audit_log(rig: DaemonRig) -> None:
+    await rig.started(serial="SAT-9", order="OP-3")
+    await rig.to(State.COMPLETED)
+    await rig.unit.background.drain()
+    entries = await rig.archive.do(audit)
+    assert [(actor, action) for actor, action, _ in entries] == [
+        ("line", "reset"),
+        ("OP-3", "start"),
+    ]
+    assert entries[1][2]["serial"] == "SAT-9"

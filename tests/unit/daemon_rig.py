@@ -1,0 +1,160 @@
+"""The daemon's unit and line around a cell in memory; only vision and contact are stood in for."""
+
+import asyncio
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.status import CellStatus
+from cellctl.command.arbiter import Line
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame import preparation
+from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
+from cellctl.processes.deck_to_frame.measuring import HeadGeometry
+from cellctl.processes.deck_to_frame.steps import mate_deck
+from cellctl.records.async_store import Archive
+from cellctl.records.entries import RunHead, RunRecord
+from cellctl.records.store import RunStore
+from cellctl.runtime.unit import Unit
+from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
+from tests.unit.processes.deck_to_frame.rig import curve, seated
+
+WAIT_S = 10.0
+
+
+class PaperPort:
+    """What the line would see."""
+
+    def __init__(self) -> None:
+        self.status = CellStatus()
+        self.ended: dict[int, Result] = {}
+        self.beats = 0
+        self.line_alive = False
+
+    def publish(self, status: CellStatus) -> None:
+        self.status = status
+
+    def finish(self, seq: int, result: Result) -> bool:
+        self.ended[seq] = result
+        return True
+
+    def beat(self) -> None:
+        self.beats += 1
+
+
+class Contact:
+    """Takes the deck to its seat without feeling anything; a test may stop it there."""
+
+    def __init__(self) -> None:
+        self.reached = asyncio.Event()
+        self.may_end = asyncio.Event()
+        self.may_end.set()
+        self.matings = 0
+        self.fault: Exception | None = None
+
+    async def __call__(
+        self, robot: Any, guard: Any, measured_plan: Any, report: Any, max_tries: int
+    ) -> MatingResult:
+        plan = await measured_plan(1)
+        self.matings += 1
+        report(MatingProgress(MatingPhase.ENDED, 0.01, 36.0, curve=curve()))
+        robot.flange = plan.pose_at(plan.window.expected_m)
+        self.reached.set()
+        await self.may_end.wait()
+        if self.fault is not None:
+            raise self.fault
+        return seated(plan)
+
+
+class DaemonRig:
+    """Unit, line and archive."""
+
+    def __init__(self, bench: Bench, store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.bench = bench
+        self.contact = Contact()
+        self.measurers: list[TruthMeasurer] = []
+        bench.cell.workers.answers["draw"] = lambda *_: b"picture"
+        monkeypatch.setattr(preparation, "PartMeasurer", self._measurer)
+        monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
+        self._store = store
+        self._seq = 0
+
+    async def open(self) -> None:
+        """As a daemon starts on this store."""
+        self.archive = Archive(self._store)
+        self.unit = Unit(self.bench.as_cell, self.archive)
+        self.line = Line(self.unit, self.archive)
+        self.port = PaperPort()
+        self.line.attach(cast(PlcPort, self.port))
+        await self.unit.open()
+        await self.unit.come_up()
+        self.states: list[State] = []
+        self.unit.machine.on_change.append(self._changed)
+
+    async def close(self) -> None:
+        await self.unit.close()
+        self.archive.close()
+
+    async def restart(self) -> None:
+        await self.close()
+        await self.open()
+
+    async def take(self, command: Command, **fields: Any) -> RejectCode:
+        """A command of the line with the next number."""
+        self._seq += 1
+        fields = {"recipe_id": 1, "unit_mode": 0} | fields
+        return await self.line.take(start_command(self._seq, cntrl_cmd=command, **fields))
+
+    async def ask(self, command: Command, by: str = "terminal:anna", **fields: Any) -> RejectCode:
+        """A command of the terminal."""
+        fields = {"recipe_id": 1, "unit_mode": 0} | fields
+        return await self.line.take(start_command(0, cntrl_cmd=command, by=by, **fields))
+
+    async def to(self, *states: State) -> State:
+        return await self.unit.machine.wait_for(*states, timeout_s=WAIT_S)
+
+    async def idle(self) -> None:
+        """From wherever the unit rests."""
+        if self.unit.machine.state is State.ABORTED:
+            assert await self.take(Command.CLEAR) is RejectCode.NONE
+            await self.to(State.STOPPED)
+        if self.unit.machine.state is not State.IDLE:
+            assert await self.take(Command.RESET) is RejectCode.NONE
+            await self.to(State.IDLE)
+
+    async def started(self, **fields: Any) -> int:
+        """Idle, then Start is taken; its number."""
+        await self.idle()
+        assert await self.take(Command.START, **fields) is RejectCode.NONE
+        return self._seq
+
+    async def until(self, condition: Callable[[], bool]) -> None:
+        async with asyncio.timeout(WAIT_S):
+            while not condition():  # noqa: ASYNC110 - whatever the unit does next may be it
+                await asyncio.sleep(0)
+
+    async def runs(self) -> list[RunHead]:
+        await self.unit.background.drain()
+        return await self.archive.do(RunStore.runs)
+
+    async def record(self, number: int = 1) -> RunRecord:
+        await self.unit.background.drain()
+        return await self.archive.do(RunStore.run, number)
+
+    def shown(self) -> CellStatus:
+        self.line.publish()
+        return self.port.status
+
+    def _measurer(self, cell: object, geometry: HeadGeometry, method: str) -> TruthMeasurer:
+        self.measurers.append(TruthMeasurer(self.bench, geometry, self.bench.base_T_c1()))
+        return self.measurers[-1]
+
+    def _changed(self, before: State, after: State) -> None:
+        if before is not after:
+            self.states.append(after)

@@ -1,0 +1,119 @@
+"""The commissioning procedures on the fake cell's world, on simulated time."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from benchmarks.campaign_mating_cell import MatingCell
+from benchmarks.campaign_mating_loop import run_simulated
+from cellctl.errors.force import CommissioningFailed, NotSettled
+from cellctl.errors.robot import SpeedOverridden
+from cellctl.interfaces import RobotState
+from cellctl.procedures import payload
+from cellctl.procedures.payload import still_wrench
+from cellctl.procedures.stop_latency import StopLatency, measure_stop_latency
+from cellctl.runtime.job import HeldMeanwhile
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+async def go_on(_number: int, _total: int) -> None:
+    """No Hold is pending."""
+
+
+def measured(latency_s: float) -> tuple[MatingCell, StopLatency]:
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=latency_s)
+
+    async def run() -> StopLatency:
+        return await measure_stop_latency(
+            cell.robot, UP, go_on, speeds_m_s=(3e-3, 5e-3, 8e-3), repeats=2
+        )
+
+    result = run_simulated(cell.start_s, cell.advance, run)
+    assert isinstance(result, StopLatency)
+    return cell, result
+
+
+@pytest.mark.parametrize("latency_s", [0.05, 0.25])
+def test_the_latency_of_the_fake_is_found(latency_s: float) -> None:
+    cell, found = measured(latency_s)
+    braking_s = 2.0 * np.mean(found.speeds_m_s) / 2.0 / 0.5
+    assert found.estimate.latency_s == pytest.approx(latency_s + braking_s, abs=0.006)
+    assert found.estimate.upper_s > latency_s
+    assert not cell.controller.latched, "left ready to move"
+
+
+def test_a_robot_that_overhears_the_stop_is_no_latency() -> None:
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    before_m = cell.robot.reported.translation
+
+    async def run() -> None:
+        cell.faults.inject("ignore_stop", count=None)
+        await measure_stop_latency(cell.robot, UP, go_on, speeds_m_s=(8e-3,), repeats=1)
+
+    with pytest.raises(Exception, match="F304"):
+        run_simulated(cell.start_s, cell.advance, run)
+    assert cell.robot.reported.translation[2] - before_m[2] < 0.031
+
+
+def test_too_few_speeds_are_refused() -> None:
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+
+    async def run() -> StopLatency:
+        return await measure_stop_latency(cell.robot, UP, go_on, speeds_m_s=(8e-3,), repeats=1)
+
+    with pytest.raises(CommissioningFailed, match="three or more"):
+        run_simulated(cell.start_s, cell.advance, run)
+
+
+def test_a_robot_that_is_slowed_down_at_its_panel_measures_nothing() -> None:
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    before_m, full = cell.robot.reported.translation, cell.robot.state
+
+    def slowed(max_age_s: float = 0.25) -> RobotState:
+        return replace(full(max_age_s), speed_override_ratio=0.5)
+
+    cell.robot.state = slowed  # type: ignore[method-assign]
+
+    async def run() -> StopLatency:
+        return await measure_stop_latency(cell.robot, UP, go_on)
+
+    with pytest.raises(SpeedOverridden, match="50 %"):
+        run_simulated(cell.start_s, cell.advance, run)
+    np.testing.assert_allclose(cell.robot.reported.translation, before_m, atol=1e-4)
+
+
+def test_a_hold_is_obeyed_before_each_stop() -> None:
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    asked: list[tuple[int, int]] = []
+
+    async def held_at_the_second(number: int, total: int) -> None:
+        asked.append((number, total))
+        if number == 2:
+            raise HeldMeanwhile
+
+    async def run() -> StopLatency:
+        return await measure_stop_latency(
+            cell.robot, UP, held_at_the_second, speeds_m_s=(5e-3, 8e-3), repeats=1
+        )
+
+    with pytest.raises(HeldMeanwhile):
+        run_simulated(cell.start_s, cell.advance, run)
+    assert asked == [(1, 2), (2, 2)]
+
+
+def test_a_still_wrench_is_the_mean_of_steady_readings(monkeypatch: pytest.MonkeyPatch) -> None:
+    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
+
+    async def run() -> tuple[object, np.ndarray]:
+        return await still_wrench(cell.robot, cell.guard, cell.flange_T_sensor)
+
+    _, wrench = run_simulated(cell.start_s, cell.advance, run)
+    sensor = cell.world.truth.sensor
+    load = np.linalg.solve(sensor.matrix, wrench - sensor.offset)
+    assert np.linalg.norm(load[:3]) == pytest.approx(200.0 * 9.80665, rel=0.002)
+    monkeypatch.setattr(payload, "STEADY_N", 0.1)
+    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
+    with pytest.raises(NotSettled, match="scatter"):
+        run_simulated(cell.start_s, cell.advance, run)

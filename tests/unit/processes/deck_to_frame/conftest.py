@@ -1,0 +1,23 @@
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cellctl.cell import settling
+from tests.unit.cell.bench import Bench, make_bench
+from tests.unit.processes.deck_to_frame.rig import RunRig
+
+
+@pytest.fixture
+def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
+    """What hangs on the robot is still at once."""
+    monkeypatch.setattr(settling, "WINDOW_S", 0.0)
+    monkeypatch.setattr(settling, "POLL_S", 0.0)
+    return make_bench(tmp_path)
+
+
+@pytest.fixture
+def rig(bench: Bench, tmp_path: Path) -> Iterator[RunRig]:
+    rig = RunRig(bench, tmp_path / "store")
+    yield rig
+    rig.archive.close()

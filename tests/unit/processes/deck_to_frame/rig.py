@@ -1,0 +1,110 @@
+"""A run of the assembly in memory: real steps, real journal, a true world instead of pictures."""
+
+from datetime import timedelta
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.force.curve import ForceCurve, curve_statistics
+from cellctl.force.seat import SeatVerdict
+from cellctl.processes.deck_to_frame.journal import Journal
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
+from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
+from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.records.async_store import Archive
+from cellctl.records.entries import RunRecord
+from cellctl.records.store import RunStore
+from cellctl.runtime.commissioned import Commissioned
+from cellctl.runtime.progress import ProgressBoard
+from cellctl.workers import VisionWorkers
+from tests.unit.cell.bench import Bench, TruthMeasurer
+from tests.unit.records.conftest import start
+
+
+class Pauses:
+    """A safe point that tells when it was asked, and holds where a test wants it to."""
+
+    def __init__(self, held_at: tuple[int, ...] = ()) -> None:
+        self.asked: list[bool] = []
+        self._held_at = held_at
+
+    async def __call__(self, *, hold: bool = False) -> bool:
+        self.asked.append(hold)
+        return hold or len(self.asked) in self._held_at
+
+
+class RunRig:
+    """One open run."""
+
+    def __init__(self, bench: Bench, store: Path) -> None:
+        self.bench = bench
+        self.archive = Archive(store)
+        self.number = self.archive._thread.submit(lambda: start(self.archive._store)).result()
+        self.pauses = Pauses()
+        bench.cell.workers.answers["draw"] = lambda *_: b"picture"
+        self.board = ProgressBoard()
+        workers = cast(VisionWorkers, bench.cell.workers)
+        self.journal = Journal(self.archive, workers, self.number)
+        self.calibrations = bench.calibrations.read(timedelta(0))
+        geometry = self.calibrations.geometry
+        heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+        self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
+
+    def run(self, **changes: Any) -> AssemblyRun:
+        frame, deck = self.bench.features()
+        values: dict[str, Any] = {
+            "cell": self.bench.as_cell,
+            "recipe": self.bench.cell.config.recipes[0],
+            "calibrations": self.calibrations,
+            "commissioned": Commissioned(),
+            "payload_kg": 200.0,
+            "frame_features": frame,
+            "deck_features": deck,
+            "board": self.board,
+            "journal": self.journal,
+            "pause": self.pauses,
+            "measurer": cast(PartMeasurer, self.truth),
+        }
+        return AssemblyRun(**(values | changes))
+
+    async def record(self) -> RunRecord:
+        return await self.archive.do(RunStore.run, self.number)
+
+    @property
+    def true_deck(self) -> RigidTransform:
+        """``M_T_D`` as it really is."""
+        world, flange = self.bench.world, self.bench.cell.main.flange
+        return world.base_T_frame.inv() * flange * world.robot_error * world.flange_T_deck
+
+
+def curve(samples: int = 50, force_n: float = 36.0) -> ForceCurve:
+    time_s = np.arange(samples) * 1e-3
+    wrench = np.zeros((samples, 6))
+    wrench[:, 2] = np.linspace(0.0, force_n, samples)
+    return ForceCurve(time_s, wrench, np.linspace(0.0, 0.01, samples))
+
+
+def seated(plan: MatingPlan) -> MatingResult:
+    reading = Reading(1.0, 0.01, np.array([1.0, 0, 36.0, 0, 0, 0]), np.full(6, 0.3))
+    felt = curve()
+    return MatingResult(
+        outcome=MatingOutcome.SEATED,
+        window=plan.window,
+        speed=plan.speed,
+        segment_m=plan.segment_m,
+        tare=Tare(np.zeros(6), np.ones(6)),
+        touch_travel_m=0.01,
+        touch_force_n=12.0,
+        creep=(reading,),
+        stiffness=None,
+        hold=reading,
+        verdict=SeatVerdict(36.0, 1e-5, 1.0, 0.5, ()),
+        relaxing=(),
+        gave_way=(),
+        curve=felt,
+        statistics=curve_statistics(felt.time_s, felt.wrench),
+        duration_s=20.0,
+    )

@@ -1,0 +1,91 @@
+"""Guarded moves on simulated time, with the swing of the load and real contact: no false alarm."""
+
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from benchmarks.campaign_mating_cell import MatingCell
+from benchmarks.campaign_mating_loop import run_simulated
+from benchmarks.campaign_mating_trial import nominal_settings, plan_for
+from cellctl.cell.devices import Cell
+from cellctl.config import load_cell
+from cellctl.errors.force import ForceLimitExceeded
+from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
+from cellctl.processes.deck_to_frame.mating.mate import mate
+from cellctl.processes.deck_to_frame.run import AssemblyRun
+from tests.unit.cell.bench import CELL_FILE
+
+LATENCY_S = 0.05
+
+
+def cell_of(world: MatingCell) -> Cell:
+    parts = SimpleNamespace(
+        main=world.robot,
+        guard=world.guard,
+        config=load_cell(CELL_FILE),
+        base_T_frame=None,
+        awaits_trips=False,
+    )
+    return cast(Cell, parts)
+
+
+def run_on(world: MatingCell) -> AssemblyRun:
+    values: dict[str, Any] = dict.fromkeys(AssemblyRun.__dataclass_fields__)
+    cell = cell_of(world)
+    values |= {"cell": cell, "recipe": cell.config.recipes[0], "payload_kg": 200.0}
+    return AssemblyRun(**values | {"flange_T_deck": world.calibrated_deck()})
+
+
+def raised(world: MatingCell, height_m: float) -> RigidTransform:
+    up = RigidTransform.from_translation([0.0, 0.0, height_m])
+    return up * world.arm.encoder_pose(world.world.time_s)
+
+
+def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
+    world = MatingCell(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    plan = plan_for(world, nominal_settings(LATENCY_S))
+    seated_n: list[float] = []
+
+    async def mate_and_lift() -> None:
+        await mate(world.robot, world.guard, plan, lambda _: None)
+        seated_n.append(world.world.payload.contact_force_n)
+        await lift_off(cell_of(world))
+
+    run_simulated(world.start_s, world.advance, mate_and_lift)
+    assert seated_n[0] > 10.0
+    assert world.world.payload.contact_force_n == 0.0
+    travel_m = plan.travel_of(world.arm.encoder_pose(world.world.time_s))
+    np.testing.assert_allclose(plan.window.expected_m - travel_m, LIFT_M, atol=2e-4)
+    assert world.guard.trip is None
+
+
+def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
+    world = MatingCell(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    run, above = run_on(world), raised(world, 0.04)
+
+    async def up_and_down() -> None:
+        await run.move_flange(above)
+        await run.lower_flange(RigidTransform.from_translation([0, 0, -0.015]) * above)
+
+    run_simulated(world.start_s, world.advance, up_and_down)
+    assert world.guard.trip is None
+    moved = world.arm.encoder_pose(world.world.time_s).translation - above.translation
+    np.testing.assert_allclose(moved, [0, 0, -0.015], atol=1e-5)
+
+
+def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
+    world = MatingCell(9, stiffness_n_m=1e5, stop_latency_s=LATENCY_S)
+    run, below = run_on(world), raised(world, -0.013)
+
+    async def down() -> None:
+        await run.lower_flange(below)
+
+    with pytest.raises(ForceLimitExceeded, match="Fz"):
+        run_simulated(world.start_s, world.advance, down)
+    stopped = world.arm.encoder_pose(world.world.time_s).translation - below.translation
+    assert stopped[2] > 1.5e-3, "where it met the frame, and no farther"
+    assert world.controller.latched
+    assert not world.arm.moving(world.world.time_s)

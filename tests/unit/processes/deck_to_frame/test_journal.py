@@ -1,0 +1,78 @@
+"""What the steps find out, as it lies in the store."""
+
+import cv2
+import numpy as np
+import pytest
+
+from cellctl.force.curve import ForceCurve
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.journal import draw, rms_um
+from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
+from cellctl.records.recording import read_recording
+from cellctl.vision.measurement import PairMeasurement
+from tests.unit.cell.bench import SIGMA, measurement
+from tests.unit.processes.deck_to_frame.rig import RunRig, curve
+
+PLACE = pose_from_xyzabc([10, 20, 500, 5, 1, 179])
+
+
+def ended(felt: ForceCurve) -> MatingProgress:
+    return MatingProgress(MatingPhase.ENDED, 0.01, 36.0, curve=felt)
+
+
+async def test_a_measurement_with_its_pictures(rig: RunRig) -> None:
+    found = measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA)
+    for _ in range(2):
+        await rig.journal.measurement("frame", found)
+    record = await rig.record()
+    entry = record.measurements[0]
+    assert entry.pose_mm_deg == pytest.approx((10, 20, 500, 5, 1, 179))
+    assert entry.sigma_mm_deg[:3] == pytest.approx(SIGMA[:3] * 1e3)
+    assert entry.detail["outliers"] == []
+    assert set(entry.detail["residuals_mm"]) == {h.name for h in rig.bench.features()[0].holes}
+    names = [artefact.name for artefact in record.artefacts]
+    assert names[0] == "frame-head-1-left.jpg"
+    assert names[4] == "frame-again-2-head-1-left.jpg", "the second does not hide the first"
+    assert len(set(names)) == 8
+
+
+async def test_residuals_are_summed_up(rig: RunRig) -> None:
+    found = measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA)
+    found.pose.residuals_m[:, 0] = 3e-6
+    found.pose.residuals_m[:, 2] = 4e-6
+    assert rms_um(found) == pytest.approx(5.0)
+
+
+async def test_the_grip_is_recorded(rig: RunRig) -> None:
+    await rig.journal.deck_on_flange(UncertainPose(PLACE, np.diag(SIGMA**2)))
+    assert (await rig.record()).measurements[0].kind == "flange_T_deck"
+
+
+async def test_force_curves_are_kept_once_and_can_be_read(rig: RunRig) -> None:
+    rig.journal.mating_progress(ended(curve(50, 20.0)))
+    await rig.journal.force_curves()
+    rig.journal.mating_progress(MatingProgress(MatingPhase.SLOW, 0.009, 0.0))
+    rig.journal.mating_progress(ended(curve(80, 36.0)))
+    rig.journal.mating_progress(ended(ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))))
+    await rig.journal.force_curves()
+    await rig.journal.force_curves()
+    record = await rig.record()
+    assert [a.name for a in record.artefacts] == ["force-1.mcap", "force-2.mcap"]
+    data = await rig.archive.do(lambda store: store.artefacts.get(record.artefacts[1].sha256))
+    recording = read_recording(data)
+    assert recording.complete
+    assert recording.facts["attempt"] == "2"
+    assert len(recording.curve.time_s) == 80
+    assert rig.journal.force_peaks()[2] == pytest.approx(36.0)
+
+
+def test_peaks_are_unknown_before_the_first_contact(rig: RunRig) -> None:
+    assert np.isnan(rig.journal.force_peaks()).all()
+
+
+def test_a_picture_is_a_jpeg() -> None:
+    data = draw(np.zeros((40, 60), np.uint8), PairMeasurement("default", ()), "left")
+    picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
+    assert picture is not None
+    assert picture.shape == (40, 60, 3)

@@ -1,0 +1,128 @@
+"""Who may take the deck off the frame unasked: the mating, after its own faults, nobody else."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any, cast
+
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.base import CellError
+from cellctl.errors.force import (
+    ContactEarly,
+    FlangePoseStale,
+    GuardDied,
+    GuardRefused,
+    MatingOverforce,
+    NotSettled,
+    SensorSilent,
+)
+from cellctl.errors.link import LinkLost
+from cellctl.errors.robot import MotionAborted, RobotNotReady, StopFailed
+from cellctl.force.curve import ForceCurve
+from cellctl.guard.report import GuardHealth
+from cellctl.interfaces import RobotMode
+from cellctl.processes.deck_to_frame.mating.attempt import Attempt
+from cellctl.processes.deck_to_frame.mating.recorder import Recorder
+from cellctl.processes.deck_to_frame.mating.retreat import retreat
+from tests.unit.cell.guard import TinyGuard
+from tests.unit.cell.robots import StillRobot
+from tests.unit.processes.deck_to_frame.rig import curve
+from tests.unit.processes.deck_to_frame.test_mate_plan import plan
+
+TRAVEL_M = 0.009
+
+
+@dataclass
+class Guard(TinyGuard):
+    """Says how well it is."""
+
+    well: GuardHealth = field(default_factory=lambda: GuardHealth(alive=True, stop_channel_up=True))
+
+    def health(self) -> GuardHealth:
+        return self.well
+
+
+class Scene:
+    """Stopped on the way down, latched by the guard's stop."""
+
+    def __init__(self, **looks: Any) -> None:
+        self.plan = plan()
+        self.robot = StillRobot("main", flange=self.plan.pose_at(TRAVEL_M), looks=looks)
+        self.guard = Guard()
+        recorder = SimpleNamespace(curve=curve, travel_at=lambda _: TRAVEL_M)
+        self.attempt = Attempt(
+            self.robot, self.guard, self.plan, cast(Recorder, recorder), lambda _: None
+        )
+
+    async def after(self, fault: CellError) -> CellError:
+        await retreat(self.attempt, fault)
+        assert self.robot.stops == 1, "stopped in any case"
+        return fault
+
+    @property
+    def stayed(self) -> bool:
+        """No move, and nobody released a latch."""
+        return not self.robot.moves and self.robot.latched and not self.guard.asked
+
+
+@pytest.mark.parametrize("fault", [ContactEarly(""), MatingOverforce(""), SensorSilent("")])
+async def test_after_its_own_faults_it_backs_off_by_two_millimetres(fault: CellError) -> None:
+    scene = Scene()
+    await scene.after(fault)
+    assert [move.kind for move in scene.robot.moves] == ["linear"]
+    target = cast(RigidTransform, scene.robot.moves[0].target)
+    assert TRAVEL_M - scene.plan.travel_of(target) == pytest.approx(scene.plan.settings.back_off_m)
+    assert isinstance(getattr(fault, "curve", None), ForceCurve)
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        MotionAborted("STOP by the panel"),
+        RobotNotReady("mode MANUAL"),
+        LinkLost("main"),
+        StopFailed("main"),
+        GuardDied("killed"),
+        GuardRefused("a trip is latched"),
+        FlangePoseStale("300 ms"),
+        NotSettled("swings"),
+    ],
+)
+async def test_after_any_other_fault_the_arm_stays_stopped(fault: CellError) -> None:
+    scene = Scene()
+    await scene.after(fault)
+    assert scene.stayed
+
+
+@pytest.mark.parametrize(
+    "looks",
+    [
+        {"mode": RobotMode.MANUAL},
+        {"drives_on": False},
+        {"emergency_stop": True},
+        {"error_code": 7},
+    ],
+)
+async def test_a_robot_that_somebody_has_taken_over_stays_stopped(looks: dict[str, Any]) -> None:
+    scene = Scene(**looks)
+    await scene.after(MatingOverforce("46 N"))
+    assert scene.stayed
+
+
+@pytest.mark.parametrize(
+    "well", [GuardHealth(alive=False), GuardHealth(alive=True, stop_channel_up=False)]
+)
+async def test_without_a_guard_that_could_stop_it_nothing_moves(well: GuardHealth) -> None:
+    scene = Scene()
+    scene.guard.well = well
+    await scene.after(MatingOverforce("46 N"))
+    assert scene.stayed
+
+
+async def test_a_stop_that_is_not_confirmed_ends_the_retreat() -> None:
+    scene = Scene()
+    scene.robot.faults["stop"] = StopFailed("main")
+    fault = await scene.after(MatingOverforce("46 N"))
+    assert scene.stayed
+    assert "while retreating: F304" in fault.__notes__[0]

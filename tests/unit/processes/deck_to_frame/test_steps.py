@@ -1,0 +1,264 @@
+"""Steps 10 to 40 and 60 against a true world that the encoders do not see."""
+
+import asyncio
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cellctl.errors.force import ForceLimitExceeded, NotSettled
+from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.errors.vision import (
+    CorrectionDiverging,
+    CorrectionImplausible,
+    NoProgress,
+    PartMisplaced,
+    SeatedOffPosition,
+)
+from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
+from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck
+from cellctl.processes.deck_to_frame.steps.measure_frame import measure_frame
+from cellctl.processes.deck_to_frame.steps.pre_assembly import pre_assembly
+from cellctl.processes.deck_to_frame.steps.verify import verify
+from cellctl.runtime.job import HeldMeanwhile
+from tests.unit.processes.deck_to_frame.rig import Pauses, RunRig
+
+
+async def at_the_stand_off(rig: RunRig) -> AssemblyRun:
+    run = rig.run()
+    await measure_frame(run)
+    await measure_deck(run)
+    await pre_assembly(run)
+    return run
+
+
+async def test_the_frame_is_found_and_remembered(rig: RunRig) -> None:
+    run = rig.run()
+    await measure_frame(run)
+    assert run.c1_T_M is not None
+    seen = run.base_T_c1 * run.c1_T_M.pose
+    np.testing.assert_allclose(
+        pose_to_xyzabc(seen), pose_to_xyzabc(rig.bench.world.base_T_frame), atol=1e-6
+    )
+    assert rig.bench.cell.base_T_frame is not None
+    record = await rig.record()
+    assert [entry.kind for entry in record.measurements] == ["frame"]
+    names = [artefact.name for artefact in record.artefacts]
+    assert names == [
+        f"frame-head-{head}-{side}.jpg" for head in (1, 2) for side in ("left", "right")
+    ]
+
+
+async def test_a_misplaced_frame_is_refused_and_not_remembered(rig: RunRig) -> None:
+    rig.bench.world.base_T_frame = rig.bench.station * pose_from_xyzabc([40.0, 0, 0, 0, 0, 0])
+    with pytest.raises(PartMisplaced, match="frame is 40"):
+        await measure_frame(rig.run())
+    assert rig.bench.cell.base_T_frame is None
+
+
+async def test_the_deck_is_found_on_the_flange(rig: RunRig) -> None:
+    run = rig.run()
+    await measure_deck(run)
+    assert run.flange_T_deck is not None
+    expected = rig.bench.world.robot_error * rig.bench.world.flange_T_deck
+    np.testing.assert_allclose(
+        pose_to_xyzabc(run.flange_T_deck), pose_to_xyzabc(expected), atol=1e-6
+    )
+    assert [entry.kind for entry in (await rig.record()).measurements] == ["deck", "flange_T_deck"]
+
+
+async def test_a_deck_that_slipped_is_refused(rig: RunRig) -> None:
+    rig.bench.world.flange_T_deck = rig.bench.grip * pose_from_xyzabc([0, 0, 0, 4.0, 0, 0])
+    with pytest.raises(PartMisplaced, match="deck on flange"):
+        await measure_deck(rig.run())
+
+
+async def test_a_swinging_deck_is_not_measured(
+    rig: RunRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cellctl.cell.settling.TIMEOUT_S", 0.01)
+    rig.bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
+    with pytest.raises(NotSettled):
+        await measure_deck(rig.run())
+    assert rig.truth.measured == []
+
+
+async def test_the_first_assembly_motion_leads_to_the_stand_off(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    assert rig.bench.cell.main.moves[-1].kind == "linear"
+    np.testing.assert_allclose(
+        pose_to_xyzabc(rig.true_deck), [0, 0, 25.0, 0, 0, 0], atol=1e-5
+    )  # the robot's error is the same at both poses here, so nothing is left
+    assert len(run.commanded) == 1
+    np.testing.assert_array_equal(run.commanded[0].as_matrix(), run.target_M_T_D.as_matrix())
+
+
+async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    above, down = rig.bench.cell.main.moves[-2:]
+    assert above.speed == pytest.approx(0.05)
+    assert down.speed == pytest.approx(run.recipe.mating.fast_speed_mm_s * 1e-3)
+    height_mm = (above.target.translation - down.target.translation)[2] * 1e3
+    assert height_mm == pytest.approx(run.recipe.station_tolerance_mm, rel=1e-4)
+    wide, tight = rig.bench.cell.guard.limits
+    assert wide.filtered[2] == pytest.approx(2 * 200.0 * 0.2 + 50.0)
+    assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 50.0)
+    assert rig.bench.cell.guard.asked.count("tare") == 2
+    assert rig.bench.cell.guard.asked[-1] == "disarm"
+
+
+async def test_what_is_met_over_the_station_stops_the_run(rig: RunRig) -> None:
+    run = rig.run()
+    await measure_frame(run)
+    await measure_deck(run)
+    main, guard = rig.bench.cell.main, rig.bench.cell.guard
+    moves = len(main.moves)
+    main.road_is_free = asyncio.Event()
+    going = asyncio.create_task(pre_assembly(run))
+    while len(main.moves) == moves:  # noqa: ASYNC110 - the arm is on its way then
+        await asyncio.sleep(0.001)
+    guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 143.00 N, limit 142.00 N", 2)
+    while not main.stops:  # noqa: ASYNC110 - the second stop, which ends the move
+        await asyncio.sleep(0.001)
+    main.road_is_free.set()
+    with pytest.raises(ForceLimitExceeded, match="Fz 143"):
+        await going
+    assert len(main.moves) == moves + 1
+    assert main.latched
+
+
+async def test_compensation_ends_within_the_thresholds(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
+    await compensate(run)
+    np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[:3], [0, 0, 25.0], atol=0.05)
+    np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[3:], 0.0, atol=0.005)
+    iterations = (await rig.record()).iterations
+    assert [entry.converged for entry in iterations] == [False, True]
+    assert iterations[0].correction_mm_deg != ()
+    assert iterations[1].correction_mm_deg == ()
+    assert rig.board.current.iteration == 2
+    assert max(np.abs(rig.board.current.error_mm_deg)) < 0.05
+    assert run.measured_at is not None
+    assert run.M_T_D is not None
+
+
+async def test_the_paper_s_rule_converges_too(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    settings = run.recipe.compensation.model_copy(update={"rule": "paper"})
+    run.recipe = run.recipe.model_copy(update={"compensation": settings})
+    rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
+    await compensate(run)
+    np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[:3], [0, 0, 25.0], atol=0.05)
+
+
+async def test_a_second_compensation_goes_on_counting(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    await compensate(run)
+    await compensate(run)
+    assert [entry.iteration for entry in (await rig.record()).iterations] == [1, 2]
+
+
+async def test_an_implausible_jump_moves_nothing(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    moves = len(rig.bench.cell.main.moves)
+    rig.bench.world.flange_T_deck *= pose_from_xyzabc([12.0, 0, 0, 0, 0, 0])
+    with pytest.raises(CorrectionImplausible):
+        await compensate(run)
+    assert len(rig.bench.cell.main.moves) == moves
+    assert len((await rig.record()).iterations) == 1, "recorded all the same"
+
+
+async def test_a_correction_down_to_the_frame_is_not_commanded(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    moves = len(rig.bench.cell.main.moves)
+    rig.bench.world.flange_T_deck *= pose_from_xyzabc([0, 0, 6.0, 0, 0, 0])
+    with pytest.raises(TargetOutOfBounds):
+        await compensate(run)
+    assert len(rig.bench.cell.main.moves) == moves
+
+
+async def test_corrections_do_not_add_up_to_a_journey(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    slip = pose_from_xyzabc([9.0, 0, 0, 0, 0, 0])
+    rig.bench.world.flange_T_deck *= slip
+    await compensate(run)
+    rig.bench.world.flange_T_deck *= slip
+    with pytest.raises(PartMisplaced, match="commanded deck"):
+        await compensate(run)
+
+
+async def test_a_robot_that_does_not_obey_is_noticed(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    rig.bench.world.robot_error *= pose_from_xyzabc([1.0, 0, 0, 0, 0, 0])
+    stuck = rig.bench.cell.main.flange
+    main = rig.bench.cell.main
+
+    async def refuse_silently(*_: object, **__: object) -> object:
+        return main.state()
+
+    main.move_linear = refuse_silently  # type: ignore[method-assign, assignment]
+    with pytest.raises(NoProgress):
+        await compensate(run)
+    assert main.flange is stuck
+
+
+async def test_a_growing_error_is_noticed(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    world, main = rig.bench.world, rig.bench.cell.main
+    world.robot_error *= pose_from_xyzabc([1.0, 0, 0, 0, 0, 0])
+    go = main.move_linear
+
+    async def slip(*args: object, **kwargs: object) -> object:
+        world.flange_T_deck *= pose_from_xyzabc([3.0, 0, 0, 0, 0, 0])
+        return await go(*args, **kwargs)  # type: ignore[arg-type]
+
+    main.move_linear = slip  # type: ignore[method-assign, assignment]
+    with pytest.raises(CorrectionDiverging):
+        await compensate(run)
+
+
+async def test_a_hold_in_the_loop_spoils_what_was_measured(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    run.pause = Pauses(held_at=(2,))
+    rig.bench.world.robot_error *= pose_from_xyzabc([0.6, 0, 0, 0, 0, 0])
+    with pytest.raises(HeldMeanwhile):
+        await compensate(run)
+    assert len((await rig.record()).iterations) == 1
+
+
+async def seat(rig: RunRig, run: AssemblyRun, offset_mm_deg: list[float]) -> None:
+    truth = rig.bench.world
+    M_T_D = pose_from_xyzabc(np.add([0, 0, 15.0, 0, 0, 0], offset_mm_deg))
+    deck_on_flange = truth.robot_error * truth.flange_T_deck
+    rig.bench.cell.main.flange = truth.base_T_frame * M_T_D * deck_on_flange.inv()
+    await verify(run)
+
+
+async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    await seat(rig, run, [0.03, 0, 0, 0, 0, 0])
+    mating = (await rig.record()).mating
+    assert mating is not None
+    assert set(mating["pin_offsets_mm"]) == {
+        hole.name for hole in run.deck_features.holes if hole.kind == "pin"
+    }
+    assert mating["pin_offsets_mm"]["P1"] == pytest.approx(0.03, abs=1e-5)
+
+
+async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    with pytest.raises(SeatedOffPosition, match=r"P1 0\.300 mm"):
+        await seat(rig, run, [0.3, 0, 0, 0, 0, 0])
+    assert (await rig.record()).mating is not None
+
+
+async def test_a_part_without_pins_is_verified_at_every_hole(rig: RunRig) -> None:
+    run = await at_the_stand_off(rig)
+    holes = tuple(replace(hole, kind="countersink") for hole in run.deck_features.holes)
+    run.deck_features = replace(run.deck_features, holes=holes)
+    with pytest.raises(SeatedOffPosition, match="P2"):
+        await seat(rig, run, [0.3, 0, 0, 0, 0, 0])

@@ -1,0 +1,47 @@
+"""Start of Production is refused when calibrations or the clock are not to be trusted."""
+
+from datetime import timedelta
+
+import pytest
+
+from cellctl.clock import utc_now
+from cellctl.errors.force import ForceLimitExceeded
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import State
+from cellctl.records.store import RunStore
+from tests.unit.daemon_rig import DaemonRig
+
+
+async def test_a_blow_costs_the_calibrations_that_it_may_have_spoilt(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert rig.shown().calibration_ok
+    await rig.unit.machine.fail(ForceLimitExceeded("Fx 812 N"))
+    await rig.to(State.ABORTED)
+    await rig.unit.background.drain()
+    await rig.idle()
+    assert not rig.shown().calibration_ok
+    assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+    await rig.restart()
+    await rig.idle()
+    assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+
+
+async def test_a_blow_that_cannot_be_written_down_is_a_fault_of_its_own(rig: DaemonRig) -> None:
+    for kind in ("payload", "board_transfer"):
+        (rig.bench.calibrations.path / f"{kind}.invalidated.json.part").mkdir()
+    await rig.unit.machine.fail(ForceLimitExceeded("Fx 812 N"))
+    await rig.unit.background.drain()
+    assert 634 in rig.shown().alarms
+
+
+async def test_a_clock_behind_the_records_is_not_believed(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.idle()
+    later = utc_now() + timedelta(days=30)
+    with monkeypatch.context() as patch:
+        patch.setattr(RunStore, "newest_time", lambda _: later)
+        assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+    assert await rig.take(Command.START) is RejectCode.NONE
+    await rig.to(State.COMPLETED)

@@ -1,0 +1,372 @@
+"""Whole runs through unit and line: good parts, stops, aborts, holds, and what is on record."""
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from cellctl.errors.calibration import CalibrationNotStored
+from cellctl.errors.force import ContactEarly, GuardDied
+from cellctl.errors.link import LinkLost
+from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.robot import StopFailed
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+from cellctl.records.store import RunStore
+from cellctl.runtime.step import Step
+from tests.unit.cell.bench import Bench
+from tests.unit.daemon_rig import DaemonRig
+
+GOOD_RUN = [
+    State.RESETTING, State.IDLE, State.STARTING, State.EXECUTE, State.COMPLETING, State.COMPLETED,
+]  # fmt: skip
+
+
+async def test_a_good_part(rig: DaemonRig) -> None:
+    seq = await rig.started(serial="SAT-7", order="OP-3")
+    await rig.to(State.COMPLETED)
+    assert rig.states == GOOD_RUN
+    assert rig.port.ended[seq] is Result.GOOD
+    record = await rig.record()
+    head = record.head
+    assert (head.serial, head.operator, head.result, head.mode) == (
+        "SAT-7", "OP-3", "good", "production",
+    )  # fmt: skip
+    assert [entry.kind for entry in record.measurements] == [
+        "frame", "deck", "flange_T_deck", "seated",
+    ]  # fmt: skip
+    assert record.iterations[-1].converged
+    assert record.mating is not None
+    assert record.mating["outcome"] == "seated"
+    assert max(record.mating["pin_offsets_mm"].values()) < 0.05
+    assert rig.bench.cell.guard.asked[:2] == ["acknowledge", "set_compensation"]
+    status = rig.shown()
+    assert (status.run_number, status.run_result, status.serial) == (1, Result.GOOD, "SAT-7")
+    assert status.cycle_counter == 1
+    assert status.step == Step.NONE
+    assert not status.error
+
+
+async def test_several_parts_in_a_row(rig: DaemonRig) -> None:
+    for number in (1, 2, 3):
+        await rig.started(serial=f"SAT-{number}")
+        await rig.to(State.COMPLETED)
+        moves = rig.bench.cell.main.moves
+        assert rig.contact.matings == number
+        if number > 1:
+            assert any(move.speed == pytest.approx(2e-3) for move in moves), "lifted off slowly"
+        moves.clear()
+    heads = [len(head.robot.moves) for head in rig.bench.cell.heads]  # type: ignore[attr-defined]
+    assert heads == [1, 1], "in place since the first part"
+    assert [run.result for run in await rig.runs()] == ["good"] * 3
+    assert rig.shown().cycle_counter == 3
+    await rig.restart()
+    assert rig.shown().cycle_counter == 3
+
+
+async def test_a_start_that_is_refused_leaves_the_order_alone(rig: DaemonRig) -> None:
+    rig.contact.may_end.clear()
+    await rig.started(serial="SAT-1")
+    code = await rig.take(Command.START, serial="SAT-2")
+    assert code is RejectCode.COMMAND_NOT_ALLOWED
+    rig.contact.may_end.set()
+    await rig.to(State.COMPLETED)
+    assert [run.serial for run in await rig.runs()] == ["SAT-1"]
+
+
+async def test_a_dry_run_ends_without_contact_and_without_a_good_part(rig: DaemonRig) -> None:
+    seq = await rig.started(options=1)
+    await rig.to(State.COMPLETED)
+    assert rig.contact.matings == 0
+    record = await rig.record()
+    assert (record.head.mode, record.head.result) == ("dry run", "bad")
+    assert record.iterations[-1].converged
+    assert rig.port.ended[seq] is Result.BAD
+    assert rig.shown().cycle_counter == 0
+
+
+async def test_single_step_holds_before_each_step_and_measures_anew(rig: DaemonRig) -> None:
+    await rig.started(options=2)
+    for held in range(1, 6):
+        await rig.to(State.HELD)
+        await rig.take(Command.UNHOLD)
+        await rig.until(lambda held=held: rig.states.count(State.UNHOLDING) == held)  # type: ignore[misc]
+    await rig.to(State.COMPLETED)
+    assert [measurer.measured for measurer in rig.measurers] == [
+        [],
+        ["frame"],
+        ["frame", "deck"],
+        ["frame", "deck"],
+        ["frame", "deck", "deck"],
+        ["frame", "deck", "deck", "deck"],
+    ]
+    assert [run.result for run in await rig.runs()] == ["good"]
+
+
+async def test_a_hold_on_the_way_begins_again_and_ends_well(rig: DaemonRig) -> None:
+    main = rig.bench.cell.main
+    await rig.idle()
+    main.on_the_way.clear()
+    main.road_is_free = asyncio.Event()
+    await rig.take(Command.START)
+    await main.on_the_way.wait()
+    await rig.take(Command.HOLD)
+    assert rig.shown().hold_requested or rig.unit.machine.state is State.STARTING
+    main.road_is_free.set()
+    main.road_is_free = None
+    if rig.unit.machine.state is State.STARTING:
+        await rig.to(State.EXECUTE)
+        await rig.take(Command.HOLD)
+    await rig.to(State.HELD)
+    await rig.take(Command.UNHOLD)
+    await rig.to(State.COMPLETED)
+    assert rig.contact.matings == 1
+    assert len(rig.measurers) == 2
+    assert rig.port.status.run_result is Result.GOOD
+
+
+async def test_a_frame_that_moved_during_a_hold_is_found_where_it_is(rig: DaemonRig) -> None:
+    await rig.started(options=2)
+    for _ in range(3):
+        await rig.to(State.HELD)
+        await rig.take(Command.UNHOLD)
+        await rig.until(lambda: rig.unit.machine.state is not State.HELD)
+    await rig.to(State.HELD)  # before the compensation, the deck over the frame
+    rig.bench.world.base_T_frame *= pose_from_xyzabc([2.0, 1.0, 0, 0.3, 0, 0])
+    await rig.take(Command.UNHOLD)
+    await rig.until(lambda: rig.unit.machine.state is not State.HELD)
+    await rig.to(State.HELD)
+    await rig.take(Command.UNHOLD)
+    await rig.to(State.COMPLETED)
+    record = await rig.record()
+    assert record.mating is not None
+    assert max(record.mating["pin_offsets_mm"].values()) < 0.05
+
+
+async def in_contact(rig: DaemonRig) -> int:
+    rig.contact.may_end.clear()
+    seq = await rig.started()
+    await rig.contact.reached.wait()
+    return seq
+
+
+@pytest.mark.parametrize(
+    ("command", "state", "result"),
+    [
+        (Command.STOP, State.STOPPED, "stopped"),
+        (Command.ABORT, State.ABORTED, "aborted"),
+        (Command.COMPLETE, State.COMPLETED, "bad"),
+    ],
+)
+async def test_a_run_that_is_cut_short(
+    rig: DaemonRig, command: Command, state: State, result: str
+) -> None:
+    await in_contact(rig)
+    assert await rig.take(command) is RejectCode.NONE
+    await rig.to(state)
+    assert all(robot.latched for robot in rig.bench.cell.robots)
+    assert "disarm" in rig.bench.cell.guard.asked
+    record = await rig.record()
+    assert record.head.result == result
+    assert record.seal is not None
+    assert any(a.name == "force-1.mcap" for a in record.artefacts), "the curve came in before"
+    assert rig.shown().run_result.name.lower() == result
+    assert rig.shown().cycle_counter == 0
+    await rig.idle()
+    assert not any(robot.latched for robot in rig.bench.cell.robots)
+
+
+async def test_a_move_is_stopped_before_the_run_is_closed(rig: DaemonRig) -> None:
+    main = rig.bench.cell.main
+    await rig.idle()
+    main.on_the_way.clear()
+    main.road_is_free = asyncio.Event()
+    await rig.take(Command.START)
+    await main.on_the_way.wait()
+    here = main.flange
+    await rig.take(Command.ABORT)
+    await rig.to(State.ABORTED)
+    assert main.flange is here
+    assert main.stops >= 1
+    assert [run.result for run in await rig.runs()] == ["aborted"]
+
+
+async def test_a_fault_of_a_step_is_the_fault_of_its_run(rig: DaemonRig) -> None:
+    rig.contact.fault = ContactEarly("at 4 mm")
+    seq = await rig.started()
+    await rig.to(State.STOPPED)
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("stopped", 522)
+    assert rig.port.ended[seq] is Result.STOPPED
+    status = rig.shown()
+    assert (status.first_out_alarm, status.alarms, status.error) == (522, (522,), True)
+    assert [alarm.number for alarm in (await rig.record()).alarms] == [522]
+
+
+async def test_a_deck_off_its_seat_is_a_bad_part(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    rig.bench.world.flange_T_deck *= pose_from_xyzabc([0.5, 0, 0, 0, 0, 0])
+    rig.contact.may_end.set()
+    await rig.to(State.STOPPED)
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("bad", 452)
+    assert rig.shown().run_result is Result.BAD
+
+
+async def test_a_defect_in_a_step_aborts_with_901(rig: DaemonRig) -> None:
+    rig.contact.fault = ZeroDivisionError("defect")
+    await rig.started()
+    await rig.to(State.ABORTED)
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("aborted", 901)
+
+
+async def test_a_stop_that_fails_ends_aborted(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    rig.bench.cell.aux_1.faults["stop"] = StopFailed("aux_1")
+    await rig.take(Command.STOP)
+    await rig.to(State.ABORTED)
+    assert 304 in rig.shown().alarms
+    assert (await rig.record()).head.result == "stopped"
+
+
+async def test_an_abort_overtakes_a_stop(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    halting, may_stop = asyncio.Event(), asyncio.Event()
+
+    async def slow_stop() -> None:
+        halting.set()
+        await may_stop.wait()
+
+    rig.bench.cell.aux_1.stop = slow_stop  # type: ignore[method-assign]
+    await rig.take(Command.STOP)
+    await halting.wait()
+    await rig.take(Command.ABORT)
+    may_stop.set()
+    await rig.to(State.ABORTED)
+    assert [run.result for run in await rig.runs()] == ["aborted"]
+    assert (await rig.record()).seal is not None
+
+
+async def test_a_disk_that_fails_at_the_end_makes_no_good_part(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    monkeypatch.setattr(RunStore, "close_run", full)
+    seq = await rig.started()
+    await rig.to(State.ABORTED)
+    assert rig.port.ended[seq] is Result.ABORTED
+    assert rig.shown().run_result is Result.ABORTED
+    assert rig.shown().cycle_counter == 0
+    await rig.take(Command.CLEAR)
+    await rig.to(State.STOPPED)
+    await rig.take(Command.RESET)
+    await rig.to(State.IDLE)
+    assert await rig.take(Command.START) is RejectCode.RECORDS_NOT_READY
+
+
+async def test_a_run_that_was_left_open_is_interrupted_at_the_next_start(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(RunStore, "close_run", full)
+        await rig.started()
+        await rig.to(State.ABORTED)
+    await rig.restart()
+    assert [run.result for run in await rig.runs()] == ["interrupted"]
+    assert rig.unit.machine.state is State.STOPPED
+    assert rig.shown().alarms[0] == 803, "survives the restart"
+
+
+async def test_no_record_no_motion(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    monkeypatch.setattr(RunStore, "start_run", full)
+    await rig.idle()
+    await rig.take(Command.START)
+    await rig.to(State.ABORTED)
+    assert not any(robot.moves for robot in rig.bench.cell.robots)
+    assert await rig.runs() == []
+
+
+async def test_another_head_than_the_calibrated_one_moves_nothing(rig: DaemonRig) -> None:
+    rig.bench.cell.head_2.camera.serial = "FH-0815"  # type: ignore[attr-defined]
+    await rig.started()
+    await rig.to(State.STOPPED)
+    assert rig.shown().first_out_alarm == 631
+    assert not any(robot.moves for robot in rig.bench.cell.robots)
+
+
+async def test_reset_does_not_move_a_robot_that_is_not_ready(rig: DaemonRig) -> None:
+    rig.bench.cell.main.flange = rig.bench.flange_over_seat(0.0)
+    rig.bench.cell.aux_2.looks["drives_on"] = False
+    await rig.take(Command.RESET)
+    await rig.to(State.ABORTED)
+    assert rig.shown().first_out_alarm == 303
+    assert rig.bench.cell.main.moves == []
+
+
+async def test_reset_rearms_the_guard_or_fails(rig: DaemonRig) -> None:
+    rig.bench.cell.guard.faults["acknowledge"] = GuardDied("killed")
+    await rig.take(Command.RESET)
+    await rig.to(State.ABORTED)
+    assert rig.shown().first_out_alarm == 510
+
+
+async def test_a_link_lost_in_the_middle_stops_all_robots(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    await rig.unit.machine.fail(LinkLost("aux_1"))
+    await rig.to(State.ABORTED)
+    assert all(robot.stops for robot in rig.bench.cell.robots)
+    assert (await rig.record()).head.fault_number == 202
+
+
+async def test_a_lost_line_holds_and_nothing_resumes_by_itself(rig: DaemonRig) -> None:
+    main = rig.bench.cell.main
+    await rig.idle()
+    main.on_the_way.clear()
+    main.road_is_free = asyncio.Event()
+    await rig.take(Command.START)
+    await main.on_the_way.wait()
+    rig.unit.line_lost()
+    await rig.until(lambda: 701 in rig.shown().alarms)
+    main.road_is_free.set()
+    main.road_is_free = None
+    await rig.to(State.HELD)
+    moves = len(main.moves)
+    for _ in range(50):
+        await asyncio.sleep(0)
+    assert rig.unit.machine.state is State.HELD
+    assert len(main.moves) == moves
+    await rig.take(Command.UNHOLD)
+    await rig.to(State.COMPLETED)
+    assert rig.shown().warning, "until somebody acknowledges"
+
+
+async def test_closing_aborts_and_seals(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    await rig.unit.close()
+    assert rig.unit.machine.state is State.ABORTED
+    assert [run.result for run in await rig.runs()] == ["aborted"]
+    assert await rig.take(Command.CLEAR) is RejectCode.NONE
+    await rig.to(State.STOPPED)
+    assert await rig.take(Command.RESET) is RejectCode.DEVICE_NOT_READY
+
+
+async def test_a_daemon_that_could_not_keep_a_calibration_does_not_start(
+    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    bench.cell.config = bench.cell.config.model_copy(update={"calibration_dir": "/dev/null/x"})
+    rig = DaemonRig(bench, tmp_path / "store", monkeypatch)
+    with pytest.raises(CalibrationNotStored):
+        await rig.open()
+    await rig.close()
