@@ -1,4 +1,4 @@
-"""Drivers by name: entry points, loaded only when a cell file names them."""
+"""Drivers and processes by name: entry points, loaded only when a cell file names them."""
 
 from importlib.metadata import entry_points
 
@@ -7,8 +7,12 @@ from cellctl.errors.config import UnknownDriver
 ROBOT = "cellctl.robot"
 STOP_CHANNEL = "cellctl.stop_channel"
 STEREO_CAMERA = "cellctl.stereo_camera"
+CAMERA = "cellctl.camera"
 TARGET_TRACKER = "cellctl.target_tracker"
 FT_SENSOR = "cellctl.ft_sensor"
+GRIPPER = "cellctl.gripper"
+DIGITAL_IO = "cellctl.digital_io"
+PROCESS = "cellctl.process"
 
 
 def names(group: str) -> list[str]:

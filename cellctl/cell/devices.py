@@ -1,23 +1,26 @@
-"""The devices and services of one cell, built from its file and connected together."""
+"""Builds the devices of the cell file, connects and disconnects them, and stops all motion."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import partial
+from itertools import chain
 from pathlib import Path
-
-from scipy.spatial.transform import RigidTransform
+from typing import Any
 
 from cellctl import log, plugins
-from cellctl.cell.gather import together
-from cellctl.cell.stereo_station import HeadStation
+from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.stereo_station import StereoStation
 from cellctl.config import CellConfig
-from cellctl.config.devices import Device
+from cellctl.config.devices import GROUPS, DeviceConfig, ForceSensorConfig
 from cellctl.errors import CellError
 from cellctl.errors.link import ConnectTimeout
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
 from cellctl.interfaces import Robot, StereoCamera, TargetTracker
+from cellctl.interfaces.device import Device
 from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
@@ -27,66 +30,88 @@ LINK_AGE_S = 1.0
 
 
 class Cell:
-    """All devices. Built without I/O; ``connect`` names every device that fails, not the first."""
+    """All devices by name. Built without I/O; ``connect`` names every device that fails."""
 
     def __init__(self, config: CellConfig, folder: Path) -> None:
+        """``folder`` holds the cell file."""
         self.config = config
         self.folder = folder
-        robots = config.robots
-        self.main: Robot = _build(plugins.ROBOT, "main", robots.main)
-        self.aux_1: Robot = _build(plugins.ROBOT, "aux_1", robots.aux_1)
-        self.aux_2: Robot = _build(plugins.ROBOT, "aux_2", robots.aux_2)
-        camera_1: StereoCamera = _build(plugins.STEREO_CAMERA, "head_1", config.heads.head_1)
-        camera_2: StereoCamera = _build(plugins.STEREO_CAMERA, "head_2", config.heads.head_2)
-        self.head_1 = HeadStation("head_1", camera_1, self.aux_1, robots.aux_1)
-        self.head_2 = HeadStation("head_2", camera_2, self.aux_2, robots.aux_2)
-        self.tracker: TargetTracker = _build(plugins.TARGET_TRACKER, "tracker", config.tracker)
-        force = config.force
-        self.guard = GuardClient(
-            force.sensor.driver,
-            force.sensor.settings,
-            force.stop_channel.driver,
-            force.stop_channel.settings,
-            GuardSettings(
-                flange_T_sensor=pose_from_xyzabc(robots.main.flange_T_sensor), cpu=force.cpu
-            ),
-        )
+        self.robots: Mapping[str, Robot] = _built(config, "robots")
+        self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
+        self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
+        self.others: Mapping[str, Device] = {
+            name: device
+            for section in ("cameras", "grippers", "digital_ios")
+            for name, device in _built(config, section).items()
+        }
+        """Cameras, grippers, inputs and outputs."""
+        self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
+        """By the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()
         self.connected = False
         """True from a ``connect`` that reached every device until ``disconnect``."""
         self.unanswered: dict[str, CellError] = {}
-        """Heads and tracker that did not answer when they were asked last."""
-        self.base_T_frame: RigidTransform | None = None
-        """The frame as measured last: only for leaving the station straight."""
-        self.awaits_trips = False
-        """True while a move deals with the trips of the guard itself."""
+        """Devices that did not answer when they were asked last."""
+        self._awaited_trips: set[str] = set()
 
-    @property
-    def heads(self) -> tuple[HeadStation, HeadStation]:
-        """Head I and head II."""
-        return self.head_1, self.head_2
+    def stereo_station(self, name: str) -> StereoStation:
+        """A stereo head that a robot carries; the check of the cell file saw to it that one does.
 
-    @property
-    def robots(self) -> tuple[Robot, Robot, Robot]:
-        """Main, auxiliary 1, auxiliary 2."""
-        return self.main, self.aux_1, self.aux_2
+        Raises ``KeyError`` for an unknown head.
+        """
+        camera = self.config.stereo_cameras[name]
+        carrier = camera.carried_by or ""
+        return StereoStation(
+            name,
+            self.stereo_cameras[name],
+            camera,
+            self.robots[carrier],
+            self.config.robots[carrier],
+        )
+
+    def guarded_robot(self, sensor_name: str) -> GuardedRobot:
+        """The robot that carries a force sensor; raises ``KeyError`` for an unknown sensor."""
+        sensor = self.config.force_sensors[sensor_name]
+        return GuardedRobot(
+            self.robots[sensor.mounted_on],
+            self.config.robots[sensor.mounted_on],
+            sensor_name,
+            self.guards[sensor_name],
+            sensor,
+        )
+
+    @contextmanager
+    def trips_awaited(self, sensor_name: str) -> Iterator[None]:
+        """Inside, whoever moves deals with the trips of this guard; supervision leaves them."""
+        self._awaited_trips.add(sensor_name)
+        try:
+            yield
+        finally:
+            self._awaited_trips.discard(sensor_name)
+
+    def awaits_trips(self, sensor_name: str) -> bool:
+        """True while a move deals with the trips of this guard itself."""
+        return sensor_name in self._awaited_trips
 
     def health_checks(self) -> dict[str, Callable[[], object]]:
         """A call for each device that raises its fault when it is not well; none of them blocks."""
         checks: dict[str, Callable[[], object]] = {
-            f"robots.{robot.name}": partial(robot.state, LINK_AGE_S) for robot in self.robots
+            f"robots.{name}": partial(robot.state, LINK_AGE_S)
+            for name, robot in self.robots.items()
         }
-        checks["guard"] = self.guard.check
+        checks |= {f"force_sensors.{name}": guard.check for name, guard in self.guards.items()}
         return checks
 
-    async def ask_heads_and_tracker(self) -> None:
-        """Have each of them answer; fills ``unanswered``. Not while a run uses them."""
-        devices = {head.name: head.camera for head in self.heads} | {"tracker": self.tracker}
-        answers = await asyncio.gather(
-            *(device.serial_number() for device in devices.values()), return_exceptions=True
-        )
+    async def ask_silent_devices(self) -> None:
+        """Have each device answer that reports nothing by itself; fills ``unanswered``.
+
+        Not while a run uses them: a camera answers one request at a time.
+        """
+        questions = {name: camera.serial_number() for name, camera in self.stereo_cameras.items()}
+        questions |= {name: tracker.serial_number() for name, tracker in self.trackers.items()}
+        answers = await asyncio.gather(*questions.values(), return_exceptions=True)
         self.unanswered = {}
-        for name, answer in zip(devices, answers, strict=True):
+        for name, answer in zip(questions, answers, strict=True):
             if isinstance(answer, CellError):
                 self.unanswered[name] = answer
             elif isinstance(answer, BaseException):
@@ -99,15 +124,8 @@ class Cell:
         """
         try:
             await _all(
-                {
-                    "guard": self.guard.start(),
-                    "robots.main": self.main.connect(),
-                    "robots.aux_1": self.aux_1.connect(),
-                    "robots.aux_2": self.aux_2.connect(),
-                    "heads.head_1": self.head_1.camera.connect(),
-                    "heads.head_2": self.head_2.camera.connect(),
-                    "tracker": self.tracker.connect(),
-                }
+                {f"force_sensors.{name}": guard.start() for name, guard in self.guards.items()}
+                | {path: device.connect() for path, device in self._by_path().items()}
             )
         except BaseException:
             await self.disconnect()
@@ -119,10 +137,8 @@ class Cell:
         """Stop the robots and drop all links; errors are logged, nothing is skipped."""
         self.connected = False
         results = await asyncio.gather(
-            *(robot.disconnect() for robot in self.robots),
-            *(head.camera.disconnect() for head in self.heads),
-            self.tracker.disconnect(),
-            self.guard.stop(),
+            *(device.disconnect() for device in self._by_path().values()),
+            *(guard.stop() for guard in self.guards.values()),
             return_exceptions=True,
         )
         for result in results:
@@ -130,7 +146,7 @@ class Cell:
                 _log.warning("while disconnecting", error=str(result))
 
     async def stop_motion(self) -> None:
-        """Stop and latch all robots at once, then let the guard watch no more force limits.
+        """Stop and latch all robots at once, then let the guards watch no more force limits.
 
         Raises the first fault after trying all; a guard that does not answer is only logged, its
         own supervision reports it. Does nothing while nothing is connected: whoever drops a link to
@@ -139,12 +155,13 @@ class Cell:
         if not self.connected:
             return
         results = await asyncio.gather(
-            *(robot.stop() for robot in self.robots), return_exceptions=True
+            *(robot.stop() for robot in self.robots.values()), return_exceptions=True
         )
-        try:
-            await self.guard.disarm()
-        except CellError as error:
-            _log.warning("guard not disarmed", fault=str(error))
+        for guard in self.guards.values():
+            try:
+                await guard.disarm()
+            except CellError as error:
+                _log.warning("guard not disarmed", fault=str(error))
         failures = [result for result in results if isinstance(result, BaseException)]
         for second in failures[1:]:
             failures[0].add_note(f"beside it: {second}")
@@ -152,18 +169,53 @@ class Cell:
             raise failures[0]
 
     async def rearm(self) -> None:
-        """Release the stop latches of guard and robots; moves nothing."""
-        await self.guard.acknowledge()
-        await together(*(robot.rearm() for robot in self.robots))
+        """Release the stop latches of guards and robots; moves nothing."""
+        for guard in self.guards.values():
+            await guard.acknowledge()
+        # A cell without a robot has nothing to rearm, and gather needs at least one task.
+        if self.robots:
+            await gather_or_cancel(*(robot.rearm() for robot in self.robots.values()))
+
+    def _by_path(self) -> dict[str, Device]:
+        """Every device of the event loop by its path in the cell file."""
+        devices = dict(
+            chain(
+                self.robots.items(),
+                self.stereo_cameras.items(),
+                self.trackers.items(),
+                self.others.items(),
+            )
+        )
+        return {
+            f"{section}.{name}": devices[name]
+            for section in GROUPS
+            for name in self.config.section(section)
+            if name in devices
+        }
 
 
-def _build(group: str, name: str, device: Device):  # type: ignore[no-untyped-def]
+def _built(config: CellConfig, section: str) -> dict[str, Any]:
+    devices = config.section(section)
+    return {name: _build(GROUPS[section], name, device) for name, device in devices.items()}
+
+
+def _build(group: str, name: str, device: DeviceConfig) -> Any:
     """A driver object; its settings were validated when the cell file was loaded."""
-    driver = plugins.load(group, device.driver)
-    return driver(name, driver.Config.model_validate(device.settings))  # type: ignore[attr-defined]
+    driver: Any = plugins.load(group, device.driver)
+    return driver(name, driver.Config.model_validate(device.settings))
 
 
-async def _all(attempts: dict[str, Awaitable[None]]) -> None:
+def _guard(sensor: ForceSensorConfig) -> GuardClient:
+    return GuardClient(
+        sensor.driver,
+        sensor.settings,
+        sensor.stop_channel.driver,
+        sensor.stop_channel.settings,
+        GuardSettings(flange_T_sensor=pose_from_xyzabc(sensor.flange_T_sensor), cpu=sensor.cpu),
+    )
+
+
+async def _all(attempts: Mapping[str, Awaitable[None]]) -> None:
     results = await asyncio.gather(*attempts.values(), return_exceptions=True)
     failed = {
         name: result

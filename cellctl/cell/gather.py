@@ -9,7 +9,7 @@ from cellctl.errors import CellError
 T = TypeVar("T")
 
 
-async def together(*work: Coroutine[Any, Any, T]) -> list[T]:
+async def gather_or_cancel(*work: Coroutine[Any, Any, T]) -> list[T]:
     """Results in the order given, of one or more; the first failure cancels the others.
 
     Returns, or raises that failure, only after every one of them has ended, so a robot move among

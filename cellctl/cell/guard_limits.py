@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
-from cellctl.config.devices import Force
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.sensor import sensor_rate_hz
 from cellctl.guard.limits import (
     DEFAULT_FILTER_S,
@@ -29,9 +29,9 @@ class Sensing:
     flange_age_s: float
 
     @classmethod
-    def of(cls, force: Force) -> Self:
+    def of(cls, sensor: ForceSensorConfig) -> Self:
         """As the cell file has it."""
-        return cls(sensor_rate_hz(force), force.stale_ms / 1e3, force.flange_age_ms / 1e3)
+        return cls(sensor_rate_hz(sensor), sensor.stale_ms / 1e3, sensor.flange_age_ms / 1e3)
 
     @property
     def rate_band_hz(self) -> tuple[float, float]:

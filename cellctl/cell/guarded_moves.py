@@ -11,10 +11,10 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.guard_limits import Sensing, guard_limits
 from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.settling import settle
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed
-from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotState
 
@@ -24,46 +24,45 @@ REPORT_WAIT_S = 0.5
 TARE_S = 0.5
 
 Motion = Coroutine[Any, Any, RobotState]
-Go = Callable[[Motion], Awaitable[None]]
+GuardedMove = Callable[[Motion], Awaitable[None]]
 
 
 @dataclass(frozen=True, slots=True)
-class Change:
-    """By how much each component of the wrench in the deck frame may change, either way."""
+class WrenchTolerance:
+    """By how much each component of the wrench in its frame may change, either way."""
 
     force_n: float
     moment_n_m: float
 
 
 @asynccontextmanager
-async def watched(cell: Cell, flange_T_deck: RigidTransform, most: Change) -> AsyncIterator[Go]:
-    """Take what is felt at standstill as zero; inside, give each move to what is yielded.
+async def guarded_moves(
+    cell: Cell, arm: GuardedRobot, flange_T_wrench: RigidTransform, tolerance: WrenchTolerance
+) -> AsyncIterator[GuardedMove]:
+    """Tare at standstill and arm the guard; yields a function that runs one guarded move.
 
-    The limits are on the *change* since then: wherever the arm stands, contact or not, a move that
-    is free changes nothing but inertia. A trip stops the robot and raises its fault, and the guard
-    stays latched. Raises ``NotSettled``, ``GuardRefused`` and what the moves raise.
+    The limits are on the *change* since then: wherever the arm stands, in contact or not, a move
+    that is free changes nothing but inertia. ``flange_T_wrench`` is the frame in which the limits
+    hold. A trip stops the robot and raises its fault, and the guard stays latched. Raises
+    ``NotSettled``, ``GuardRefused`` and what the moves raise.
     """
-    guard, config = cell.guard, cell.config
-    flange_T_sensor = pose_from_xyzabc(config.robots.main.flange_T_sensor)
+    guard = arm.guard
 
-    async def go(motion: Motion) -> None:
-        trip = await guarded(cell.main, guard, motion)
+    async def move(motion: Motion) -> None:
+        trip = await guarded(arm.robot, guard, motion)
         if trip is not None:
             raise trip.fault()
 
     await guard.disarm()
-    await guard.set_deck_frame(flange_T_sensor.inv() * flange_T_deck)
+    await guard.set_deck_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
     await guard.tare(TARE_S)
-    force_n, moment_n_m = most.force_n, most.moment_n_m
+    force_n, moment_n_m = tolerance.force_n, tolerance.moment_n_m
     filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
-    cell.awaits_trips = True
-    try:
-        await guard.arm(guard_limits(filtered, Sensing.of(config.force)))
-        yield go
+    with cell.trips_awaited(arm.sensor_name):
+        await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+        yield move
         await guard.disarm()
-    finally:
-        cell.awaits_trips = False
 
 
 async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip | None:

@@ -7,13 +7,14 @@ import typer
 from rich.console import Console
 
 from cellctl.atomic_files import may_write
-from cellctl.config import load_cell, problems
-from cellctl.processes.deck_to_frame.mating.plan_check import plan_problems
+from cellctl.config import CellConfig, load_cell, problems
+from cellctl.config.process_definition import installed_processes, process_definition
+from cellctl.config.roles import lacking_roles
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
     """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
-    found = problems(cell_file) or list(plan_problems(load_cell(cell_file)))
+    found = problems(cell_file)
     console = Console(soft_wrap=True, highlight=False)
     if found:
         errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
@@ -24,10 +25,12 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
         raise typer.Exit(1)
     cell = load_cell(cell_file)
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
-    for key, device in cell.devices().items():
-        console.print(f"  {key:20} {device.driver}")
+    for key, (_, device) in cell.devices().items():
+        console.print(f"  {key:32} {device.driver}", markup=False)
     for recipe in cell.recipes:
-        console.print(f"  recipe {recipe.id:<13} {recipe.name}")
+        text = f"{recipe.name} ({recipe.process}): this cell can run it"
+        console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
+    _say_what_others_need(console, cell)
     calibrations = cell_file.parent / cell.calibration_dir
     if not may_write(calibrations):
         console.print(
@@ -35,3 +38,15 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
             style="yellow",
             markup=False,
         )
+
+
+def _say_what_others_need(console: Console, cell: CellConfig) -> None:
+    """Processes that are installed and have no recipe here: could this cell run them?"""
+    used = {recipe.process for recipe in cell.recipes}
+    for name in installed_processes():
+        if name in used:
+            continue
+        definition = process_definition(name)
+        lacks = [issue.allowed for issue in lacking_roles(cell, definition.roles)]
+        text = "no recipe; has its devices" if not lacks else "; ".join(lacks)
+        console.print(f"  process {name:<24} {text}", markup=False)

@@ -4,7 +4,6 @@ import asyncio
 import math
 
 from cellctl import log
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.api.modbus.interface import PlcPort
 from cellctl.clock import now_s
 from cellctl.command.authority import judge_authority
@@ -14,9 +13,10 @@ from cellctl.packml.command import COMMANDS, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.records.async_store import Archive
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
-from cellctl.runtime.unit import MAY_MOVE, Unit
+from cellctl.runtime.unit import MAY_MOVE, UnitController
 
 _log = log.get(__name__)
 
@@ -31,7 +31,7 @@ class Line:
     obeyed, is not obeyed after it: who gave it did not know.
     """
 
-    def __init__(self, unit: Unit, archive: Archive) -> None:
+    def __init__(self, unit: UnitController, archive: AsyncRunStore) -> None:
         self._unit = unit
         self._archive = archive
         self._port: PlcPort | None = None
@@ -53,14 +53,14 @@ class Line:
         unit.machine.on_change.append(lambda _before, _after: self.publish())
         unit.machine.on_fault.append(lambda _error: self.publish())
         self._port = port
-        self._coupling = LineCoupling(unit.machine, port.finish, lambda: unit.work.result)
+        self._coupling = LineCoupling(unit.machine, port.finish, lambda: unit.jobs.result)
 
-    async def take(self, command: LineCommand) -> RejectCode:
+    async def take(self, command: UnitCommand) -> RejectCode:
         """Judge a command and obey it; Stop and Abort are obeyed whatever else they ask for."""
         code = RejectCode.NONE if command.ends_motion else await self.judge(command)
         return code or await self.obey(command)
 
-    async def judge(self, command: LineCommand) -> RejectCode:
+    async def judge(self, command: UnitCommand) -> RejectCode:
         """Why a command other than Stop and Abort is refused.
 
         What waits for the disk is given up after ``DISK_TIMEOUT_S``, with a fault.
@@ -75,7 +75,7 @@ class Line:
             await self._unit.machine.fail(late)
             return RejectCode.RECORDS_NOT_READY
 
-    async def obey(self, command: LineCommand) -> RejectCode:
+    async def obey(self, command: UnitCommand) -> RejectCode:
         """Begin a command that was judged; waits for nothing but the machine's turn."""
         if command.ends_motion:
             self._stopped_s = max(self._stopped_s, command.arrived_s)
@@ -88,7 +88,7 @@ class Line:
                 return code
             mode = self._mode_to_start_in(command)
             if mode is not None:
-                self._unit.desk.place(command, mode)
+                self._unit.factory.accept(command, mode)
             code = await self._begin(command)
             if code is RejectCode.NONE and (command.cntrl_cmd or command.unit_mode):
                 self._obeyed_s[command.local] = now_s()
@@ -98,22 +98,22 @@ class Line:
         """Show the line what is going on."""
         unit = self._unit
         if self._port is not None:
-            self._port.publish(unit.view.snapshot(unit.work.shown, unit.work.result, unit.parts))
+            self._port.publish(unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts))
 
-    def _judge_standing(self, command: LineCommand) -> RejectCode:
+    def _judge_standing(self, command: UnitCommand) -> RejectCode:
         """Whether it is still its giver's turn; asked again right before it is obeyed."""
         if command.arrived_s < max(self._stopped_s, self._obeyed_s[not command.local]):
             return RejectCode.SUPERSEDED
         return judge_authority(command, self._unit.machine.mode, line_alive=self.alive)
 
-    async def _begin(self, command: LineCommand) -> RejectCode:
+    async def _begin(self, command: UnitCommand) -> RejectCode:
         assert self._coupling is not None
         code = await self._coupling.obey(command)
         if code is RejectCode.NONE:
             self._audit(command)
         return code
 
-    async def _note(self, command: LineCommand) -> RejectCode:
+    async def _note(self, command: UnitCommand) -> RejectCode:
         """After a restart the number must be known as old, so what may move waits for the disk.
 
         Everything else does no harm a second time.
@@ -128,11 +128,11 @@ class Line:
             return RejectCode.RECORDS_NOT_READY
         return RejectCode.NONE
 
-    def _note_soon(self, command: LineCommand) -> None:
+    def _note_soon(self, command: UnitCommand) -> None:
         if not command.local:
             self._unit.background.start(self._archive.do(RunStore.note_line_seq, command.seq))
 
-    async def _acknowledge(self, command: LineCommand) -> RejectCode:
+    async def _acknowledge(self, command: UnitCommand) -> RejectCode:
         if not command.alarm_ack_id:
             return RejectCode.NONE
         try:
@@ -142,11 +142,11 @@ class Line:
             return RejectCode.RECORDS_NOT_READY
         return RejectCode.NONE if known else RejectCode.ALARM_UNKNOWN
 
-    async def _judge_start(self, command: LineCommand) -> RejectCode:
+    async def _judge_start(self, command: UnitCommand) -> RejectCode:
         mode = self._mode_to_start_in(command)
-        return RejectCode.NONE if mode is None else await self._unit.desk.judge(command, mode)
+        return RejectCode.NONE if mode is None else await self._unit.factory.validate(command, mode)
 
-    def _mode_to_start_in(self, command: LineCommand) -> Mode | None:
+    def _mode_to_start_in(self, command: UnitCommand) -> Mode | None:
         """None unless it is a Start that the tables take; they refuse other states and modes."""
         machine = self._unit.machine
         if command.cntrl_cmd != Command.START or machine.state is not State.IDLE:
@@ -156,7 +156,7 @@ class Line:
         except ValueError:
             return None
 
-    def _audit(self, command: LineCommand) -> None:
+    def _audit(self, command: UnitCommand) -> None:
         names = {int(known): known.name.lower() for known in COMMANDS}
         detail: dict[str, int | str] = {"mode": self._unit.machine.mode.name.lower()}
         if not command.local:

@@ -1,8 +1,8 @@
 """Who may command: line PLC and terminal share the cell, and one of them at a time moves it."""
 
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
+from cellctl.packml.unit_command import UnitCommand
 from cellctl.runtime.unit import MAY_MOVE
 
 
@@ -11,7 +11,7 @@ def line_in_control(mode: Mode, *, line_alive: bool) -> bool:
     return line_alive and mode is Mode.PRODUCTION
 
 
-def judge_authority(command: LineCommand, mode: Mode, *, line_alive: bool) -> RejectCode:
+def judge_authority(command: UnitCommand, mode: Mode, *, line_alive: bool) -> RejectCode:
     """Why a command of the terminal has to be left to the line; NONE for the line's own.
 
     Left to it is what may move the cell in Production and what would take Production from it.

@@ -3,7 +3,7 @@
 import asyncio
 from collections import deque
 
-from cellctl.api.modbus.commands import LineCommand
+from cellctl.packml.unit_command import UnitCommand
 
 
 class Intake:
@@ -12,12 +12,12 @@ class Intake:
     def __init__(self, limit: int) -> None:
         """``limit``: so many commands wait; Stop and Abort always find room."""
         self._limit = limit
-        self._waiting: deque[LineCommand] = deque()
-        self._urgent: deque[LineCommand] = deque()
-        self._overtaken: list[LineCommand] = []
+        self._waiting: deque[UnitCommand] = deque()
+        self._urgent: deque[UnitCommand] = deque()
+        self._overtaken: list[UnitCommand] = []
         self._changed = asyncio.Event()
 
-    def add(self, command: LineCommand) -> LineCommand | None:
+    def add(self, command: UnitCommand) -> UnitCommand | None:
         """Let a command wait; the oldest one when there was no room for both."""
         dropped = None
         if command.ends_motion:
@@ -31,12 +31,12 @@ class Intake:
         self._changed.set()
         return dropped
 
-    def overtaken(self) -> list[LineCommand]:
+    def overtaken(self) -> list[UnitCommand]:
         """What a Stop or an Abort has overtaken since the last call, the oldest first."""
         overtaken, self._overtaken = self._overtaken, []
         return overtaken
 
-    async def next(self) -> LineCommand:
+    async def next(self) -> UnitCommand:
         """The next command, taken out."""
         while not (self._urgent or self._waiting):
             await self._changed_again()

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
@@ -10,6 +9,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.packml.unit_command import UnitCommand
 
 Finish = Callable[[int, Result], object]
 
@@ -46,7 +46,7 @@ class LineCoupling:
         self._pursued: tuple[int, Command] | None = None
         machine.on_change.append(self._changed)
 
-    async def obey(self, command: LineCommand) -> RejectCode:
+    async def obey(self, command: UnitCommand) -> RejectCode:
         """Change the mode if asked, then command the unit. Stop and Abort change no mode.
 
         A mode that is set already counts as reached. A command of the terminal may end one of the
@@ -71,7 +71,7 @@ class LineCoupling:
             self._pursued = before
         return code
 
-    def _refused_in_new_mode(self, command: LineCommand) -> RejectCode:
+    def _refused_in_new_mode(self, command: UnitCommand) -> RejectCode:
         """A command that is refused leaves the mode as it was, too."""
         state = self._machine.state
         if command.cntrl_cmd == Command.UNDEFINED or judge_mode(state, command.unit_mode):

@@ -1,13 +1,26 @@
 """The whole cell file."""
 
 import ipaddress
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, SerializeAsAny, field_validator
 
-from cellctl.config.base import JointsDeg, Section, WrittenPose
-from cellctl.config.devices import Device, Force, Heads, Robots
-from cellctl.processes.deck_to_frame.recipe import Recipe
+from cellctl import plugins
+from cellctl.config.base import Section
+from cellctl.config.devices import (
+    GROUPS,
+    CameraConfig,
+    DeviceConfig,
+    DeviceName,
+    DigitalIoConfig,
+    ForceSensorConfig,
+    GripperConfig,
+    RobotConfig,
+    StereoCameraConfig,
+    TrackerConfig,
+)
+from cellctl.config.recipe import Recipe
 
 
 class Plc(Section):
@@ -39,25 +52,6 @@ class LocalApi(Section):
     """Whose members may command the cell; empty for the group of the daemon."""
 
 
-class Procedures(Section):
-    """Settings of the calibration procedures."""
-
-    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "9x6"
-    """Inner corners of the calibration chessboard, columns x rows."""
-    square_mm: Annotated[float, Field(gt=0, le=100)] = 25.0
-    stereo_views: Annotated[int, Field(ge=8, le=100)] = 24
-    base_frame_joints_deg: JointsDeg
-    """Main robot, middle of both arcs: station empty, targets seen by the large-field head."""
-    flange_T_target_board: WrittenPose
-    """Where the target board lies under a head, roughly: it looks the same upside down."""
-    circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
-    circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0
-    tracker_frames: Annotated[int, Field(ge=1, le=200)] = 20
-    payload_poses: Annotated[int, Field(ge=8, le=60)] = 17
-    payload_cone_deg: Annotated[float, Field(ge=3, le=30)] = 12.0
-    validity_days: Annotated[int, Field(ge=1, le=3650)] = 180
-
-
 class CellConfig(Section):
     """Everything the daemon needs to know about one cell."""
 
@@ -68,38 +62,40 @@ class CellConfig(Section):
     """Relative to the cell file."""
     plc: Plc = Plc()
     local_api: LocalApi = LocalApi()
-    robots: Robots
-    heads: Heads
-    tracker: Device
-    force: Force
-    procedures: Procedures
-    recipes: Annotated[tuple[Recipe, ...], Field(min_length=1)]
+    robots: dict[DeviceName, RobotConfig] = Field(default_factory=dict)
+    stereo_cameras: dict[DeviceName, StereoCameraConfig] = Field(default_factory=dict)
+    cameras: dict[DeviceName, CameraConfig] = Field(default_factory=dict)
+    trackers: dict[DeviceName, TrackerConfig] = Field(default_factory=dict)
+    force_sensors: dict[DeviceName, ForceSensorConfig] = Field(default_factory=dict)
+    grippers: dict[DeviceName, GripperConfig] = Field(default_factory=dict)
+    digital_ios: dict[DeviceName, DigitalIoConfig] = Field(default_factory=dict)
+    processes: dict[str, SerializeAsAny[Section]] = Field(default_factory=dict)
+    """Settings of the processes by name, those for all of their recipes; each process checks its
+    own."""
+    recipes: tuple[SerializeAsAny[Recipe], ...] = ()
+    """Each is the recipe model of its own process."""
 
-    def devices(self) -> dict[str, Device]:
-        """Every device by its path in the file."""
-        return {
-            "robots.main": self.robots.main,
-            "robots.aux_1": self.robots.aux_1,
-            "robots.aux_2": self.robots.aux_2,
-            "heads.head_1": self.heads.head_1,
-            "heads.head_2": self.heads.head_2,
-            "tracker": self.tracker,
-            "force.sensor": self.force.sensor,
-            "force.stop_channel": self.force.stop_channel,
-        }
+    def section(self, name: str) -> Mapping[str, DeviceConfig]:
+        """The devices of one section, by name."""
+        devices: Mapping[str, DeviceConfig] = getattr(self, name)
+        return devices
+
+    def devices(self) -> dict[str, tuple[str, DeviceConfig]]:
+        """Every device by its path in the file, with the group of its driver."""
+        found: dict[str, tuple[str, DeviceConfig]] = {}
+        for section, group in GROUPS.items():
+            for name, device in self.section(section).items():
+                found[f"{section}.{name}"] = group, device
+                if isinstance(device, ForceSensorConfig):
+                    stop_channel = plugins.STOP_CHANNEL, device.stop_channel
+                    found[f"{section}.{name}.stop_channel"] = stop_channel
+        return found
 
     @property
     def simulated(self) -> bool:
-        """True when the devices are fakes."""
-        return self.robots.main.simulated
+        """True when the devices are fakes: all of them are, or none."""
+        return any(device.simulated for _, device in self.devices().values())
 
     def recipe(self, recipe_id: int) -> Recipe | None:
         """The recipe with this number."""
         return next((recipe for recipe in self.recipes if recipe.id == recipe_id), None)
-
-    @model_validator(mode="after")
-    def _recipe_ids_are_unique(self) -> "CellConfig":
-        ids = [recipe.id for recipe in self.recipes]
-        if len(set(ids)) != len(ids):
-            raise ValueError(f"recipe ids must differ, got {ids}")
-        return self

@@ -1,13 +1,20 @@
-"""Sections that name a driver and hand it its own settings."""
+"""Sections of the cell file that describe its devices: any number of each kind, each with a name.
+
+The name of a device is its table's name: ``[robots.main]`` is the robot ``main``. A process asks
+for its devices by such names (``cellctl.config.roles``).
+"""
 
 from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, StringConstraints
 
+from cellctl import plugins
 from cellctl.config.base import JointsDeg, Section, WrittenPose
 
+DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 
-class Device(Section):
+
+class DeviceConfig(Section):
     """A device: which driver, its settings, and whether it is a fake."""
 
     driver: str
@@ -16,60 +23,70 @@ class Device(Section):
     """Checked by the driver's own ``Config``."""
 
 
-class MainRobot(Device):
-    """The robot that carries the deck."""
+class RobotConfig(DeviceConfig):
+    """A robot, with the poses that were taught and the speeds between them."""
 
-    home_joints_deg: JointsDeg
-    """Clear of the station and of both heads."""
-    deck_measure_joints_deg: JointsDeg
-    """Deck above the station, all six holes in view of the heads."""
+    poses_deg: dict[DeviceName, JointsDeg] = Field(default_factory=dict)
+    """Taught joint positions by name, such as ``home``; a process says which ones it needs."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
     """Of rated joint speed, for moves between taught poses."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0
     linear_acceleration_mm_s2: Annotated[float, Field(ge=1, le=2000)] = 200.0
+    d1_mm: Annotated[float, Field(ge=100, le=3000)] | None = None
+    """D-H: height of the A2 axis above the base plane; the base frame's calibration needs it."""
+    a1_mm: Annotated[float, Field(ge=0, le=2000)] | None = None
+    """D-H: distance of the A2 axis from the A1 axis, likewise."""
+
+
+class CameraConfig(DeviceConfig):
+    """A single camera, carried by a robot or fixed in the cell."""
+
+    carried_by: DeviceName | None = None
+    """The robot that carries it; none where it is fixed."""
+    flange_T_camera: WrittenPose | None = None
+    """Nominal pose on the flange of the robot that carries it, for planning views only."""
+
+
+class StereoCameraConfig(CameraConfig):
+    """A stereo head; ``flange_T_camera`` is the pose of its left camera."""
+
+
+class TrackerConfig(DeviceConfig):
+    """A large-field head that measures targets."""
+
+
+class GripperConfig(DeviceConfig):
+    """A gripper."""
+
+
+class DigitalIoConfig(DeviceConfig):
+    """Digital inputs and outputs."""
+
+
+class ForceSensorConfig(DeviceConfig):
+    """A force sensor with its guard: a process of its own that stops the robot it is mounted on."""
+
+    mounted_on: DeviceName
+    """The robot whose moves the guard watches and stops."""
     flange_T_sensor: WrittenPose
-    """Pose of the force sensor's frame on the flange."""
-    d1_mm: Annotated[float, Field(ge=100, le=3000)]
-    """D-H: height of the A2 axis above the base plane."""
-    a1_mm: Annotated[float, Field(ge=0, le=2000)]
-    """D-H: distance of the A2 axis from the A1 axis."""
-
-
-class AuxiliaryRobot(Device):
-    """A robot that carries a stereo head."""
-
-    measuring_joints_deg: JointsDeg
-    retracted_joints_deg: JointsDeg
-    speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
-    linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 100.0
-    linear_acceleration_mm_s2: Annotated[float, Field(ge=1, le=2000)] = 400.0
-    flange_T_head: WrittenPose
-    """Nominal pose of the left camera on the flange, for planning views only."""
-
-
-class Robots(Section):
-    """The three robots of the cell."""
-
-    main: MainRobot
-    aux_1: AuxiliaryRobot
-    aux_2: AuxiliaryRobot
-
-
-class Heads(Section):
-    """The two small-field stereo heads."""
-
-    head_1: Device
-    head_2: Device
-
-
-class Force(Section):
-    """Force sensor, the guard's line to the main robot, and the guard."""
-
-    sensor: Device
-    stop_channel: Device
+    """Pose of the sensor's frame on the flange of that robot."""
+    stop_channel: DeviceConfig
+    """The guard's own line to that robot."""
     stale_ms: Annotated[float, Field(ge=2, le=500)] = 10.0
     """While armed: no sample for this long is a trip."""
     flange_age_ms: Annotated[float, Field(ge=20, le=1000)] = 100.0
     """While armed: a flange pose older than this is a trip."""
     cpu: Annotated[int, Field(ge=0, le=255)] | None = None
     """Pin the guard to this processor; off by default."""
+
+
+GROUPS = {
+    "robots": plugins.ROBOT,
+    "stereo_cameras": plugins.STEREO_CAMERA,
+    "cameras": plugins.CAMERA,
+    "trackers": plugins.TARGET_TRACKER,
+    "force_sensors": plugins.FT_SENSOR,
+    "grippers": plugins.GRIPPER,
+    "digital_ios": plugins.DIGITAL_IO,
+}
+"""Entry-point group of the drivers of each section of the cell file."""

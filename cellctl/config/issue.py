@@ -6,7 +6,7 @@ from cellctl.errors.config import ConfigInvalid
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class ConfigIssue:
     """One error in a cell file or a file that it names."""
 
     key: str

@@ -1,59 +1,60 @@
 """Read a cell file and say everything that is wrong with it."""
 
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, cast
 
 from pydantic import BaseModel, ValidationError
 
 from cellctl import plugins
+from cellctl.config.base import Section
 from cellctl.config.cell import CellConfig
-from cellctl.config.devices import Force
-from cellctl.config.issue import Problem
-from cellctl.config.sensor import least_stale_ms
-from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, MixedSimulation, UnknownDriver
-from cellctl.processes.deck_to_frame.feature_checks import feature_problems
+from cellctl.config.cross_checks import cross_issues
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.process_definition import ProcessDefinition, process_definition
+from cellctl.config.recipe import Recipe
+from cellctl.config.roles import lacking
+from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
 
-DRIVER_GROUPS = {
-    "robots.main": plugins.ROBOT,
-    "robots.aux_1": plugins.ROBOT,
-    "robots.aux_2": plugins.ROBOT,
-    "heads.head_1": plugins.STEREO_CAMERA,
-    "heads.head_2": plugins.STEREO_CAMERA,
-    "tracker": plugins.TARGET_TRACKER,
-    "force.sensor": plugins.FT_SENSOR,
-    "force.stop_channel": plugins.STOP_CHANNEL,
-}
+_LONGEST_VALUE = 60
 
 
 def load_cell(path: Path) -> CellConfig:
     """The cell file as a model; raises ``ConfigUnreadable``, ``ConfigInvalid`` or a sibling."""
     found, cell = _examine(path)
     if cell is None or found:
-        lines = [f"{problem.key} = {problem.value}: {problem.allowed}" for problem in found]
+        lines = [f"{issue.key} = {issue.value}: {issue.allowed}" for issue in found]
         raise ConfigInvalid(f"{path}: " + "; ".join(lines))
     return cell
 
 
-def problems(path: Path) -> list[Problem]:
+def problems(path: Path) -> list[ConfigIssue]:
     """Every error of a cell file; empty when it is good. Touches no hardware."""
     return _examine(path)[0]
 
 
-def _examine(path: Path) -> tuple[list[Problem], CellConfig | None]:
+def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
     raw = _read_toml(path)
+    # Recipes and settings of processes are checked by the models that their processes bring,
+    # everything else by the core's own model.
+    recipes, settings = raw.pop("recipes", []), raw.pop("processes", {})
+    found: list[ConfigIssue] = []
     try:
         cell = CellConfig.model_validate(raw)
     except ValidationError as error:
-        return _from_pydantic("", error), None
-    found = _driver_problems(cell) + list(feature_problems(cell, path.parent))
-    if not any(problem.key.startswith("force.sensor.") for problem in found):
-        found += _pace_problems(cell.force)
-    flags = {device.simulated for device in cell.devices().values()}
-    if len(flags) > 1:
-        named = [key for key, device in cell.devices().items() if device.simulated]
-        text = f"{MixedSimulation.text}; mark all or none"
-        found.append(Problem("simulated", ", ".join(named), text, MixedSimulation.number))
+        found, cell = _from_pydantic("", error), None
+    recipe_models = list(_recipes(recipes, found))
+    needed = {recipe.process for recipe in recipe_models if recipe is not None}
+    setting_models = _settings(settings, needed, found)
+    if cell is None or len(recipe_models) != sum(one is not None for one in recipe_models):
+        return found, None
+    known = tuple(recipe for recipe in recipe_models if recipe is not None)
+    cell = cell.model_copy(update={"recipes": known, "processes": setting_models})
+    found += _driver_issues(cell)
+    found += cross_issues(cell, found)
+    for index, recipe in enumerate(known):
+        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent)
     return found, cell
 
 
@@ -64,30 +65,89 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise ConfigUnreadable(f"{path}: {error}") from error
 
 
-def _driver_problems(cell: CellConfig) -> list[Problem]:
-    found: list[Problem] = []
-    for key, device in cell.devices().items():
-        try:
-            settings_model: type[BaseModel] = plugins.load(DRIVER_GROUPS[key], device.driver).Config  # type: ignore[attr-defined]
-        except UnknownDriver as error:
-            found.append(Problem(f"{key}.driver", repr(device.driver), error.detail, error.number))
+def _recipes(raw: Any, found: list[ConfigIssue]) -> Iterator[Recipe | None]:
+    """The recipes as models of their processes; None, and what is wrong, for each bad one."""
+    if not isinstance(raw, list):
+        found.append(ConfigIssue("recipes", _shorten(repr(raw)), "a list of [[recipes]]"))
+        return
+    for index, entry in enumerate(raw):
+        key = f"recipes.{index}"
+        definition = _definition(entry, key, found)
+        if definition is None:
+            yield None
             continue
         try:
-            settings_model.model_validate(device.settings)
+            yield definition.recipe_model.model_validate(entry)
+        except ValidationError as error:
+            found += _from_pydantic(f"{key}.", error)
+            yield None
+
+
+def _definition(entry: Any, key: str, found: list[ConfigIssue]) -> type[ProcessDefinition] | None:
+    name = entry.get("process") if isinstance(entry, dict) else None
+    if not isinstance(name, str):
+        value = "(missing)" if name is None else repr(name)
+        allowed = "name of a process: " + (", ".join(plugins.names(plugins.PROCESS)) or "none")
+        found.append(ConfigIssue(f"{key}.process", value, allowed))
+        return None
+    try:
+        return process_definition(name)
+    except UnknownDriver as error:
+        found.append(ConfigIssue(f"{key}.process", repr(name), error.detail, error.number))
+        return None
+
+
+def _settings(raw: Any, needed: set[str], found: list[ConfigIssue]) -> dict[str, Section]:
+    """Settings of each process that a recipe or the file names, with their defaults."""
+    if not isinstance(raw, dict):
+        found.append(ConfigIssue("processes", _shorten(repr(raw)), "tables [processes.NAME]"))
+        return {}
+    models: dict[str, Section] = {}
+    for name in sorted(needed | set(raw)):
+        try:
+            settings = process_definition(name).settings_model
+        except UnknownDriver as error:
+            found.append(ConfigIssue(f"processes.{name}", name, error.detail, error.number))
+            continue
+        try:
+            models[name] = settings.model_validate(raw.get(name, {}))
+        except ValidationError as error:
+            found += _from_pydantic(f"processes.{name}.", error)
+    return models
+
+
+class _WithConfig(Protocol):
+    Config: type[BaseModel]
+
+
+def _driver_issues(cell: CellConfig) -> list[ConfigIssue]:
+    found: list[ConfigIssue] = []
+    for key, (group, device) in cell.devices().items():
+        try:
+            driver = cast(_WithConfig, plugins.load(group, device.driver))
+        except UnknownDriver as error:
+            value = repr(device.driver)
+            found.append(ConfigIssue(f"{key}.driver", value, error.detail, error.number))
+            continue
+        try:
+            driver.Config.model_validate(device.settings)
         except ValidationError as error:
             found += _from_pydantic(f"{key}.settings.", error)
     return found
 
 
-def _pace_problems(force: Force) -> list[Problem]:
-    least_ms = least_stale_ms(force)
-    if force.stale_ms >= least_ms:
-        return []
-    allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
-    return [Problem("force.stale_ms", f"{force.stale_ms:g}", allowed)]
+def _process_issues(
+    cell: CellConfig, recipe: Recipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    definition = process_definition(recipe.process)
+    missing = list(lacking(cell, definition.roles, recipe, key))
+    yield from missing
+    # Without its devices or its settings a process has nothing to judge a recipe by.
+    if not missing and recipe.process in cell.processes:
+        yield from definition.check(cell, recipe, key, folder)
 
 
-def _from_pydantic(prefix: str, error: ValidationError) -> list[Problem]:
+def _from_pydantic(prefix: str, error: ValidationError) -> list[ConfigIssue]:
     found = []
     items = error.errors(include_url=False)
     parents = {item["loc"][:depth] for item in items for depth in range(1, len(item["loc"]))}
@@ -97,9 +157,9 @@ def _from_pydantic(prefix: str, error: ValidationError) -> list[Problem]:
         key = prefix + ".".join(str(part) for part in item["loc"])
         missing = item["type"] == "missing"
         value = "(missing)" if missing else _shorten(repr(item["input"]))
-        found.append(Problem(key or "(file)", value, item["msg"]))
+        found.append(ConfigIssue(key or "(file)", value, item["msg"]))
     return found
 
 
-def _shorten(text: str, limit: int = 60) -> str:
+def _shorten(text: str, limit: int = _LONGEST_VALUE) -> str:
     return text if len(text) <= limit else text[: limit - 1] + "…"

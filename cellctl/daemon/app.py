@@ -21,9 +21,9 @@ from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
-from cellctl.runtime.unit import Unit
+from cellctl.runtime.unit import UnitController
 
 _log = log.get(__name__)
 
@@ -45,12 +45,12 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
         data_dir = data_dir or Path(config.data_dir)
-        archive = Archive(data_dir)
+        archive = AsyncRunStore(data_dir)
         stack.callback(archive.close)
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, stop.set)
         stack.callback(cell.workers.close)
-        unit = Unit(cell, archive)
+        unit = UnitController(cell, archive)
         stack.push_async_callback(unit.background.drain)
         await unit.open()
         line = Line(unit, archive)
@@ -91,7 +91,7 @@ def _numbered(error: BaseException) -> CellError:
 
 
 async def _end(
-    unit: Unit,
+    unit: UnitController,
     _kind: type[BaseException] | None,
     error: BaseException | None,
     _traceback: TracebackType | None,
@@ -99,7 +99,7 @@ async def _end(
     await unit.close(error if isinstance(error, CellError) else None)
 
 
-async def _work(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
+async def _work(cell: Cell, unit: UnitController, line: Line, port: PlcPort) -> None:
     """Everything that goes on until the end, with the devices or without."""
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(supervise(cell, unit, line, port))

@@ -1,15 +1,15 @@
-"""Who has no life of its own is asked while the unit rests: heads, tracker, vision workers."""
+"""Polls cameras, trackers and vision workers while no run is active: they report nothing."""
 
 from cellctl.cell.devices import Cell
 from cellctl.errors.internal import WorkerDied
 from cellctl.errors.link import DeviceAway
-from cellctl.runtime.unit import AT_REST, Unit
+from cellctl.runtime.unit import AT_REST, UnitController
 
 
-class RollCall:
+class DevicePoller:
     """Reports each of them once when it stops answering. In a run the steps find out themselves."""
 
-    def __init__(self, cell: Cell, unit: Unit) -> None:
+    def __init__(self, cell: Cell, unit: UnitController) -> None:
         self._cell = cell
         self._unit = unit
         self._away: set[str] = set()
@@ -20,7 +20,7 @@ class RollCall:
         if not (self._unit.live and self._unit.machine.state in AT_REST):
             return
         await self._ask_workers()
-        await self._cell.ask_heads_and_tracker()
+        await self._cell.ask_silent_devices()
         unanswered = self._cell.unanswered
         for name, fault in unanswered.items():
             if name not in self._away:

@@ -6,18 +6,18 @@ from functools import partial
 from cellctl.api.modbus.interface import PlcPort
 from cellctl.cell.devices import Cell
 from cellctl.command.arbiter import Line
-from cellctl.daemon.device_poller import RollCall
+from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.notify import Watchdog
 from cellctl.errors import CellError
 from cellctl.guard.report import GuardTrip, TripReason
-from cellctl.runtime.unit import Unit
+from cellctl.runtime.unit import UnitController
 
 PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25
 ASK_PERIOD_S = 2.0
 
 
-async def supervise(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
+async def supervise(cell: Cell, unit: UnitController, line: Line, port: PlcPort) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
     beat = partial(_beat, port, Watchdog())
     async with asyncio.TaskGroup() as tasks:
@@ -25,7 +25,7 @@ async def supervise(cell: Cell, unit: Unit, line: Line, port: PlcPort) -> None:
         tasks.create_task(port.failed())
         tasks.create_task(_publish(line))
         tasks.create_task(_watch_links(cell, unit))
-        tasks.create_task(_call_the_roll(cell, unit))
+        tasks.create_task(_poll_devices(cell, unit))
 
 
 def _beat(port: PlcPort, watchdog: Watchdog) -> None:
@@ -40,28 +40,28 @@ async def _publish(line: Line) -> None:
         await asyncio.sleep(PUBLISH_PERIOD_S)
 
 
-async def _watch_links(cell: Cell, unit: Unit) -> None:
-    watch = LinkWatch(cell, unit)
+async def _watch_links(cell: Cell, unit: UnitController) -> None:
+    watch = LinkMonitor(cell, unit)
     while True:
         await watch.look()
         await asyncio.sleep(LINK_PERIOD_S)
 
 
-async def _call_the_roll(cell: Cell, unit: Unit) -> None:
-    roll_call = RollCall(cell, unit)
+async def _poll_devices(cell: Cell, unit: UnitController) -> None:
+    poller = DevicePoller(cell, unit)
     while True:
-        await roll_call.ask()
+        await poller.ask()
         await asyncio.sleep(ASK_PERIOD_S)
 
 
-class LinkWatch:
+class LinkMonitor:
     """Reports each broken link once, and again only after it has been whole in between."""
 
-    def __init__(self, cell: Cell, unit: Unit) -> None:
+    def __init__(self, cell: Cell, unit: UnitController) -> None:
         self._cell = cell
         self._unit = unit
         self._broken: set[str] = set()
-        self._trip: GuardTrip | None = None
+        self._trips: dict[str, GuardTrip | None] = {}
 
     async def look(self) -> None:
         """Look at every device once; its fault goes to the machine.
@@ -80,13 +80,13 @@ class LinkWatch:
                     await self._unit.machine.fail(error)
             else:
                 self._broken.discard(name)
-        await self._look_at_trip()
+        for name, guard in self._cell.guards.items():
+            await self._look_at_trip(name, guard.trip)
 
-    async def _look_at_trip(self) -> None:
+    async def _look_at_trip(self, name: str, trip: GuardTrip | None) -> None:
         """A trip that no step waits for is a fault; the guard's death is one of the above."""
-        trip, known = self._cell.guard.trip, self._trip
-        self._trip = trip
+        known, self._trips[name] = self._trips.get(name), trip
         if trip is None or trip is known or trip.reason is TripReason.GUARD_DIED:
             return
-        if not self._unit.expects_trips:
+        if not self._unit.awaits_trips(name):
             await self._unit.machine.fail(trip.fault())

@@ -1,4 +1,4 @@
-"""Procedure 106: the payload from still poses with the deck gripped (paper 2.4.1)."""
+"""The payload from still poses with the part gripped (paper 2.4.1)."""
 
 import asyncio
 from typing import Protocol
@@ -6,16 +6,17 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.pose_file import PoseRecord
 from cellctl.force.poses import PoseRole, plan_identification
-from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import Curve, GuardSample
 from cellctl.interfaces import Robot
-from cellctl.procedures.clear_cell import clear_the_cell
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.procedures.payload_picture import residual_picture
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.workers import VisionWorkers
 
 HOLD_OUT_POSES = 4
 SETTLE_S = 0.5
@@ -39,33 +40,37 @@ class SampleSource(Protocol):
         ...
 
 
-async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcome:
-    """Tilt around the mating orientation, high above the frame, and identify.
+async def identify_payload_on_cell(
+    context: ProcedureContext,
+    arm: GuardedRobot,
+    workers: VisionWorkers,
+    *,
+    pose_count: int,
+    cone_deg: float,
+) -> ProcedureOutcome:
+    """Tilt around the present orientation, with nothing near, and identify.
 
-    The home pose must hold the deck in the mating orientation. The arm tilts about its flange, so
-    its main axes hardly move and stay off their limits. Raises ``NotSettled``,
-    ``SensorSilent``, ``PosesDegenerate`` and what the robot raises.
+    The present pose must hold the part in the orientation in which it will be mated. The arm tilts
+    about its flange, so its main axes hardly move and stay off their limits. Raises
+    ``NotSettled``, ``SensorSilent``, ``PosesDegenerate`` and what the robot raises.
     """
-    cell = context.cell
-    settings, main = cell.config.procedures, cell.config.robots.main
-    await clear_the_cell(context)
-    flange_T_sensor = pose_from_xyzabc(main.flange_T_sensor)
+    robot = arm.robot
     poses = plan_identification(
-        cell.main.state().base_T_flange,
+        robot.state().base_T_flange,
         pivot_in_flange_m=np.zeros(3),
-        half_angle_rad=float(np.radians(settings.payload_cone_deg)),
-        fit_poses=max(settings.payload_poses - HOLD_OUT_POSES - 1, 6),
+        half_angle_rad=float(np.radians(cone_deg)),
+        fit_poses=max(pose_count - HOLD_OUT_POSES - 1, 6),
         hold_out_poses=HOLD_OUT_POSES,
     )
     rotations, wrenches, roles = [], [], []
     for number, pose in enumerate(poses, start=1):
         await context.progress(number, len(poses), f"{pose.role.value} pose")
-        await cell.main.move_linear(
+        await robot.move_linear(
             pose.base_T_flange,
-            speed_m_s=main.linear_speed_mm_s * MM,
-            acceleration_m_s2=main.linear_acceleration_mm_s2 * MM,
+            speed_m_s=arm.config.linear_speed_mm_s * MM,
+            acceleration_m_s2=arm.config.linear_acceleration_mm_s2 * MM,
         )
-        rotation, wrench = await still_wrench(cell.main, cell.guard, flange_T_sensor)
+        rotation, wrench = await still_wrench(robot, arm.guard, arm.flange_T_sensor)
         rotations.append(rotation)
         wrenches.append(wrench)
         roles.append(pose.role)
@@ -75,8 +80,8 @@ async def identify_payload_on_cell(context: ProcedureContext) -> ProcedureOutcom
         record=payload_document(result),
         passed=result.accepted,
         warnings=tuple(str(check) for check in result.checks if not check.passed),
-        picture_png=await cell.workers.run(residual_picture, result),
-        serial_number=cell.guard.health().sensor_serial,
+        picture_png=await workers.run(residual_picture, result),
+        serial_number=arm.guard.health().sensor_serial,
     )
 
 

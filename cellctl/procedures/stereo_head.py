@@ -1,4 +1,4 @@
-"""Procedures 101 and 102: calibrate a stereo head on the chessboard (paper 2.1.1)."""
+"""Calibrate a stereo head on the chessboard, from many views of its robot (paper 2.1.1)."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -7,23 +7,29 @@ from cellctl.calibration.board import BoardView, CalibrationBoard
 from cellctl.calibration.board_images import ImagePair, detect_view
 from cellctl.calibration.stereo import calibrate_stereo
 from cellctl.calibration.stereo_picture import stereo_picture
-from cellctl.cell.stereo_station import HeadStation
+from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.calibration import BoardNotFound
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.pose import MM
 from cellctl.procedures.calibration_poses import stereo_views
-from cellctl.procedures.clear_cell import clear_the_cell
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.workers import VisionWorkers
 
 WORKING_DISTANCE_M = 0.5
 
 
-async def calibrate_head(context: ProcedureContext, station: HeadStation) -> ProcedureOutcome:
-    """Swing the head about the board, find its corners in every pair, solve, and drive back."""
-    settings = context.cell.config.procedures
-    columns, rows = (int(number) for number in settings.board.split("x"))
-    board = CalibrationBoard(columns, rows, settings.square_mm * MM)
-    await clear_the_cell(context, measuring=station)
-    poses = _flange_poses(station, settings.stereo_views)
+async def calibrate_head(
+    context: ProcedureContext,
+    station: StereoStation,
+    workers: VisionWorkers,
+    *,
+    board: CalibrationBoard,
+    view_count: int,
+) -> ProcedureOutcome:
+    """Swing the head about the board, find its corners in every pair, solve, and drive back.
+
+    Begins at the pose from which the head sees the board; nothing may stand in its way.
+    """
+    poses = _flange_poses(station, view_count)
     views: list[BoardView] = []
     image_size = (0, 0)
     for number, base_T_flange in enumerate(poses, start=1):
@@ -31,7 +37,7 @@ async def calibrate_head(context: ProcedureContext, station: HeadStation) -> Pro
         await _move(station, base_T_flange)
         pair = await station.camera.grab()
         image_size = (pair.left.shape[1], pair.left.shape[0])
-        view = await context.cell.workers.run(
+        view = await workers.run(
             detect_view, ImagePair(f"view {number}", pair.left, pair.right), board
         )
         if view is not None:
@@ -39,21 +45,21 @@ async def calibrate_head(context: ProcedureContext, station: HeadStation) -> Pro
     await _move(station, poses[0])
     if not views:
         raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
-    result = await context.cell.workers.run(calibrate_stereo, views, board, image_size)
+    result = await workers.run(calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
         item=station.name,
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,
-        picture_png=await context.cell.workers.run(stereo_picture, result),
+        picture_png=await workers.run(stereo_picture, result),
         serial_number=await station.camera.serial_number(),
     )
 
 
-def _flange_poses(station: HeadStation, count: int) -> list[RigidTransform]:
+def _flange_poses(station: StereoStation, count: int) -> list[RigidTransform]:
     """Targets of the flange: the present pose first, then around the middle of both fields."""
     base_T_flange = station.robot.state().base_T_flange
-    flange_T_head = pose_from_xyzabc(station.config.flange_T_head)
+    flange_T_head = station.flange_T_head
     toe_in_rad = flange_T_head.rotation.magnitude()
     # The head is mounted turned by half its toe-in: the bisector of its axes is the flange's.
     pivot_m = WORKING_DISTANCE_M / np.cos(toe_in_rad) * np.array([0.0, 0.0, 1.0])
@@ -64,7 +70,7 @@ def _flange_poses(station: HeadStation, count: int) -> list[RigidTransform]:
     ]
 
 
-async def _move(station: HeadStation, base_T_flange: RigidTransform) -> None:
+async def _move(station: StereoStation, base_T_flange: RigidTransform) -> None:
     await station.robot.move_linear(
         base_T_flange,
         speed_m_s=station.config.linear_speed_mm_s * MM,

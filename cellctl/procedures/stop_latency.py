@@ -1,4 +1,4 @@
-"""Procedure 107: how long the main robot takes to stop at the speeds of mating."""
+"""How long a robot takes to stop at the speeds of mating."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -15,10 +15,10 @@ from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
-from cellctl.procedures.clear_cell import clear_the_cell
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.procedures.pictures import latency_picture
+from cellctl.procedures.stop_latency_picture import latency_picture
 from cellctl.runtime.commissioned import STOP_LATENCY
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.workers import VisionWorkers
 
 SPEEDS_M_S = (2e-3, 4e-3, 6e-3, 8e-3)
 REPEATS = 3
@@ -43,16 +43,18 @@ class StopLatency:
     overruns_m: Array
 
 
-async def measure_stop_latency_on_cell(context: ProcedureContext) -> ProcedureOutcome:
-    """Stop the main robot on its way up from home, at several speeds."""
-    cell = context.cell
-    await clear_the_cell(context)
+async def measure_stop_latency_on_cell(
+    context: ProcedureContext, robot: Robot, workers: VisionWorkers, *, bound_ms: float
+) -> ProcedureOutcome:
+    """Stop the robot on its way up from where it stands, at several speeds.
+
+    ``bound_ms``: what every recipe is safe with while this result is not valid.
+    """
 
     async def safe_point(number: int, total: int) -> None:
         await context.progress(number, total, "stop")
 
-    measured = await measure_stop_latency(cell.main, np.array([0.0, 0.0, 1.0]), safe_point)
-    bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.config.recipes)
+    measured = await measure_stop_latency(robot, np.array([0.0, 0.0, 1.0]), safe_point)
     checks = _checks(measured.estimate, bound_ms)
     data = measured.estimate, measured.speeds_m_s, measured.overruns_m
     return ProcedureOutcome(
@@ -60,7 +62,7 @@ async def measure_stop_latency_on_cell(context: ProcedureContext) -> ProcedureOu
         record=_record(measured, checks),
         passed=all_passed(checks),
         warnings=(),
-        picture_png=await cell.workers.run(latency_picture, *data, checks),
+        picture_png=await workers.run(latency_picture, *data, checks),
         serial_number="",
     )
 

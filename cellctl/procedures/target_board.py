@@ -1,4 +1,6 @@
-"""Procedures 104, 105: the target board before head I, then II (paper fig. 3, eq. 1 to 3)."""
+"""The target board before one stereo head and the large-field head (paper fig. 3, eq. 1, 2)."""
+
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.board_pose import (
     BoardPoint,
@@ -7,21 +9,16 @@ from cellctl.calibration.board_pose import (
     points_from_targets,
     target_board_discs,
 )
-from cellctl.calibration.board_transfer import (
-    BoardPlacement,
-    calibrate_board_transfer,
-)
-from cellctl.calibration.transfer_picture import transfer_picture
-from cellctl.cell.gather import together
-from cellctl.cell.stereo_station import HeadStation
-from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.procedures.clear_cell import clear_the_cell
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.runtime.calibration_folder import HEAD_JOINTS, Placement
+from cellctl.calibration.board_transfer import BoardPlacement
+from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.stereo_station import StereoStation
+from cellctl.geometry.pose import MM
+from cellctl.interfaces import TargetTracker
 from cellctl.vision.average import average
 from cellctl.vision.features import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.stereo_head import StereoHead
+from cellctl.workers import VisionWorkers
 
 DISC_DIAMETER_M = 20 * MM
 PAIRS = 4
@@ -29,49 +26,37 @@ SEARCH_RADIUS_M = 35 * MM
 """Less than half the pitch of the discs."""
 
 
-async def measure_board(context: ProcedureContext, station: HeadStation) -> ProcedureOutcome | None:
-    """Measure the board with head and large-field head; solve once both heads have seen it.
+async def place_board(
+    station: StereoStation,
+    model: StereoHead,
+    tracker: TargetTracker,
+    workers: VisionWorkers,
+    *,
+    flange_T_board: RigidTransform,
+    tracker_frames: int,
+) -> BoardPlacement:
+    """The board as head and large-field head see it, both at once.
 
-    Returns None while the other head's turn is still to come. A placement serves once: what was
-    seen an hour ago, before something else was calibrated, must not meet what is seen now.
+    ``flange_T_board``: where it lies under the head's robot, roughly, for it looks the same upside
+    down. Raises the faults of vision, and what the devices raise.
     """
-    calibrations = context.calibrations
-    await clear_the_cell(context, measuring=station)
-    model = calibrations.head(station.name)
-    await context.progress(1, 1, f"{station.name}: target board")
-    in_head, in_large_field = await together(
-        _in_head(context, station, model), _in_large_field(context)
+    head_T_board = station.flange_T_head.inv() * flange_T_board
+    in_head, in_large_field = await gather_or_cancel(
+        _in_head(station, model, workers, head_T_board), _in_large_field(tracker, tracker_frames)
     )
-    calibrations.placements[station.name] = Placement(
-        BoardPlacement(in_large_field, in_head), station.config.measuring_joints_deg
-    )
-    if len(calibrations.placements) < 2:
-        return None
-    first, second = (calibrations.placements.pop(name) for name in ("head_1", "head_2"))
-    result = await context.cell.workers.run(
-        calibrate_board_transfer, calibrations.c_T_base(), [first.board], [second.board]
-    )
-    joints_deg = {"head_1": first.joints_deg, "head_2": second.joints_deg}
-    return ProcedureOutcome(
-        item="board_transfer",
-        record={**result.to_record(), HEAD_JOINTS: joints_deg},
-        passed=result.passed,
-        warnings=result.warnings,
-        picture_png=await context.cell.workers.run(transfer_picture, result),
-        serial_number=await context.cell.tracker.serial_number(),
-    )
+    return BoardPlacement(in_large_field, in_head)
 
 
-async def _in_head(context: ProcedureContext, station: HeadStation, model: StereoHead) -> BoardPose:
+async def _in_head(
+    station: StereoStation, model: StereoHead, workers: VisionWorkers, head_T_board: RigidTransform
+) -> BoardPose:
     drawing = target_board_discs()
     discs = [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
-    nominal = pose_from_xyzabc(context.cell.config.procedures.flange_T_target_board)
-    head_T_board = pose_from_xyzabc(station.config.flange_T_head).inv() * nominal
     found = []
     for _ in range(PAIRS):
         pair = await station.camera.grab()
         found.append(
-            await context.cell.workers.run(
+            await workers.run(
                 measure_pair,
                 pair.left,
                 pair.right,
@@ -87,7 +72,7 @@ async def _in_head(context: ProcedureContext, station: HeadStation, model: Stere
     return fit_board(drawing, points)
 
 
-async def _in_large_field(context: ProcedureContext) -> BoardPose:
+async def _in_large_field(tracker: TargetTracker, frames: int) -> BoardPose:
     drawing = target_board_discs()
-    seen = await context.cell.tracker.measure(context.cell.config.procedures.tracker_frames)
+    seen = await tracker.measure(frames)
     return fit_board(drawing, points_from_targets(seen, drawing))

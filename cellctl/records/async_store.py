@@ -13,7 +13,7 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-class Archive:
+class AsyncRunStore:
     """Awaitable access to the run store; faults of the store come back unchanged."""
 
     def __init__(self, path: Path) -> None:
@@ -30,7 +30,7 @@ class Archive:
     async def do(
         self, call: Callable[Concatenate[RunStore, P], R], *args: P.args, **kwargs: P.kwargs
     ) -> R:
-        """Call a method of the store: ``await archive.do(RunStore.add_alarm, …)``.
+        """Call a method of the store: ``await store.do(RunStore.add_alarm, …)``.
 
         Once begun it is carried out: cancelling the caller does not take back the write.
         """

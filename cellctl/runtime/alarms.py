@@ -2,7 +2,7 @@
 
 from cellctl import log
 from cellctl.errors import CellError
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.background import Background
 
@@ -12,7 +12,7 @@ _log = log.get(__name__)
 class Alarms:
     """The active alarms by number, the oldest first; the store has every single one."""
 
-    def __init__(self, archive: Archive, background: Background) -> None:
+    def __init__(self, archive: AsyncRunStore, background: Background) -> None:
         self._archive = archive
         self._background = background
         self._active: dict[int, None] = {}

@@ -1,7 +1,7 @@
 """The cell's calibrations on disk: stored by procedures, demanded by production."""
 
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -11,7 +11,6 @@ import numpy as np
 
 from cellctl.atomic_files import require_writable
 from cellctl.calibration.base_frame import BaseFrameResult
-from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import (
     KINDS,
     CalibrationSet,
@@ -55,15 +54,6 @@ SAME_JOINT_DEG = 1e-4
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
-    """The target board before one head, waiting for the other head's turn."""
-
-    board: BoardPlacement
-    joints_deg: JointsDeg
-    """The measuring pose from which the head saw it."""
-
-
-@dataclass(frozen=True, slots=True)
 class Calibrations:
     """Everything production needs, valid at the moment it was read."""
 
@@ -97,11 +87,13 @@ class Calibrations:
 
 @dataclass(slots=True)
 class CalibrationFolder:
-    """Reads and writes the folder; also keeps what two procedures hand to each other."""
+    """Reads and writes the folder."""
 
     path: Path
-    placements: dict[str, Placement] = field(default_factory=dict)
-    """Target board before head_1 and head_2, waiting for both to be there."""
+    on_stored: list[Callable[[str], None]] = field(default_factory=list)
+    """Told the kind of every record that was stored."""
+    on_invalidated: list[Callable[[], None]] = field(default_factory=list)
+    """Told of every invalidation: what waits for its counterpart may be worthless, too."""
     _seen: tuple[Stamp, dict[str, float]] | None = None
 
     def read(self, planned: timedelta) -> Calibrations:
@@ -153,8 +145,7 @@ class CalibrationFolder:
     ) -> StoredCalibration:
         """Put a record that passed into the folder, in place of the one before.
 
-        A head that is calibrated anew makes its placement of the target board worthless. Raises
-        ``CalibrationNotStored``.
+        Raises ``CalibrationNotStored``.
         """
         now = utc_now()
         plain = json.loads(json.dumps(record))  # as it will be read back
@@ -163,17 +154,18 @@ class CalibrationFolder:
         if picture_png is not None:
             write_file(self.path / f"{kind}.png", picture_png)
         lift_invalidation(self.path, kind)
-        self.placements.pop(kind, None)
         self._seen = None
+        for observer in self.on_stored:
+            observer(kind)
         return stored
 
     def invalidate(self, kinds: Iterable[str], reason: str) -> list[StoredCalibration]:
         """Mark what there is of some kinds as worthless until it is made anew; what that was.
 
-        ``contact_stiffness`` means that of every recipe. What waits for its counterpart is
-        dropped too. Raises ``CalibrationNotStored``.
+        ``contact_stiffness`` means that of every recipe. Raises ``CalibrationNotStored``.
         """
-        self.placements.clear()
+        for observer in self.on_invalidated:
+            observer()
         found = [name for kind in kinds for name in self._names(kind)]
         for name in found:
             mark_invalid(self.path, name, reason, utc_now())

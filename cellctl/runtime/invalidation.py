@@ -18,7 +18,7 @@ from cellctl.errors.force import (
 )
 from cellctl.errors.robot import ControllerFault
 from cellctl.errors.vision import CorrectionDiverging
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.calibration_folder import PAYLOAD, CalibrationFolder
 from cellctl.runtime.commissioned import CONTACT_STIFFNESS, STOP_LATENCY
@@ -45,7 +45,9 @@ def invalidated_by(fault: CellError) -> tuple[str, ...]:
     return INVALIDATED_BY.get(type(fault), ())
 
 
-async def invalidate_after(fault: CellError, folder: CalibrationFolder, archive: Archive) -> None:
+async def invalidate_after(
+    fault: CellError, folder: CalibrationFolder, archive: AsyncRunStore
+) -> None:
     """Invalidate durably what a fault has made worthless.
 
     Raises ``CalibrationNotStored`` or ``RecordNotWritten``.

@@ -1,26 +1,9 @@
-"""One run of the cell, from Starting to Completing: an assembly or a calibration procedure."""
+"""One run of the cell, from Starting to Completing: a part that is made, or a procedure."""
 
 from abc import ABC, abstractmethod
-from typing import Protocol
 
 from cellctl.errors import CellError
 from cellctl.records.entries import RunResult
-
-
-class SafePoint(Protocol):
-    """Where a run may pause."""
-
-    async def __call__(self, *, hold: bool = False) -> bool:
-        """Obey a pending Hold; with ``hold`` ask for one first.
-
-        True when the cell was held in between: nobody knows what has moved meanwhile, so whatever
-        was measured before counts no longer.
-        """
-        ...
-
-
-class HeldMeanwhile(Exception):
-    """Measured values are no longer to be trusted after a Hold; never leaves a job."""
 
 
 class Job(ABC):
@@ -29,7 +12,7 @@ class Job(ABC):
     number: int
     """Recipe or procedure, for the line."""
     serial: str
-    assembles: bool = False
+    makes_part: bool = False
     """Its good end is one more part."""
 
     @property
@@ -47,7 +30,7 @@ class Job(ABC):
         """Starting: open the run record, then bring robots to where the run begins."""
 
     @abstractmethod
-    async def execute(self, safe_point: SafePoint) -> None:
+    async def execute(self) -> None:
         """Execute: do the work; a fault leaves as an exception."""
 
     @abstractmethod

@@ -1,15 +1,15 @@
 """The record of one job with contact: opened before anything moves, closed whatever happens."""
 
 import asyncio
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from cellctl import log
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.calibration.files import StoredCalibration
 from cellctl.cell.devices import Cell
+from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
-from cellctl.processes.deck_to_frame.recipe import Recipe
-from cellctl.records.async_store import Archive
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.provenance import provenance
@@ -21,8 +21,8 @@ _log = log.get(__name__)
 class JobRecord:
     """At most one run row."""
 
-    def __init__(self, cell: Cell, archive: Archive, command: LineCommand) -> None:
-        self.archive = archive
+    def __init__(self, cell: Cell, store: AsyncRunStore, command: UnitCommand) -> None:
+        self.store = store
         self.number = 0
         """Of the run; 0 until it is open."""
         self._cell = cell
@@ -34,15 +34,14 @@ class JobRecord:
         recipe: Recipe,
         mode: str,
         stored: Sequence[StoredCalibration],
-        used: Mapping[str, str],
     ) -> int:
-        """The number of the run, opened at the first call; ``used`` are identities by kind.
+        """The number of the run, opened at the first call; ``stored`` are what counts in it.
 
-        Cell file, recipe and feature files go into it whole. The row is written by a task of its
-        own: a Stop must not leave one that nobody closes.
+        Cell file, recipe and the files of the recipe go into it whole. The row is written by a
+        task of its own: a Stop must not leave one that nobody closes.
         """
         if self._opening is None:
-            self._opening = asyncio.create_task(self._write(recipe, mode, stored, used))
+            self._opening = asyncio.create_task(self._write(recipe, mode, stored))
         await asyncio.shield(self._opening)
         return self.number
 
@@ -55,7 +54,7 @@ class JobRecord:
         except CellError:
             if not self.number:
                 return  # there is no record; this is the fault that has ended the run
-        await self.archive.do(
+        await self.store.do(
             RunStore.close_run,
             self.number,
             outcome,
@@ -69,13 +68,12 @@ class JobRecord:
         recipe: Recipe,
         mode: str,
         stored: Sequence[StoredCalibration],
-        used: Mapping[str, str],
     ) -> None:
         for calibration in stored:
-            await self.archive.do(RunStore.add_calibration, calibration)
+            await self.store.do(RunStore.add_calibration, calibration)
         cell, command = self._cell, self._command
         made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
-        self.number = await self.archive.do(
+        self.number = await self.store.do(
             RunStore.start_run,
             serial=command.serial,
             recipe_id=recipe.id,
@@ -84,9 +82,9 @@ class JobRecord:
             mode=mode,
             software=await asyncio.to_thread(software),
             config_hash=made_with.cell_hash,
-            calibration_ids=used,
+            calibration_ids={one.kind: one.id for one in stored},
             simulated=cell.config.simulated,
             operator=command.order or command.by,
         )
         for artefact in made_with.artefacts():
-            await self.archive.do(RunStore.add_artefact, self.number, *artefact)
+            await self.store.do(RunStore.add_artefact, self.number, *artefact)

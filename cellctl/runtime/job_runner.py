@@ -8,7 +8,7 @@ from cellctl import log
 from cellctl.errors import CellError
 from cellctl.packml.result import Result
 from cellctl.records.entries import RunResult
-from cellctl.runtime.job import Job, SafePoint
+from cellctl.runtime.job import Job
 
 _log = log.get(__name__)
 
@@ -23,7 +23,7 @@ _TO_THE_LINE = {
 }
 
 
-class Work:
+class JobRunner:
     """Present and last job. Belongs to one event loop."""
 
     def __init__(self) -> None:
@@ -47,9 +47,9 @@ class Work:
         return (self._job.run_number or None) if self._job else None
 
     @property
-    def assembles(self) -> bool:
+    def makes_part(self) -> bool:
         """True while the present job makes a part."""
-        return self._job is not None and self._job.assembles
+        return self._job is not None and self._job.makes_part
 
     @property
     def outcome(self) -> RunResult | None:
@@ -63,11 +63,11 @@ class Work:
         with self._at_work():
             await job.start()
 
-    async def execute(self, safe_point: SafePoint) -> None:
+    async def execute(self) -> None:
         """Execute."""
         assert self._job is not None
         with self._at_work():
-            await self._job.execute(safe_point)
+            await self._job.execute()
             self._finished = True
 
     async def left(self) -> None:

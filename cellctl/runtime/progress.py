@@ -4,19 +4,21 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from cellctl.runtime.step import Step
-
 
 @dataclass(frozen=True, slots=True)
 class Progress:
     """A snapshot. Lengths in mm and angles in degrees, because it is only ever shown."""
 
-    step: Step = Step.NONE
+    step: int = 0
+    """Number of the step or procedure, 0 between runs."""
+    step_label: str = ""
+    contact: bool = False
+    """The step deals with the trips of the guard itself."""
     iteration: int = 0
     error_mm_deg: tuple[float, ...] = (math.nan,) * 6
-    """x, y, z in mm, rx, ry, rz in degrees of the deck against its target."""
+    """x, y, z in mm, rx, ry, rz in degrees of the part against its target."""
     force_peaks: tuple[float, ...] = (math.nan,) * 6
-    """Greatest magnitude per component in the deck frame, N and N·m."""
+    """Greatest magnitude per component in the frame of the part, N and N·m."""
     force_limit_n: float = math.nan
     message: str = ""
 
@@ -30,12 +32,17 @@ class ProgressBoard:
 
     def update(self, **changes: object) -> None:
         """Replace some fields and tell the observers."""
-        self.current = replace(self.current, **changes)  # type: ignore[arg-type]
-        for observer in self.observers:
-            observer(self.current)
+        self._show(replace(self.current, **changes))  # type: ignore[arg-type]
+
+    def leave_step(self) -> None:
+        """No step is under way any more; what was measured stays to be seen."""
+        self.update(step=0, step_label="", contact=False)
 
     def reset(self) -> None:
         """Back to nothing, at the start of a run."""
-        self.current = Progress()
+        self._show(Progress())
+
+    def _show(self, progress: Progress) -> None:
+        self.current = progress
         for observer in self.observers:
-            observer(self.current)
+            observer(progress)

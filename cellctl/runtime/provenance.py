@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from cellctl.config import CellConfig
+from cellctl.config.recipe import Recipe
 from cellctl.errors.vision import FeatureFileInvalid
-from cellctl.processes.deck_to_frame.recipe import Recipe
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +18,9 @@ class Provenance:
     cell: bytes
     """The whole cell file as it was understood, defaults included."""
     recipe: bytes
-    """The recipe likewise, with the SHA-256 of its feature files."""
-    features: dict[str, bytes]
-    """The feature files as they are, by the name of their artefact."""
+    """The recipe likewise, with the SHA-256 of its files."""
+    files: dict[str, bytes]
+    """The files of the recipe as they are, by the name of their artefact."""
 
     @property
     def cell_hash(self) -> str:
@@ -29,7 +29,7 @@ class Provenance:
 
     @property
     def recipe_hash(self) -> str:
-        """SHA-256 of the recipe with the content of its feature files."""
+        """SHA-256 of the recipe with the content of its files."""
         return sha256(self.recipe).hexdigest()
 
     def artefacts(self) -> list[tuple[str, bytes, str]]:
@@ -37,21 +37,18 @@ class Provenance:
         return [
             ("cell.json", self.cell, "application/json"),
             ("recipe.json", self.recipe, "application/json"),
-            *((name, data, "application/toml") for name, data in self.features.items()),
+            *((name, data, "application/toml") for name, data in self.files.items()),
         ]
 
 
 def provenance(config: CellConfig, folder: Path, recipe: Recipe) -> Provenance:
     """Of a run with a recipe; ``folder`` holds the cell file. Raises ``FeatureFileInvalid``."""
-    features = {
-        "frame_features.toml": _read(folder / recipe.frame_features),
-        "deck_features.toml": _read(folder / recipe.deck_features),
-    }
-    hashes = {name: sha256(data).hexdigest() for name, data in features.items()}
+    files = {name: _read(folder / path) for name, path in recipe.files().items()}
+    hashes = {name: sha256(data).hexdigest() for name, data in files.items()}
     return Provenance(
         cell=_canonical(config.model_dump(mode="json")),
         recipe=_canonical({"recipe": recipe.model_dump(mode="json"), "sha256": hashes}),
-        features=features,
+        files=files,
     )
 
 

@@ -1,8 +1,6 @@
 """The snapshot that the line sees."""
 
-from cellctl.api.modbus.status import NO_VALUE, CellStatus
 from cellctl.cell.devices import Cell
-from cellctl.command.job_factory import OrderDesk
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
@@ -10,7 +8,10 @@ from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.runtime.alarms import Alarms
+from cellctl.runtime.calibration_folder import CalibrationFolder
+from cellctl.runtime.cell_status import NO_VALUE, CellStatus
 from cellctl.runtime.job import Job
+from cellctl.runtime.job_factory import JobFactory
 from cellctl.runtime.progress import ProgressBoard
 
 
@@ -20,16 +21,18 @@ class StatusView:
     def __init__(
         self,
         cell: Cell,
+        *,
         machine: PackMLMachine,
         board: ProgressBoard,
-        desk: OrderDesk,
+        jobs: JobFactory,
+        calibrations: CalibrationFolder,
         alarms: Alarms,
     ) -> None:
         self._cell = cell
         self._machine = machine
         self._board = board
-        self._desk = desk
-        self._calibrations = desk.calibrations
+        self._jobs = jobs
+        self._calibrations = calibrations
         self._alarms = alarms
 
     def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
@@ -42,6 +45,7 @@ class StatusView:
             state_requested=machine.state_requested,
             mode=machine.mode,
             step=progress.step,
+            step_label=progress.step_label,
             iteration=progress.iteration,
             ready=self._may_start(),
             error=bool(faults),
@@ -49,7 +53,7 @@ class StatusView:
             calibration_ok=self._calibrations.all_valid(),
             simulation=self._cell.config.simulated,
             manual=self._any_manual(),
-            force_guard_tripped=self._cell.guard.trip is not None,
+            force_guard_tripped=any(guard.trip for guard in self._cell.guards.values()),
             hold_requested=machine.hold_requested,
             alarms=alarms,
             first_out_alarm=faults[0].number if faults else 0,
@@ -68,10 +72,10 @@ class StatusView:
     def _may_start(self) -> bool:
         machine = self._machine
         taken = machine.judge(Command.START) is RejectCode.NONE
-        return taken and self._desk.ready(machine.mode)
+        return taken and self._jobs.ready(machine.mode)
 
     def _any_manual(self) -> bool:
-        for robot in self._cell.robots:
+        for robot in self._cell.robots.values():
             try:
                 if robot.state().mode is not RobotMode.REMOTE:
                     return True
@@ -80,5 +84,7 @@ class StatusView:
         return False
 
     def _force_z_n(self) -> float:
-        sample = self._cell.guard.newest()
+        """Of the first force sensor in the cell file: the register has room for one."""
+        guard = next(iter(self._cell.guards.values()), None)
+        sample = None if guard is None else guard.newest()
         return NO_VALUE if sample is None else float(sample.wrench[2])

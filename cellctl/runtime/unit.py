@@ -5,7 +5,6 @@ import asyncio
 from cellctl import log
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
-from cellctl.command.job_factory import OrderDesk
 from cellctl.errors import CellError
 from cellctl.errors.internal import StateDidNotEnd
 from cellctl.errors.line import LineLost
@@ -13,39 +12,43 @@ from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES, State
-from cellctl.processes.deck_to_frame.lift_off import lift_off
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
+from cellctl.runtime.calibration_folder import CalibrationFolder
 from cellctl.runtime.invalidation import invalidate_after
-from cellctl.runtime.job_runner import Work
+from cellctl.runtime.job_factory import JobFactory
+from cellctl.runtime.job_runner import JobRunner
+from cellctl.runtime.process import CellServices, open_processes
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.status_view import StatusView
-from cellctl.runtime.step import Step
 
 _log = log.get(__name__)
 
 ABORT_TIMEOUT_S = 20.0
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
-_IN_CONTACT = frozenset({Step.MATE, Step.MEASURE_CONTACT_STIFFNESS})
 _AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
 AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 
 
-class Unit:
+class UnitController:
     """Joins state machine, devices and records. Belongs to one event loop."""
 
-    def __init__(self, cell: Cell, archive: Archive) -> None:
+    def __init__(self, cell: Cell, store: AsyncRunStore) -> None:
+        """Raises ``UnknownDriver`` when a process of the cell file is not installed."""
         self._cell = cell
-        self._archive = archive
-        self._work = Work()
+        self._store = store
+        self._jobs = JobRunner()
         self.board = ProgressBoard()
         self.background = Background()
-        self.alarms = Alarms(archive, self.background)
-        self.desk = OrderDesk(cell, archive, self.board)
+        self.alarms = Alarms(store, self.background)
+        self.calibrations = CalibrationFolder(cell.folder / cell.config.calibration_dir)
+        services = CellServices(cell, self.calibrations, self.board, store)
+        self._processes = open_processes(services)
+        self.factory = JobFactory(services, self._processes)
         self.machine = PackMLMachine(
             {
                 State.CLEARING: self._clearing,
@@ -61,7 +64,14 @@ class Unit:
         self._ending = False
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
-        self.view = StatusView(cell, self.machine, self.board, self.desk, self.alarms)
+        self.view = StatusView(
+            cell,
+            machine=self.machine,
+            board=self.board,
+            jobs=self.factory,
+            calibrations=self.calibrations,
+            alarms=self.alarms,
+        )
         self.parts = 0
         """Good parts since installation."""
 
@@ -71,12 +81,12 @@ class Unit:
         Raises the faults of the store, and ``CalibrationNotStored`` while no procedure could keep
         its result.
         """
-        await asyncio.to_thread(self.desk.calibrations.require_writable)
-        interrupted = await self._archive.do(RunStore.mark_interrupted)
+        await asyncio.to_thread(self.calibrations.require_writable)
+        interrupted = await self._store.do(RunStore.mark_interrupted)
         if interrupted:
             _log.warning("an earlier process left runs open", runs=interrupted)
         await self.alarms.open()
-        heads = await self._archive.do(RunStore.runs, limit=1_000_000)
+        heads = await self._store.do(RunStore.runs, limit=1_000_000)
         self.parts = sum(
             head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
         )
@@ -96,14 +106,13 @@ class Unit:
         return self._cell.connected and not self._ending
 
     @property
-    def work(self) -> Work:
+    def jobs(self) -> JobRunner:
         """Present and last job."""
-        return self._work
+        return self._jobs
 
-    @property
-    def expects_trips(self) -> bool:
-        """True while a step or a move deals with the trips of the guard itself."""
-        return self._cell.awaits_trips or self.board.current.step in _IN_CONTACT
+    def awaits_trips(self, sensor_name: str) -> bool:
+        """True while a step or a move deals with the trips of this guard itself."""
+        return self._cell.awaits_trips(sensor_name) or self.board.current.contact
 
     def line_lost(self) -> None:
         """The line's heartbeat stopped: hold at the next safe point."""
@@ -137,24 +146,25 @@ class Unit:
 
     async def _resetting(self) -> None:
         await self._cell.rearm()
-        require_ready(self._cell.robots)
-        await lift_off(self._cell)
+        require_ready(self._cell.robots.values())
+        for process in self._processes.values():
+            await process.clear()
 
     async def _starting(self) -> None:
         self.board.reset()
-        await self._work.start(self.desk.job())
+        await self._jobs.start(self.factory.job(self._safe_point))
 
     async def _execute(self) -> None:
-        await self._work.execute(self._safe_point)
+        await self._jobs.execute()
 
     async def _completing(self) -> None:
         """A run that Complete cut short ends like a stopped one, and its part is not good."""
-        outcome = self._work.outcome
+        outcome = self._jobs.outcome
         if outcome is None:
             await self._halt(RunResult.BAD)
             return
-        assembled = self._work.assembles and outcome is RunResult.GOOD
-        await self._work.close(outcome, None)
+        assembled = self._jobs.makes_part and outcome is RunResult.GOOD
+        await self._jobs.close(outcome, None)
         self.parts += assembled
 
     async def _stopping(self) -> None:
@@ -167,8 +177,8 @@ class Unit:
         """Stop everything that moves, then write down how the run ended, in this order."""
         stopping = self._cell.stop_motion()
         [error] = await asyncio.gather(stopping, return_exceptions=True)
-        await self._work.left()
-        await self._work.close(outcome, self.machine.fault)
+        await self._jobs.left()
+        await self._jobs.close(outcome, self.machine.fault)
         if error is not None:
             raise error
 
@@ -187,11 +197,11 @@ class Unit:
 
     def _faulted(self, error: CellError) -> None:
         _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
-        self.alarms.add(error, self._work.run_number)
+        self.alarms.add(error, self._jobs.run_number)
         self.background.start(self._invalidate_after(error))
 
     async def _invalidate_after(self, error: CellError) -> None:
         try:
-            await invalidate_after(error, self.desk.calibrations, self._archive)
+            await invalidate_after(error, self.calibrations, self._store)
         except CellError as fault:
             await self.machine.fail(fault)

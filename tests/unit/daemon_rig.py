@@ -8,7 +8,6 @@ from typing import Any, cast
 import pytest
 
 from cellctl.api.modbus.interface import PlcPort
-from cellctl.api.modbus.status import CellStatus
 from cellctl.command.arbiter import Line
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
@@ -18,10 +17,11 @@ from cellctl.processes.deck_to_frame import preparation
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry
 from cellctl.processes.deck_to_frame.steps import mate_deck
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunHead, RunRecord
 from cellctl.records.store import RunStore
-from cellctl.runtime.unit import Unit
+from cellctl.runtime.cell_status import CellStatus
+from cellctl.runtime.unit import UnitController
 from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
@@ -73,7 +73,7 @@ class Contact:
 
 
 class DaemonRig:
-    """Unit, line and archive."""
+    """UnitController, line and archive."""
 
     def __init__(self, bench: Bench, store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.bench = bench
@@ -87,8 +87,8 @@ class DaemonRig:
 
     async def open(self) -> None:
         """As a daemon starts on this store."""
-        self.archive = Archive(self._store)
-        self.unit = Unit(self.bench.as_cell, self.archive)
+        self.archive = AsyncRunStore(self._store)
+        self.unit = UnitController(self.bench.as_cell, self.archive)
         self.line = Line(self.unit, self.archive)
         self.port = PaperPort()
         self.line.attach(cast(PlcPort, self.port))

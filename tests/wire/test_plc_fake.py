@@ -8,14 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.api.modbus.interface import PlcPort
-from cellctl.api.modbus.status import CellStatus
 from cellctl.command.tracker import LineCoupling
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError, Reaction
 from cellctl.packml import PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.runtime.cell_status import CellStatus
 
 ROOT = Path(__file__).parents[2]
 Action = Callable[[], Awaitable[None]]
@@ -31,17 +31,17 @@ class FakelessCell:
 
     def __init__(self, execute: Action, result: Result, initial: State = State.ABORTED) -> None:
         self.machine = PackMLMachine({State.EXECUTE: execute}, initial=initial)
-        self.commands: list[LineCommand] = []
+        self.commands: list[UnitCommand] = []
         self.port = PlcPort(Plc(port=0), self, lambda: None, previous_seq=1)
         self.coupling = LineCoupling(self.machine, self.port.finish, lambda: result)
         self.machine.on_change.append(lambda _before, _after: self.publish())
         self.status = CellStatus()
         self.beat: asyncio.Task[None] | None = None
 
-    async def judge(self, _command: LineCommand) -> RejectCode:
+    async def judge(self, _command: UnitCommand) -> RejectCode:
         return RejectCode.NONE
 
-    async def obey(self, command: LineCommand) -> RejectCode:
+    async def obey(self, command: UnitCommand) -> RejectCode:
         self.commands.append(command)
         return await self.coupling.obey(command)
 

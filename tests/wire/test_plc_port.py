@@ -6,15 +6,15 @@ from collections.abc import AsyncIterator, Callable
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from cellctl.api.modbus.commands import LineCommand
 from cellctl.api.modbus.interface import PlcPort
-from cellctl.api.modbus.status import CellStatus
 from cellctl.command.tracker import LineCoupling
 from cellctl.config.cell import Plc
 from cellctl.errors.line import LineTaskDied
 from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.runtime.cell_status import CellStatus
 
 ACK, DONE, RESULT, REJECT, HEARTBEAT, STATUS, STATE = 7, 8, 9, 10, 11, 5, 2
 LOST = 1 << 5
@@ -24,9 +24,9 @@ class Line:
     """A port with a recording handler, and a client."""
 
     def __init__(self) -> None:
-        self.commands: list[LineCommand] = []
+        self.commands: list[UnitCommand] = []
         """As they were obeyed."""
-        self.answer: Callable[[LineCommand], RejectCode] = lambda _command: RejectCode.NONE
+        self.answer: Callable[[UnitCommand], RejectCode] = lambda _command: RejectCode.NONE
         self.disk = asyncio.Event()
         self.disk.set()
         self.lost = asyncio.Event()
@@ -34,11 +34,11 @@ class Line:
         self.clients: list[AsyncModbusTcpClient] = []
         self.beat = 0
 
-    async def judge(self, command: LineCommand) -> RejectCode:
+    async def judge(self, command: UnitCommand) -> RejectCode:
         await self.disk.wait()
         return RejectCode.NONE
 
-    async def obey(self, command: LineCommand) -> RejectCode:
+    async def obey(self, command: UnitCommand) -> RejectCode:
         self.commands.append(command)
         return self.answer(command)
 
@@ -120,7 +120,7 @@ async def test_a_refusal_is_a_number_not_a_modbus_exception(line: Line) -> None:
 
 
 async def test_a_fault_while_deciding_refuses_and_the_next_command_is_heard(line: Line) -> None:
-    def answer(command: LineCommand) -> RejectCode:
+    def answer(command: UnitCommand) -> RejectCode:
         if command.seq == 1:
             raise ConnectTimeout("main robot")
         return RejectCode.NONE
@@ -179,7 +179,7 @@ async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:
 
 
 async def test_the_cell_does_not_beat_once_commands_are_no_longer_taken(line: Line) -> None:
-    def answer(_command: LineCommand) -> RejectCode:
+    def answer(_command: UnitCommand) -> RejectCode:
         raise RuntimeError("defect")
 
     line.answer = answer

@@ -8,12 +8,12 @@ from cellctl.api.local.socket_file import SocketFile, default_path
 from cellctl.api.local.terminal import Terminal
 from cellctl.cell.devices import Cell
 from cellctl.command.arbiter import Line
-from cellctl.records.async_store import Archive
-from cellctl.runtime.unit import Unit
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.runtime.unit import UnitController
 
 
 def local_server(
-    cell: Cell, unit: Unit, line: Line, archive: Archive, data_dir: Path
+    cell: Cell, unit: UnitController, line: Line, archive: AsyncRunStore, data_dir: Path
 ) -> LocalServer:
     """Not yet listening; ``data_dir`` has the socket unless cell file or systemd say otherwise."""
     settings = cell.config.local_api

@@ -11,17 +11,18 @@ from cellctl.clock import utc_now
 from cellctl.command.arbiter import Line
 from cellctl.command.authority import line_in_control
 from cellctl.errors import CellError, catalogue
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.calibration_folder import ALL_KINDS
-from cellctl.runtime.step import Step
-from cellctl.runtime.unit import Unit
+from cellctl.runtime.unit import UnitController
 
 
 class Reporter:
     """Reads machine, devices and records; files and store in threads of their own."""
 
-    def __init__(self, cell: Cell, unit: Unit, line: Line, archive: Archive) -> None:
+    def __init__(
+        self, cell: Cell, unit: UnitController, line: Line, archive: AsyncRunStore
+    ) -> None:
         self._cell = cell
         self._unit = unit
         self._line = line
@@ -32,8 +33,8 @@ class Reporter:
         calibrations = await asyncio.to_thread(self._calibrations)
         texts, last_run, records = await self._from_store()
         unit, machine = self._unit, self._unit.machine
-        shown = unit.view.snapshot(unit.work.shown, unit.work.result, unit.parts)
-        trip = self._cell.guard.trip
+        shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts)
+        trips = [guard.trip for guard in self._cell.guards.values() if guard.trip is not None]
         alive = self._line.alive
         return StatusReport(
             cell=self._cell.config.name,
@@ -46,14 +47,14 @@ class Reporter:
             connected=unit.live,
             ready=shown.ready,
             hold_requested=shown.hold_requested,
-            step=Step(shown.step).label if shown.step else "",
+            step=shown.step_label,
             iteration=shown.iteration,
             faults=tuple(_fault(fault) for fault in machine.faults),
             alarms=tuple(_alarm(n, texts.get(n, "")) for n in unit.alarms.numbers),
-            guard_trip=f"{trip.reason.value}: {trip.detail}" if trip is not None else "",
+            guard_trip="; ".join(f"{trip.reason.value}: {trip.detail}" for trip in trips),
             links=self._links(),
             calibrations=calibrations,
-            result=unit.work.result.name.lower(),
+            result=unit.jobs.result.name.lower(),
             last_run=last_run,
             good_parts=unit.parts,
             records=records,
@@ -91,7 +92,7 @@ class Reporter:
         return found
 
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
-        folder, now = self._unit.desk.calibrations.path, utc_now()
+        folder, now = self._unit.calibrations.path, utc_now()
         found = []
         for kind in _kinds(folder):
             try:

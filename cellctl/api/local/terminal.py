@@ -19,13 +19,13 @@ from cellctl.api.local.messages import (
 )
 from cellctl.api.local.reporter import Reporter
 from cellctl.api.local.users import Users
-from cellctl.api.modbus.commands import DRY_RUN, SINGLE_STEP, LineCommand
 from cellctl.command.arbiter import Line
 from cellctl.config import CellConfig
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
+from cellctl.packml.unit_command import DRY_RUN, SINGLE_STEP, UnitCommand
 
 _log = log.get(__name__)
 
@@ -57,7 +57,7 @@ class Terminal:
             return Taken(state=state)
         return Refused(code=code, text=code.text, state=state)
 
-    def _command(self, request: CommandRequest) -> LineCommand:
+    def _command(self, request: CommandRequest) -> UnitCommand:
         match request:
             case PlainCommand():
                 return _asked(cntrl_cmd=Command[request.request.upper()])
@@ -100,9 +100,9 @@ def _asked(
     serial: str = "",
     order: str = "",
     alarm_ack_id: int = 0,
-) -> LineCommand:
+) -> UnitCommand:
     """A command that arrives now, without a number."""
-    return LineCommand(
+    return UnitCommand(
         seq=0,
         unit_mode=unit_mode,
         cntrl_cmd=cntrl_cmd,

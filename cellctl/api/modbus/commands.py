@@ -5,79 +5,13 @@ start of the cell is suspect: it may have stood in the PLC for days. Only 1, whi
 begins anew, is taken, and not even 1 when that was the last number before the start.
 """
 
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 from cellctl.api.modbus.image import WordOrder, decode
 from cellctl.api.modbus.register_map import item
-from cellctl.clock import now_s
-from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
-
-_CHARSET = re.compile(r"[A-Z0-9._-]*")
-DRY_RUN, SINGLE_STEP = 0b01, 0b10
-"""Bits of the options."""
-
-
-@dataclass(frozen=True, slots=True)
-class LineCommand:
-    """What the PLC asked for, as it stood when it was committed. Numbers are not yet judged.
-
-    An operator at the cell's terminal asks in the same form, without a number.
-    """
-
-    seq: int
-    unit_mode: int
-    cntrl_cmd: int
-    recipe_id: int
-    options: int
-    serial: str
-    order: str
-    alarm_ack_id: int
-    by: str = ""
-    """Who asks at the terminal; empty for the line."""
-    arrived_s: float = field(default_factory=now_s, compare=False)
-    """Monotonic."""
-
-    @property
-    def local(self) -> bool:
-        """True for a command of the terminal."""
-        return bool(self.by)
-
-    @property
-    def who(self) -> str:
-        """Who asks, for the audit log."""
-        return self.by or self.order or "line"
-
-    @property
-    def dry_run(self) -> bool:
-        """Option bit 0."""
-        return bool(self.options & DRY_RUN)
-
-    @property
-    def single_step(self) -> bool:
-        """Option bit 1."""
-        return bool(self.options & SINGLE_STEP)
-
-    @property
-    def ends_motion(self) -> bool:
-        """Stop and Abort are taken whatever else is wrong."""
-        return self.cntrl_cmd in (Command.STOP, Command.ABORT)
-
-    def judge(self) -> RejectCode:
-        """What is wrong with the parameters in themselves."""
-        if self.ends_motion:
-            return RejectCode.NONE
-        starts = self.cntrl_cmd == Command.START
-        if not _CHARSET.fullmatch(self.serial) or (starts and not self.serial):
-            return RejectCode.SERIAL_INVALID
-        if not _CHARSET.fullmatch(self.order):
-            return RejectCode.ORDER_INVALID
-        if self.options & ~(DRY_RUN | SINGLE_STEP):
-            return RejectCode.OPTIONS_UNKNOWN
-        return RejectCode.NONE
+from cellctl.packml.unit_command import UnitCommand
 
 
 class CommandLatch:
@@ -95,7 +29,7 @@ class CommandLatch:
         self.result = Result.NONE
         self.reject_code = RejectCode.NONE
 
-    def commit(self, holding: Sequence[int]) -> LineCommand | None:
+    def commit(self, holding: Sequence[int]) -> UnitCommand | None:
         """A command that counts, or None: the same number again, 0, or left from before."""
         command = _parse(holding, self._order)
         if command.seq == self._seen:
@@ -146,11 +80,11 @@ class CommandLatch:
         self.result, self.reject_code = result, code
 
 
-def _parse(holding: Sequence[int], order: WordOrder) -> LineCommand:
+def _parse(holding: Sequence[int], order: WordOrder) -> UnitCommand:
     def number(name: str) -> int:
         return holding[item(name).address]
 
-    return LineCommand(
+    return UnitCommand(
         seq=number("cmd_seq"),
         unit_mode=number("unit_mode"),
         cntrl_cmd=number("cntrl_cmd"),

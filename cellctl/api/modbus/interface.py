@@ -6,19 +6,21 @@ from importlib.metadata import version
 from typing import Protocol
 
 from cellctl import log
-from cellctl.api.modbus.commands import CommandLatch, LineCommand
+from cellctl.api.modbus.commands import CommandLatch
 from cellctl.api.modbus.heartbeat import HeartbeatWatch
 from cellctl.api.modbus.image import input_block
 from cellctl.api.modbus.pdu import Responder
 from cellctl.api.modbus.registers import RegisterFile
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
-from cellctl.api.modbus.status import CellStatus, Handshake, values
+from cellctl.api.modbus.status import Handshake, values
 from cellctl.command.queue import Intake
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError
 from cellctl.errors.line import LineTaskDied
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.runtime.cell_status import CellStatus
 
 _log = log.get(__name__)
 _IDENTITY = ("cellctl", "cell controller", version("cellctl"))
@@ -28,13 +30,13 @@ _QUEUE = 16
 class CommandHandler(Protocol):
     """Who decides about the line's commands and has them carried out."""
 
-    async def judge(self, command: LineCommand) -> RejectCode:
+    async def judge(self, command: UnitCommand) -> RejectCode:
         """Why a command other than Stop and Abort is refused; may wait for the disk.
 
         Cancelled when a Stop or an Abort overtakes it.
         """
 
-    async def obey(self, command: LineCommand) -> RejectCode:
+    async def obey(self, command: UnitCommand) -> RejectCode:
         """Begin what was judged well; waits for nothing but the state machine's turn."""
 
 
@@ -161,11 +163,11 @@ class PlcPort:
             _log.info("line command", seq=command.seq, cmd=command.cntrl_cmd, reject=code.text)
             self._refresh()
 
-    def _supersede(self, command: LineCommand) -> None:
+    def _supersede(self, command: UnitCommand) -> None:
         self._latch.supersede(command.seq)
         _log.warning("line command superseded", seq=command.seq, cmd=command.cntrl_cmd)
 
-    async def _take(self, command: LineCommand) -> RejectCode:
+    async def _take(self, command: UnitCommand) -> RejectCode:
         try:
             code = await self._judge(command)
             return code or await self._handler.obey(command)
@@ -173,14 +175,14 @@ class PlcPort:
             _log.exception("line command failed", seq=command.seq, fault=str(error))
             return RejectCode.DEVICE_NOT_READY
 
-    async def _judge(self, command: LineCommand) -> RejectCode:
+    async def _judge(self, command: UnitCommand) -> RejectCode:
         if command.ends_motion:
             return RejectCode.NONE
         if not self._watch.alive:
             return RejectCode.LINE_HEARTBEAT_MISSING
         return command.judge() or await self._judge_unless_overtaken(command)
 
-    async def _judge_unless_overtaken(self, command: LineCommand) -> RejectCode:
+    async def _judge_unless_overtaken(self, command: UnitCommand) -> RejectCode:
         judging = asyncio.create_task(self._handler.judge(command), name="line command")
         urgent = asyncio.create_task(self._intake.urgent(), name="stop of the line")
         try:

@@ -1,54 +1,16 @@
-"""What the daemon tells the line, and how it becomes registers."""
+"""How the state of the cell becomes registers."""
 
 from dataclasses import dataclass
 
 from cellctl.api.modbus.image import Value, millionths, thousandths
 from cellctl.api.modbus.register_map import MAP_VERSION, STATUS_BITS
-from cellctl.packml.mode import Mode
-from cellctl.packml.result import Result
-from cellctl.packml.state import State
+from cellctl.runtime.cell_status import CellStatus
 
-NO_VALUE = float("nan")
 _BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 _WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
 _VALIDITY = ("stereo", "base_frame", "board_transfer", "payload")
 _U16_MAX = 0xFFFF
-
-
-@dataclass(frozen=True, slots=True)
-class CellStatus:
-    """A snapshot in the line's units (mm, degrees, N, N·m, h); NaN is a value that is missing."""
-
-    state: State = State.ABORTED
-    state_requested: State = State.ABORTED
-    mode: Mode = Mode.PRODUCTION
-    step: int = 0
-    iteration: int = 0
-    ready: bool = False
-    error: bool = False
-    warning: bool = False
-    calibration_ok: bool = False
-    simulation: bool = False
-    manual: bool = False
-    force_guard_tripped: bool = False
-    hold_requested: bool = False
-    alarms: tuple[int, ...] = ()
-    """Numbers of all active alarms, the oldest first."""
-    first_out_alarm: int = 0
-    recipe_active: int = 0
-    cycle_counter: int = 0
-    run_number: int = 0
-    run_result: Result = Result.NONE
-    validity_h: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    """Heads, base frame, board transfer, payload."""
-    error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
-    """x, y, z in mm, rx, ry, rz in degrees."""
-    force_peaks: tuple[float, ...] = (NO_VALUE,) * 6
-    """Fx, Fy, Fz in N, Mx, My, Mz in N·m."""
-    force_z_n: float = NO_VALUE
-    force_limit_n: float = NO_VALUE
-    serial: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,63 +1,57 @@
 """Procedure 108: how stiff arm and contact are together, by touching the frame a few times."""
 
+from cellctl import log
 from cellctl.calibration.checks import all_passed
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
-from cellctl.procedures.pictures import stiffness_picture
+from cellctl.processes.deck_to_frame.beginning import to_the_beginning
+from cellctl.processes.deck_to_frame.contact_stiffness_picture import stiffness_picture
 from cellctl.processes.deck_to_frame.contact_stiffness_result import (
     stiffness_checks,
     stiffness_record,
 )
-from cellctl.processes.deck_to_frame.journal import Journal
+from cellctl.processes.deck_to_frame.facts import read_facts
 from cellctl.processes.deck_to_frame.mating.commissioning import (
     ContactStiffness,
     measure_contact_stiffness,
 )
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
 from cellctl.processes.deck_to_frame.mating.curves import curves_kept
-from cellctl.processes.deck_to_frame.preparation import (
-    prepare,
-    repeat_until_unheld,
-    to_the_beginning,
-)
-from cellctl.processes.deck_to_frame.run import AssemblyRun
-from cellctl.processes.deck_to_frame.sequence import STEPS, Sequence
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.run import OpenRun
+from cellctl.processes.deck_to_frame.state import Corrected, Ready
+from cellctl.processes.deck_to_frame.stations import DeckCell
+from cellctl.processes.deck_to_frame.steps import CORRECT_POSE, TO_STAND_OFF
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home
 from cellctl.runtime.commissioned import Commissioned, stiffness_kind
-from cellctl.runtime.step import Step
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.process import CellServices, RunContext
+from cellctl.runtime.steps import HeldMeanwhile, StepRunner, Steps, StepSpec
+
+_log = log.get(__name__)
 
 MODE = "commissioning"
 
 
-async def measure_contact_stiffness_on_cell(context: ProcedureContext) -> ProcedureOutcome:
+async def measure_contact_stiffness_on_cell(
+    cell: DeckCell, recipe: DeckRecipe, services: CellServices, context: ProcedureContext
+) -> ProcedureOutcome:
     """Measure and correct as an assembly does, then touch instead of mating once; deck stays.
 
     Planned with the bounds of the chosen recipe, as if nothing had been commissioned. Everything
     goes into a run of its own, with all force curves. Raises what the steps raise.
     """
-    cell, board = context.cell, context.board
-    recipe = context.recipe
-    prepared = await prepare(cell, context.calibrations, recipe)
-    number = await context.record.open(recipe, MODE, prepared.stored, prepared.calibrations.ids)
-    await cell.guard.set_compensation(prepared.calibrations.compensation)
-    await to_the_beginning(cell, board)
-    journal = Journal(context.record.archive, cell.workers, number)
-    found: list[ContactStiffness] = []
-
-    async def touch(run: AssemblyRun) -> None:
-        found.append(await _touch(run))
-
-    before = tuple(step for step in STEPS if step[0] < Step.MATE)
-    sequence = Sequence(steps=(*before, (Step.MEASURE_CONTACT_STIFFNESS, touch)))
-    await repeat_until_unheld(
-        sequence,
-        cell=cell,
-        prepared=prepared,
-        board=board,
-        journal=journal,
-        pause=context.safe_point,
-    )
+    facts = await read_facts(cell, recipe, services.calibrations)
+    number = await context.record.open(recipe, MODE, facts.stored)
+    opened = OpenRun.of(facts, services, RunContext(number, context.safe_point))
+    runner = StepRunner(services.board, context.safe_point, number)
+    touch = StepSpec(108, "measure contact stiffness", _touch, contact=True)
+    steps: Steps[Ready, ContactStiffness] = TO_STAND_OFF.then(CORRECT_POSE).then(touch)
+    while True:
+        try:
+            measured = await runner.run(steps, await to_the_beginning(opened))
+            break
+        except HeldMeanwhile:
+            _log.info("held meanwhile: everything is measured again")
     await main_to_home(cell)
-    measured = found[-1]
     checks = stiffness_checks(measured, recipe.mating)
     return ProcedureOutcome(
         item=stiffness_kind(recipe.id),
@@ -69,9 +63,10 @@ async def measure_contact_stiffness_on_cell(context: ProcedureContext) -> Proced
     )
 
 
-async def _touch(run: AssemblyRun) -> ContactStiffness:
+async def _touch(corrected: Corrected) -> ContactStiffness:
+    run = corrected.run
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
-    plan = contact_plan(run, Commissioned())
+    plan = contact_plan(corrected, Commissioned())
     await run.journal.mating_plan(plan)
     async with curves_kept(run) as report:
         measured = await measure_contact_stiffness(run.cell.main, run.cell.guard, plan, report)

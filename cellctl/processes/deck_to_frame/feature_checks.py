@@ -1,26 +1,24 @@
-"""Can a part be measured with the feature files that the recipes name?"""
+"""Can a part be measured with the feature files that a recipe names?"""
 
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from cellctl.config.cell import CellConfig
-from cellctl.config.issue import Problem
+from cellctl.config.issue import ConfigIssue
 from cellctl.errors.vision import FeatureFileInvalid
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features import FeatureFile, read_features
 from cellctl.vision.registration import on_a_line
 
 
-def feature_problems(cell: CellConfig, folder: Path) -> Iterator[Problem]:
+def feature_issues(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
     """Every feature file that cannot be read, or from which no pose would follow."""
-    for index, recipe in enumerate(cell.recipes):
-        for key in ("frame_features", "deck_features"):
-            name = getattr(recipe, key)
-            fault = _fault(folder / name)
-            if fault:
-                number = FeatureFileInvalid.number
-                yield Problem(f"recipes.{index}.{key}", repr(name), fault, number)
+    for name in ("frame_features", "deck_features"):
+        file = getattr(recipe, name)
+        fault = _fault(folder / file)
+        if fault:
+            yield ConfigIssue(f"{key}.{name}", repr(file), fault, FeatureFileInvalid.number)
 
 
 def _fault(path: Path) -> str:

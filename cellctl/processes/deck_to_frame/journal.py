@@ -18,7 +18,7 @@ from cellctl.processes.deck_to_frame.mating.record import plan_record, result_re
 from cellctl.processes.deck_to_frame.mating.result import MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.measuring import PartMeasurement
 from cellctl.processes.deck_to_frame.pose_correction import Judgement, Thresholds
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.recording import MEDIA_TYPE, encode_curve
 from cellctl.records.store import RunStore
 from cellctl.vision.measurement import PairMeasurement
@@ -32,7 +32,7 @@ JPEG_QUALITY = 85
 class Journal:
     """One run's way into the store."""
 
-    archive: Archive
+    archive: AsyncRunStore
     workers: VisionWorkers
     run: int
     curves: list[ForceCurve] = field(default_factory=list)

@@ -3,15 +3,15 @@
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.devices import Cell
-from cellctl.cell.guarded_moves import Change, Go, watched
-from cellctl.config.devices import Force
+from cellctl.cell.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.compensation import Compensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
 from cellctl.processes.deck_to_frame.pose_limits import is_near
-from cellctl.processes.deck_to_frame.recipe import Mating, Recipe
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating
+from cellctl.processes.deck_to_frame.stations import DeckCell
 
 _log = log.get(__name__)
 
@@ -27,7 +27,7 @@ NEAR_STATION_M = 0.8
 """Along either axis of the frame, between its middle and the deck's: they may overlap."""
 
 
-async def lift_off(cell: Cell) -> None:
+async def lift_off(cell: DeckCell) -> None:
     """Move the deck away from the station along the approach, slowly at first, under the guard.
 
     The direction is the normal of the frame as measured last, else as the recipe has it. Nothing
@@ -43,26 +43,27 @@ async def lift_off(cell: Cell) -> None:
         await cell.guard.set_compensation(Compensation.none())  # it goes straight: a tare will do
     mating = recipe.mating
     # What a mating has left may go without a fault: never more than its own limits.
-    most = Change(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
+    tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
     away = _frame_of(cell, recipe).rotation.apply([0.0, 0.0, 1.0])
+    flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
     try:
-        async with watched(cell, pose_from_xyzabc(recipe.flange_T_deck), most) as go:
-            await _rise(cell, mating, base_T_flange, away, go)
+        async with guarded_moves(cell.cell, cell.arm, flange_T_deck, tolerance) as move:
+            await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
 
 
 async def _rise(
-    cell: Cell, mating: Mating, base_T_flange: RigidTransform, away: Array, go: Go
+    cell: DeckCell, mating: Mating, base_T_flange: RigidTransform, away: Array, move: GuardedMove
 ) -> None:
     def above(height_m: float) -> RigidTransform:
         return RigidTransform.from_translation(height_m * away) * base_T_flange
 
-    first_m_s = first_lift_speed_m_s(mating, cell.config.force)
-    await go(cell.main.step(above(FIRST_LIFT_M), speed_m_s=first_m_s))
-    fast_m_s = cell.config.robots.main.linear_speed_mm_s * MM
+    first_m_s = first_lift_speed_m_s(mating, cell.force_config)
+    await move(cell.main.step(above(FIRST_LIFT_M), speed_m_s=first_m_s))
+    fast_m_s = cell.main_config.linear_speed_mm_s * MM
     for height_m, speed_m_s in ((SLOW_LIFT_M, SLOW_SPEED_M_S), (LIFT_M, fast_m_s)):
-        await go(
+        await move(
             cell.main.move_linear(
                 above(height_m),
                 speed_m_s=speed_m_s,
@@ -71,7 +72,7 @@ async def _rise(
         )
 
 
-def first_lift_speed_m_s(mating: Mating, force: Force) -> float:
+def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
     """So slow that a deck that is held is pulled by no more than twice the limit.
 
     The guard stops at the limit; until the arm stands the pull grows by no more than that again.
@@ -81,22 +82,22 @@ def first_lift_speed_m_s(mating: Mating, force: Force) -> float:
     return min(growth_n_s / (mating.stiffness_n_per_mm / MM), SLOW_SPEED_M_S)
 
 
-def _recipe_below(cell: Cell, base_T_flange: RigidTransform) -> Recipe | None:
+def _recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:
     """The first recipe whose deck on the flange would be low over its frame."""
-    for recipe in cell.config.recipes:
+    for recipe in cell.recipes:
         nominal = pose_from_xyzabc(recipe.base_T_frame)
         if _is_low(recipe, nominal.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_deck)):
             return recipe
     return None
 
 
-def _frame_of(cell: Cell, recipe: Recipe) -> RigidTransform:
+def _frame_of(cell: DeckCell, recipe: DeckRecipe) -> RigidTransform:
     """As measured last where that can be this recipe's frame, else nominal."""
-    nominal, measured = pose_from_xyzabc(recipe.base_T_frame), cell.base_T_frame
+    nominal, measured = pose_from_xyzabc(recipe.base_T_frame), cell.memory.base_T_frame
     return measured if measured is not None and is_near(recipe, nominal, measured) else nominal
 
 
-def _is_low(recipe: Recipe, frame_T_deck: RigidTransform) -> bool:
+def _is_low(recipe: DeckRecipe, frame_T_deck: RigidTransform) -> bool:
     x_m, y_m, z_m = frame_T_deck.translation
     low = z_m < recipe.deck_thickness_mm * MM + LOW_M
     return bool(low and max(abs(x_m), abs(y_m)) < NEAR_STATION_M)

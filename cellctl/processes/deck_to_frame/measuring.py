@@ -7,14 +7,14 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.devices import Cell
-from cellctl.cell.gather import together
-from cellctl.cell.stereo_station import HeadStation
-from cellctl.errors.robot import HeadMoved
+from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.standstill import require_unmoved
+from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.vision import UncertaintyTooLarge
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.interfaces import Robot, StereoPair
+from cellctl.interfaces import StereoPair
+from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.vision.average import average
 from cellctl.vision.features import FeatureFile, Hole
 from cellctl.vision.measure import measure_pair
@@ -23,10 +23,6 @@ from cellctl.vision.part_pose import PartPose, part_pose
 from cellctl.vision.stereo_head import StereoHead
 
 _log = log.get(__name__)
-
-MOVED_M = 0.05 * MM
-MOVED_RAD = np.radians(0.005)
-"""A robot whose encoders changed by more has moved since the reference was taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +75,7 @@ class PartMeasurement:
 class PartMeasurer:
     """Measures parts with the heads standing still; remembers where they stood at first."""
 
-    def __init__(self, cell: Cell, geometry: HeadGeometry, method: Method) -> None:
+    def __init__(self, cell: DeckCell, geometry: HeadGeometry, method: Method) -> None:
         self._cell = cell
         self._geometry = geometry
         self._method = method
@@ -123,7 +119,7 @@ class PartMeasurer:
         stations = self._cell.heads
         models = (self._geometry.head_1, self._geometry.head_2)
         holes = (features.seen_by(1), features.seen_by(2))
-        results = await together(
+        results = await gather_or_cancel(
             *(
                 self._grab_and_find(station, model, hole, prediction)
                 for station, model, hole, prediction in zip(
@@ -135,7 +131,7 @@ class PartMeasurer:
 
     async def _grab_and_find(
         self,
-        station: HeadStation,
+        station: StereoStation,
         model: StereoHead,
         holes: Sequence[Hole],
         camera_T_part: RigidTransform,
@@ -167,13 +163,6 @@ class PartMeasurer:
         for head, reference in zip(self._cell.heads, self._reference, strict=True):
             require_unmoved(head.name, head.robot, reference)
         require_unmoved("the main robot", self._cell.main, base_T_flange)
-
-
-def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
-    """Raise ``HeadMoved`` when a robot is not where it was."""
-    distance_m, angle_rad = robot.state().distance_to(base_T_flange)
-    if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):
-        raise HeadMoved(f"{name} by {distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°")
 
 
 def _sigma_text(measurement: PartMeasurement, wanted: Array) -> str:

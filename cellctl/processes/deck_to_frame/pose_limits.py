@@ -6,21 +6,21 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.errors.vision import PartMisplaced
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.recipe import Recipe
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features import FeatureFile
 
 LEAST_CLEARANCE = 0.5
 """No correction may bring a corner of the deck nearer to the frame, in parts of the stand-off."""
 
 
-def is_near(recipe: Recipe, nominal: RigidTransform, measured: RigidTransform) -> bool:
+def is_near(recipe: DeckRecipe, nominal: RigidTransform, measured: RigidTransform) -> bool:
     """True when a pose is as near to nominal as the recipe demands."""
     distance_mm, angle_deg = _apart(nominal, measured)
     return distance_mm <= recipe.station_tolerance_mm and angle_deg <= recipe.station_tolerance_deg
 
 
 def require_near(
-    what: str, recipe: Recipe, nominal: RigidTransform, measured: RigidTransform
+    what: str, recipe: DeckRecipe, nominal: RigidTransform, measured: RigidTransform
 ) -> None:
     """Raise ``PartMisplaced`` when a pose is farther from nominal than the recipe allows."""
     if not is_near(recipe, nominal, measured):
@@ -31,7 +31,7 @@ def require_near(
         )
 
 
-def require_clearance(recipe: Recipe, features: FeatureFile, M_T_D: RigidTransform) -> None:
+def require_clearance(recipe: DeckRecipe, features: FeatureFile, M_T_D: RigidTransform) -> None:
     """Raise ``TargetOutOfBounds`` when a commanded deck would come too near to the frame.
 
     The moves of the compensation are not guarded by force: they must not be able to touch, however

@@ -1,15 +1,17 @@
 """What to assemble and within which bounds (mission A2-A4)."""
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
 from cellctl.config.base import Section, WrittenPose
+from cellctl.config.recipe import Recipe
 
 Length = Annotated[float, Field(gt=0, le=5000)]
 
 
-class Compensation(Section):
+class PoseCorrection(Section):
     """The measure-compensate loop (paper 2.3)."""
 
     threshold_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
@@ -82,11 +84,10 @@ class Mating(Section):
         return self
 
 
-class Recipe(Section):
+class DeckRecipe(Recipe):
     """One product: parts, distances, thresholds."""
 
-    id: Annotated[int, Field(ge=1, le=99)]
-    name: Annotated[str, Field(min_length=1, max_length=64)]
+    process: Literal["deck-to-frame"]
     frame_features: str
     """Feature file, relative to the cell file."""
     deck_features: str
@@ -107,5 +108,12 @@ class Recipe(Section):
     station_tolerance_deg: Annotated[float, Field(gt=0, le=20)] = 3.0
     seated_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.2
     """Lateral offset at a pin hole that the seated deck may have."""
-    compensation: Compensation = Compensation()
+    pose_correction: PoseCorrection = PoseCorrection()
     mating: Mating
+
+    def files(self) -> Mapping[str, str]:
+        """The feature files."""
+        return {
+            "frame_features.toml": self.frame_features,
+            "deck_features.toml": self.deck_features,
+        }

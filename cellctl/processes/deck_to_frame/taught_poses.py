@@ -2,43 +2,44 @@
 
 import numpy as np
 
-from cellctl.cell.devices import Cell
-from cellctl.cell.gather import together
-from cellctl.cell.stereo_station import HeadStation
+from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.stereo_station import StereoStation
 from cellctl.config.base import JointsDeg
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import RobotState
 from cellctl.processes.deck_to_frame.lift_off import lift_off
+from cellctl.processes.deck_to_frame.roles import HOME, MEASURING, RETRACTED
+from cellctl.processes.deck_to_frame.stations import DeckCell
 
 AT_POSE_RAD = np.radians(0.001)
 """Joints this near a taught pose count as there: 0.04 mm at the end of a head's arm."""
 
 
-async def heads_to_measuring_poses(cell: Cell) -> None:
+async def heads_to_measuring_poses(cell: DeckCell) -> None:
     """Both heads at once; a head that is there already does not move."""
-    await together(*(head_to_measuring_pose(head) for head in cell.heads))
+    await gather_or_cancel(*(head_to_measuring_pose(head) for head in cell.heads))
 
 
-async def head_to_measuring_pose(head: HeadStation) -> None:
+async def head_to_measuring_pose(head: StereoStation) -> None:
     """One head; it does not move when it is there already."""
-    await _head_to(head, head.config.measuring_joints_deg)
+    await _head_to(head, head.config.poses_deg[MEASURING])
 
 
-async def head_to_retracted_pose(head: HeadStation) -> None:
+async def head_to_retracted_pose(head: StereoStation) -> None:
     """One head out of the way; it does not move when it is there already."""
-    await _head_to(head, head.config.retracted_joints_deg)
+    await _head_to(head, head.config.poses_deg[RETRACTED])
 
 
-async def _head_to(head: HeadStation, joints_deg: JointsDeg) -> None:
+async def _head_to(head: StereoStation, joints_deg: JointsDeg) -> None:
     target_rad = np.radians(joints_deg)
     if not _is_at(head.robot.state(), target_rad):
         await head.robot.move_joint(target_rad, speed_ratio=head.config.speed_percent / 100)
 
 
-async def main_to_home(cell: Cell) -> None:
+async def main_to_home(cell: DeckCell) -> None:
     """The main robot with its deck clear of station and heads; off the station first if low."""
-    main = cell.config.robots.main
-    home_rad = np.radians(main.home_joints_deg)
+    main = cell.main_config
+    home_rad = np.radians(main.poses_deg[HOME])
     if _is_at(cell.main.state(), home_rad):
         return
     await lift_off(cell)

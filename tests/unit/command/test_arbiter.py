@@ -45,7 +45,7 @@ async def test_a_start_is_refused_with_its_reason(
     await rig.idle()
     assert await rig.take(Command.START, **fields) is code
     assert rig.unit.machine.state is State.IDLE
-    assert rig.unit.work.shown is None
+    assert rig.unit.jobs.shown is None
 
 
 async def test_an_expiring_calibration_refuses_production_only(rig: DaemonRig) -> None:

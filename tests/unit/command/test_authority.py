@@ -126,7 +126,7 @@ async def test_a_line_that_comes_alive_meanwhile_keeps_the_terminal_from_moving(
 ) -> None:
     """Between the judgement and the machine."""
     await rig.idle()
-    desk = rig.unit.desk
+    desk = rig.unit.factory
     judge = desk.judge
 
     async def slow(*asked: object) -> RejectCode:
@@ -176,7 +176,7 @@ async def test_two_starts_at_once_begin_the_one_that_was_taken(
 ) -> None:
     """Both are judged in Idle; the refused one must not leave its order behind."""
     await rig.idle()
-    desk, both = rig.unit.desk, asyncio.Barrier(2)
+    desk, both = rig.unit.factory, asyncio.Barrier(2)
     judge = desk.judge
 
     async def together(*asked: object) -> RejectCode:

@@ -3,15 +3,15 @@
 from pathlib import Path
 from typing import Any
 
+from cellctl.procedures.context import ProcedureContext
+from cellctl.runtime.procedure_registry import procedure_order
 from sqlalchemy import select
 
-from cellctl.procedures.context import ProcedureContext
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.maintenance import Maintenance
-from cellctl.runtime.procedure_registry import procedure_order
 from cellctl.runtime.progress import Progress, ProgressBoard
 from tests.unit.cell.bench import Bench, start_command
 from tests.unit.processes.deck_to_frame.rig import Pauses
@@ -22,7 +22,7 @@ class ProcedureRig:
 
     def __init__(self, bench: Bench, store: Path) -> None:
         self.bench = bench
-        self.archive = Archive(store)
+        self.archive = AsyncRunStore(store)
         self.board = ProgressBoard()
         self.pauses = Pauses()
         self.told: list[Progress] = []

@@ -1,10 +1,10 @@
 """What the numbers of Maintenance mean."""
 
 import pytest
-
-from cellctl.config import CellConfig, load_cell
 from cellctl.runtime.procedure_registry import ProcedureOrder, procedure_order
 from cellctl.runtime.step import Step
+
+from cellctl.config import CellConfig, load_cell
 from tests.unit.cell.bench import CELL_FILE
 
 

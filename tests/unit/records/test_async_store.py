@@ -8,23 +8,23 @@ from pathlib import Path
 import pytest
 
 from cellctl.errors.records import RecordNotWritten, StoreUnavailable, ValueRefused
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 
 
 @pytest.fixture
-def archive(tmp_path: Path) -> Iterator[Archive]:
-    archive = Archive(tmp_path)
+def archive(tmp_path: Path) -> Iterator[AsyncRunStore]:
+    archive = AsyncRunStore(tmp_path)
     yield archive
     archive.close()
 
 
-async def test_writes_keep_their_order(archive: Archive) -> None:
+async def test_writes_keep_their_order(archive: AsyncRunStore) -> None:
     await asyncio.gather(*(archive.do(RunStore.note_line_seq, seq) for seq in range(1, 20)))
     assert await archive.do(RunStore.line_seq) == 19
 
 
-async def test_a_cancelled_caller_does_not_take_back_its_write(archive: Archive) -> None:
+async def test_a_cancelled_caller_does_not_take_back_its_write(archive: AsyncRunStore) -> None:
     entered, may_go_on = threading.Event(), threading.Event()
 
     def blocked(_store: RunStore) -> None:
@@ -43,7 +43,7 @@ async def test_a_cancelled_caller_does_not_take_back_its_write(archive: Archive)
     assert await archive.do(RunStore.line_seq) == 7
 
 
-async def test_the_first_write_that_failed_is_remembered(archive: Archive) -> None:
+async def test_the_first_write_that_failed_is_remembered(archive: AsyncRunStore) -> None:
     def full(_store: RunStore) -> None:
         raise RecordNotWritten("disk full")
 
@@ -59,4 +59,4 @@ async def test_the_first_write_that_failed_is_remembered(archive: Archive) -> No
 def test_a_store_that_cannot_be_opened_is_a_fault(tmp_path: Path) -> None:
     (tmp_path / "store.sqlite").mkdir()
     with pytest.raises(StoreUnavailable):
-        Archive(tmp_path)
+        AsyncRunStore(tmp_path)

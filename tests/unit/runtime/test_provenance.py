@@ -11,7 +11,7 @@ from cellctl.config import CellConfig, load_cell
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.records.artefacts import ArtefactFolder
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord, RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.job_record import JobRecord
@@ -51,7 +51,7 @@ def test_a_feature_file_that_went_away_is_a_fault(config: CellConfig, folder: Pa
         made_with(config, folder)
 
 
-async def recorded(bench: Bench, archive: Archive) -> RunRecord:
+async def recorded(bench: Bench, archive: AsyncRunStore) -> RunRecord:
     record = JobRecord(bench.as_cell, archive, start_command())
     number = await record.open(bench.cell.config.recipes[0], "PRODUCTION", (), {})
     await record.close(RunResult.GOOD, None)
@@ -61,7 +61,7 @@ async def recorded(bench: Bench, archive: Archive) -> RunRecord:
 async def test_cell_recipe_and_feature_files_are_in_the_record(
     bench: Bench, tmp_path: Path
 ) -> None:
-    archive = Archive(tmp_path / "store")
+    archive = AsyncRunStore(tmp_path / "store")
     try:
         run = await recorded(bench, archive)
         files = {a.name: archive._store.artefacts.get(a.sha256) for a in run.artefacts}
@@ -86,7 +86,7 @@ async def test_a_run_whose_files_could_not_be_kept_is_closed_all_the_same(
         raise RecordNotWritten("disk full")
 
     monkeypatch.setattr(ArtefactFolder, "put", full)
-    archive = Archive(tmp_path / "store")
+    archive = AsyncRunStore(tmp_path / "store")
     record = JobRecord(bench.as_cell, archive, start_command())
     try:
         with pytest.raises(RecordNotWritten) as error:

@@ -3,16 +3,16 @@
 import math
 
 from cellctl.cell.readiness import require_full_speed
-from cellctl.config.cell import CellConfig
+from cellctl.cell.standstill import require_unmoved
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.sensor import sensor_rate_hz
 from cellctl.force.approach import planned_stiffness
 from cellctl.force.detectors import Cusum, touch_threshold_n
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
-from cellctl.processes.deck_to_frame.measuring import require_unmoved
-from cellctl.processes.deck_to_frame.recipe import Pins, Recipe
-from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Pins
+from cellctl.processes.deck_to_frame.state import Corrected
 from cellctl.runtime.commissioned import Commissioned
 
 ABORT_MARGIN_N = 5.0
@@ -20,36 +20,34 @@ ABORT_MARGIN_N = 5.0
 RELEASE_BAND_N = 5.0
 
 
-def contact_plan(run: AssemblyRun, commissioned: Commissioned) -> MatingPlan:
+def contact_plan(corrected: Corrected, commissioned: Commissioned) -> MatingPlan:
     """From the pose that was measured, which must still be the present one.
 
     Raises ``HeadMoved`` when it is not, ``SpeedOverridden`` when the robot would not move as
     planned, ``MatingPlanInvalid`` when no plan is safe.
     """
-    assert run.flange_T_deck is not None
-    assert run.M_T_D is not None
-    assert run.measured_at is not None
-    require_unmoved("the main robot", run.cell.main, run.measured_at)
-    require_full_speed(run.cell.main)
-    recipe, config = run.recipe, run.cell.config
+    run = corrected.run
+    cell, recipe = run.cell, run.recipe
+    require_unmoved("the main robot", cell.main, corrected.measured_at)
+    require_full_speed(cell.main)
     return plan_mating(
-        base_T_flange=run.cell.main.state().base_T_flange,
-        flange_T_deck=run.flange_T_deck,
-        flange_T_sensor=pose_from_xyzabc(config.robots.main.flange_T_sensor),
-        M_T_D=run.M_T_D,
+        base_T_flange=cell.main.state().base_T_flange,
+        flange_T_deck=corrected.flange_T_deck,
+        flange_T_sensor=cell.arm.flange_T_sensor,
+        M_T_D=corrected.M_T_D,
         deck_thickness_m=recipe.deck_thickness_mm * MM,
         over_travel_m=recipe.over_travel_mm * MM,
-        settings=mating_settings(config, recipe, commissioned, run.payload_kg),
+        settings=mating_settings(cell.force_config, recipe, commissioned, run.facts.payload_kg),
     )
 
 
 def mating_settings(
-    config: CellConfig, recipe: Recipe, commissioned: Commissioned, payload_kg: float
+    sensor: ForceSensorConfig, recipe: DeckRecipe, commissioned: Commissioned, payload_kg: float
 ) -> MatingSettings:
     """The recipe's figures in SI; its bounds where nothing was commissioned."""
     mating = recipe.mating
     length_mm, width_mm = recipe.face_mm
-    rate_hz = sensor_rate_hz(config.force)
+    rate_hz = sensor_rate_hz(sensor)
     latency_s, stiffness_n_m = commissioned.stop_latency_s, mating.stiffness_n_per_mm / MM
     return MatingSettings(
         stop_latency_s=mating.stop_latency_ms / 1e3 if latency_s is None else latency_s,
@@ -64,8 +62,8 @@ def mating_settings(
         release_high_n=mating.release_force_n + RELEASE_BAND_N,
         touch=Cusum(mating.touch_force_n / 2, touch_threshold_n(rate_hz)),
         sample_period_s=1.0 / rate_hz,
-        stale_s=config.force.stale_ms / 1e3,
-        flange_age_s=config.force.flange_age_ms / 1e3,
+        stale_s=sensor.stale_ms / 1e3,
+        flange_age_s=sensor.flange_age_ms / 1e3,
         fast_speed_m_s=mating.fast_speed_mm_s * MM,
         acceleration_m_s2=mating.acceleration_mm_s2 * MM,
         greatest_past_m=mating.max_past_contact_mm * MM,

@@ -4,21 +4,24 @@ from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
 from cellctl.processes.deck_to_frame.mating.curves import curves_kept
 from cellctl.processes.deck_to_frame.mating.mate import mate_until_seated
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
-from cellctl.processes.deck_to_frame.run import AssemblyRun
-from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
-from cellctl.runtime.step import Step
+from cellctl.processes.deck_to_frame.state import Corrected, Seated
+from cellctl.processes.deck_to_frame.steps.correct_pose import LABEL, NUMBER, correct_pose
 
 
-async def mate_deck(run: AssemblyRun) -> None:
+async def mate_deck(corrected: Corrected) -> Seated:
     """Mate, measuring and correcting again before each further try after a false seat."""
+    run, latest = corrected.run, corrected
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
 
     async def measured_plan(attempt: int) -> MatingPlan:
+        nonlocal latest
         if attempt > 1:
-            run.board.update(step=Step.COMPENSATE)
-            await compensate(run)
-            run.board.update(step=Step.MATE)
-        plan = contact_plan(run, run.commissioned)
+            # Shown to the line as the step that it is; contact comes only after it.
+            mating = run.board.current
+            run.board.update(step=NUMBER, step_label=LABEL, contact=False)
+            latest = await correct_pose(latest)
+            run.board.update(step=mating.step, step_label=mating.step_label, contact=True)
+        plan = contact_plan(latest, run.facts.commissioned)
         await run.journal.mating_plan(plan)
         return plan
 
@@ -27,3 +30,12 @@ async def mate_deck(run: AssemblyRun) -> None:
             run.cell.main, run.cell.guard, measured_plan, report, run.recipe.mating.max_tries
         )
     await run.journal.mating_result(result)
+    return Seated(
+        run,
+        latest.c1_T_M,
+        latest.flange_T_deck,
+        latest.commanded,
+        latest.base_T_flange,
+        latest.M_T_D,
+        latest.measured_at,
+    )

@@ -7,25 +7,27 @@ from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.deck_on_flange import deck_on_flange
 from cellctl.processes.deck_to_frame.pose_limits import require_near
-from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
+from cellctl.processes.deck_to_frame.state import DeckMeasured, FrameMeasured
 
 
-async def measure_deck(run: AssemblyRun) -> None:
+async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     """Bring the deck above the station, measure it, and solve its pose on the flange."""
-    main = run.cell.config.robots.main
-    await run.cell.main.move_joint(
-        np.radians(main.deck_measure_joints_deg), speed_ratio=main.speed_percent / 100
+    run = frame.run
+    main, config = run.cell.main, run.cell.main_config
+    await main.move_joint(
+        np.radians(config.poses_deg[DECK_MEASURE]), speed_ratio=config.speed_percent / 100
     )
     await settle(run.cell.guard)
     nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
-    predicted = run.base_T_c1.inv() * run.cell.main.state().base_T_flange * nominal
-    measurement = await run.measure(run.deck_features, predicted)
+    predicted = run.base_T_c1.inv() * main.state().base_T_flange * nominal
+    measurement = await run.measure(run.facts.deck_features, predicted)
     flange_T_deck = deck_on_flange(
         UncertainPose.exact(measurement.base_T_flange),
-        run.calibrations.geometry.base_T_c1,
+        run.facts.calibrations.geometry.base_T_c1,
         measurement.pose.pose,
     )
     require_near("deck on flange", run.recipe, nominal, flange_T_deck.pose)
-    run.flange_T_deck = flange_T_deck.pose
     await run.journal.measurement("deck", measurement)
     await run.journal.deck_on_flange(flange_T_deck)
+    return DeckMeasured(run, frame.c1_T_M, flange_T_deck=flange_T_deck.pose)

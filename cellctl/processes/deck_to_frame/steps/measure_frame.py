@@ -2,16 +2,17 @@
 
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.pose_limits import require_near
-from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.state import FrameMeasured, Ready
 
 
-async def measure_frame(run: AssemblyRun) -> None:
+async def measure_frame(ready: Ready) -> FrameMeasured:
     """Measure the frame with both heads; the deck is still clear of the station."""
+    run = ready.run
     base_T_frame = pose_from_xyzabc(run.recipe.base_T_frame)
     predicted = run.base_T_c1.inv() * base_T_frame
-    measurement = await run.measure(run.frame_features, predicted)
+    measurement = await run.measure(run.facts.frame_features, predicted)
     measured = run.base_T_c1 * measurement.c1_T_part
     require_near("frame", run.recipe, base_T_frame, measured)
-    run.c1_T_M = measurement.own
-    run.cell.base_T_frame = measured
+    run.cell.memory.base_T_frame = measured
     await run.journal.measurement("frame", measurement)
+    return FrameMeasured(run, c1_T_M=measurement.own)

@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import pytest
 
-from cellctl.api.modbus.commands import CommandLatch, LineCommand
+from cellctl.api.modbus.commands import CommandLatch
 from cellctl.api.modbus.image import encode
 from cellctl.api.modbus.register_map import HOLDING_SIZE, item
 from cellctl.packml import Command, RejectCode
 from cellctl.packml.result import Result
+from cellctl.packml.unit_command import UnitCommand
 
-START = LineCommand(
+START = UnitCommand(
     seq=1, unit_mode=1, cntrl_cmd=2, recipe_id=1, options=0, serial="SAT-0001", order="",
     alarm_ack_id=0,
 )  # fmt: skip

@@ -19,8 +19,9 @@ from cellctl.api.modbus.register_map import (
     Kind,
     item,
 )
-from cellctl.api.modbus.status import CellStatus, Handshake, values
+from cellctl.api.modbus.status import Handshake, values
 from cellctl.packml import State
+from cellctl.runtime.cell_status import CellStatus
 
 # Written out from the agreed map, not derived from it.
 AGREED = {

@@ -14,7 +14,7 @@ from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
 from cellctl.processes.deck_to_frame.run import AssemblyRun
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.store import RunStore
 from cellctl.runtime.commissioned import Commissioned
@@ -41,7 +41,7 @@ class RunRig:
 
     def __init__(self, bench: Bench, store: Path) -> None:
         self.bench = bench
-        self.archive = Archive(store)
+        self.archive = AsyncRunStore(store)
         self.number = self.archive._thread.submit(lambda: start(self.archive._store)).result()
         self.pauses = Pauses()
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"

@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-
 from cellctl.procedures.clear_cell import clear_the_cell
+from cellctl.runtime.step import Step
+
 from cellctl.runtime.job import HeldMeanwhile
 from cellctl.runtime.maintenance import PROCEDURES
-from cellctl.runtime.step import Step
 from tests.unit.procedures.rig import ProcedureRig
 
 

@@ -1,29 +1,23 @@
-"""What every calibration procedure is given, and what it gives back."""
+"""A procedure of Maintenance: its number, what it is given, and what it gives back."""
 
-from collections.abc import Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
+from datetime import timedelta
 from typing import Any
 
-from cellctl.cell.devices import Cell
-from cellctl.processes.deck_to_frame.recipe import Recipe
-from cellctl.runtime.calibration_folder import CalibrationFolder
-from cellctl.runtime.job import HeldMeanwhile, SafePoint
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.progress import ProgressBoard
+from cellctl.runtime.steps import HeldMeanwhile, SafePoint
 
 
 @dataclass(frozen=True, slots=True)
 class ProcedureContext:
-    """Devices, earlier calibrations and the place to tell of progress."""
+    """The place to tell of progress, and the record of a procedure that needs one."""
 
-    cell: Cell
-    calibrations: CalibrationFolder
     board: ProgressBoard
     safe_point: SafePoint
     record: JobRecord
     """To be opened by a procedure with contact, before it moves."""
-    recipe: Recipe
-    """Whose parts are there, for procedures that touch them."""
 
     async def progress(self, done: int, total: int, message: str) -> None:
         """Tell how far it is, and obey a pending Hold.
@@ -48,3 +42,20 @@ class ProcedureOutcome:
     picture_png: bytes | None
     serial_number: str
     """Of the instrument that was calibrated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Procedure:
+    """One procedure, bound to its cell by the process that offers it."""
+
+    number: int
+    """As the line gives it in its recipe register; from 100 on."""
+    step: int
+    """As the line sees it in its step register."""
+    label: str
+    run: Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
+    """None when it waits for its counterpart."""
+    valid_for: timedelta
+    """Of a result that passes."""
+    contact: bool = False
+    """Touches the part, so that it deals with trips of the guard itself."""

@@ -1,0 +1,27 @@
+"""A robot with the force sensor on its flange and the guard that watches it."""
+
+from dataclasses import dataclass
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.config.devices import ForceSensorConfig, RobotConfig
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.guard.client import GuardClient
+from cellctl.interfaces import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class GuardedRobot:
+    """What a move under force limits works with."""
+
+    robot: Robot
+    config: RobotConfig
+    sensor_name: str
+    """Of the force sensor; its guard is known by the same name."""
+    guard: GuardClient
+    sensor: ForceSensorConfig
+
+    @property
+    def flange_T_sensor(self) -> RigidTransform:
+        """The frame of the sensor on the flange."""
+        return pose_from_xyzabc(self.sensor.flange_T_sensor)

@@ -1,0 +1,19 @@
+"""Whether a robot still stands where it stood: what was measured then holds for there only."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.robot import HeadMoved
+from cellctl.geometry.pose import MM
+from cellctl.interfaces import Robot
+
+MOVED_M = 0.05 * MM
+MOVED_RAD = np.radians(0.005)
+"""A robot whose encoders changed by more has moved since the reference was taken."""
+
+
+def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
+    """Raise ``HeadMoved`` when a robot is not where it was."""
+    distance_m, angle_rad = robot.state().distance_to(base_T_flange)
+    if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):
+        raise HeadMoved(f"{name} by {distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°")

@@ -1,0 +1,76 @@
+"""What only the sections of a cell file together can tell."""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.sensor import least_stale_ms
+from cellctl.errors.config import MixedSimulation
+
+
+def cross_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> list[ConfigIssue]:
+    """Contradictions between sections; ``found`` is what is wrong with the sections themselves."""
+    return [
+        *_names(cell),
+        *_recipe_ids(cell),
+        *_carriers(cell),
+        *_pace(cell, found),
+        *_simulation(cell),
+    ]
+
+
+def _names(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """One name, one device: logs, records and recipes name devices without their section."""
+    paths = [key for key in cell.devices() if key.count(".") == 1]
+    times = Counter(key.split(".")[1] for key in paths)
+    for key in paths:
+        name = key.split(".")[1]
+        if times[name] > 1:
+            yield ConfigIssue(key, repr(name), "device names must differ, over all sections")
+
+
+def _recipe_ids(cell: CellConfig) -> Iterator[ConfigIssue]:
+    ids = [recipe.id for recipe in cell.recipes]
+    if len(set(ids)) != len(ids):
+        yield ConfigIssue("recipes", str(ids), f"recipe ids must differ, got {ids}")
+
+
+def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Robots that cameras and force sensors refer to."""
+    robots = ", ".join(cell.robots) or "none"
+    for section in ("cameras", "stereo_cameras"):
+        for name, camera in cell.section(section).items():
+            carrier = getattr(camera, "carried_by", None)
+            if carrier is not None and carrier not in cell.robots:
+                key = f"{section}.{name}.carried_by"
+                yield ConfigIssue(key, repr(carrier), f"a robot of this cell: {robots}")
+    for name, sensor in cell.force_sensors.items():
+        if sensor.mounted_on not in cell.robots:
+            key = f"force_sensors.{name}.mounted_on"
+            yield ConfigIssue(key, repr(sensor.mounted_on), f"a robot of this cell: {robots}")
+    mounted = Counter(sensor.mounted_on for sensor in cell.force_sensors.values())
+    for name, sensor in cell.force_sensors.items():
+        if mounted[sensor.mounted_on] > 1:
+            key = f"force_sensors.{name}.mounted_on"
+            yield ConfigIssue(key, repr(sensor.mounted_on), "a robot carries one force sensor")
+
+
+def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:
+    """A guard that is more impatient than its sensor is fast would stop at every sample."""
+    for name, sensor in cell.force_sensors.items():
+        key = f"force_sensors.{name}"
+        if any(issue.key.startswith((f"{key}.driver", f"{key}.settings")) for issue in found):
+            continue  # its rate is not known
+        least_ms = least_stale_ms(sensor)
+        if sensor.stale_ms < least_ms:
+            allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
+            yield ConfigIssue(f"{key}.stale_ms", f"{sensor.stale_ms:g}", allowed)
+
+
+def _simulation(cell: CellConfig) -> Iterator[ConfigIssue]:
+    devices = {key: device for key, (_, device) in cell.devices().items()}
+    if len({device.simulated for device in devices.values()}) > 1:
+        named = [key for key, device in devices.items() if device.simulated]
+        text = f"{MixedSimulation.text}; mark all or none"
+        yield ConfigIssue("simulated", ", ".join(named), text, MixedSimulation.number)

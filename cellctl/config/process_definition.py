@@ -1,0 +1,54 @@
+"""What a cell file needs to know of a process: the models of its keys, its roles, its checks."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import ClassVar
+
+from cellctl import plugins
+from cellctl.config.base import Section
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.recipe import Recipe
+from cellctl.config.roles import Role
+from cellctl.errors.config import UnknownDriver
+
+
+class NoSettings(Section):
+    """Of a process that has nothing to set for all of its recipes."""
+
+
+class ProcessDefinition(ABC):
+    """The static half of a process; ``cellctl.runtime.process.Process`` adds what it does."""
+
+    name: ClassVar[str]
+    """As the cell file and the entry point have it, for example ``deck-to-frame``."""
+    recipe_model: ClassVar[type[Recipe]]
+    """Keys of its ``[[recipes]]``."""
+    settings_model: ClassVar[type[Section]] = NoSettings
+    """Keys of ``[processes.NAME]``: what holds for all recipes of the process."""
+    roles: ClassVar[Mapping[str, Role]]
+
+    @classmethod
+    @abstractmethod
+    def check(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """Whatever else is wrong with a recipe in this cell; touches no hardware.
+
+        Called when the cell has a device for every role. ``key`` is the recipe's place in the
+        file, for example ``recipes.0``; ``folder`` is that of the cell file.
+        """
+
+
+def process_definition(name: str) -> type[ProcessDefinition]:
+    """The process of this name; raises ``UnknownDriver`` when it is not installed."""
+    found = plugins.load(plugins.PROCESS, name)
+    if not issubclass(found, ProcessDefinition):
+        raise UnknownDriver(f"{plugins.PROCESS} '{name}' is not a Process")
+    return found
+
+
+def installed_processes() -> list[str]:
+    """Names of the processes that could be named by a recipe."""
+    return plugins.names(plugins.PROCESS)

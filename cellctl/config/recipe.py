@@ -1,0 +1,28 @@
+"""What every recipe has, whatever its process makes with it."""
+
+from collections.abc import Mapping
+from typing import Annotated
+
+from pydantic import Field
+
+from cellctl.config.base import Section
+from cellctl.config.devices import DeviceName
+
+
+class Recipe(Section):
+    """One product. A process derives its own recipe from this one and adds its figures."""
+
+    process: Annotated[str, Field(min_length=1, max_length=64)]
+    """Name of the process (entry point ``cellctl.process``) that carries it out."""
+    id: Annotated[int, Field(ge=1, le=99)]
+    name: Annotated[str, Field(min_length=1, max_length=64)]
+    roles: dict[DeviceName, DeviceName] = Field(default_factory=dict)
+    """Which device takes a role of the process, where it is not the device of the role's name."""
+
+    def files(self) -> Mapping[str, str]:
+        """Files that belong to it, relative to the cell file, by the name of their record."""
+        return {}
+
+    def device(self, role: str) -> str:
+        """Name of the device that takes a role."""
+        return self.roles.get(role, role)

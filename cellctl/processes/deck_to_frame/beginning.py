@@ -1,0 +1,20 @@
+"""Where every run over the station begins: the deck clear of it, the heads over it."""
+
+from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
+from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
+from cellctl.processes.deck_to_frame.state import Ready
+from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_poses, main_to_home
+
+
+async def to_the_beginning(opened: OpenRun) -> Ready:
+    """Go to the beginning; nothing is measured yet. Raises the faults of guard and robots."""
+    facts, cell = opened.facts, opened.facts.cell
+    await cell.guard.set_compensation(facts.calibrations.compensation)
+    opened.board.update(step=0, step_label="", iteration=0, message="to the beginning")
+    await main_to_home(cell)
+    await heads_to_measuring_poses(cell)
+    geometry = facts.calibrations.geometry
+    heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+    # Takes the poses of the heads as the reference that they must keep from here on.
+    measurer = PartMeasurer(cell, heads, facts.recipe.pose_correction.method)
+    return Ready(AssemblyRun(opened, measurer))

@@ -1,0 +1,28 @@
+"""Whatever is wrong with a recipe beyond its own keys; touches no hardware."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.processes.deck_to_frame.feature_checks import feature_issues
+from cellctl.processes.deck_to_frame.mating.plan_check import plan_issues
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
+
+
+def recipe_issues(
+    cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    """Devices that do not belong together, feature files, and the plan of the mating."""
+    sensor, main = recipe.device(FORCE), recipe.device(MAIN)
+    mounted_on = cell.force_sensors[sensor].mounted_on
+    if mounted_on != main:
+        where = f"force_sensors.{sensor}.mounted_on"
+        yield ConfigIssue(where, repr(mounted_on), f"the robot that carries the deck: {main}")
+    for length in ("d1_mm", "a1_mm"):
+        if getattr(cell.robots[main], length) is None:
+            allowed = "the base frame is calibrated with it (procedure 103)"
+            yield ConfigIssue(f"robots.{main}.{length}", "(missing)", allowed)
+    yield from feature_issues(recipe, key, folder)
+    yield from plan_issues(cell, recipe, key)

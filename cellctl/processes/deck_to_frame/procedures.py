@@ -1,0 +1,142 @@
+"""Procedures 101 to 108: the generic ones with this process's devices, and its own."""
+
+from collections.abc import Awaitable, Callable, Sequence
+from datetime import timedelta
+from functools import partial
+
+import numpy as np
+
+from cellctl.calibration.base_frame import ArmGeometry
+from cellctl.calibration.board import CalibrationBoard
+from cellctl.cell.stereo_station import StereoStation
+from cellctl.geometry.pose import MM
+from cellctl.procedures.base_frame import AxisTurns, calibrate_base
+from cellctl.procedures.payload import identify_payload_on_cell
+from cellctl.procedures.stereo_head import calibrate_head
+from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
+from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements, measure_board
+from cellctl.processes.deck_to_frame.clear_cell import clear_the_cell
+from cellctl.processes.deck_to_frame.contact_stiffness import measure_contact_stiffness_on_cell
+from cellctl.processes.deck_to_frame.stations import DeckCell
+from cellctl.processes.deck_to_frame.taught_poses import main_to_home
+from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
+from cellctl.runtime.process import CellServices
+
+STIFFNESS_BY_RECIPE = 10_800
+"""Plus the number of a recipe: contact stiffness of its parts; 108 means the first recipe."""
+STIFFNESS = 108
+
+Run = Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
+
+
+def deck_procedures(
+    cell: DeckCell, services: CellServices, waiting: WaitingPlacements
+) -> Sequence[Procedure]:
+    """All procedures of the cell whose devices are given."""
+    valid_for = timedelta(days=cell.settings.validity_days)
+    on_cell = _OnCell(cell, services, waiting)
+
+    def procedure(number: int, label: str, run: Run) -> Procedure:
+        return Procedure(number, number, label, run, valid_for)
+
+    return (
+        procedure(101, "calibrate head 1", partial(on_cell.head, cell.head_1)),
+        procedure(102, "calibrate head 2", partial(on_cell.head, cell.head_2)),
+        procedure(103, "calibrate base frame", on_cell.base_frame),
+        procedure(104, "calibrate board 1", partial(on_cell.board, cell.head_1)),
+        procedure(105, "calibrate board 2", partial(on_cell.board, cell.head_2)),
+        procedure(106, "identify payload", on_cell.payload),
+        procedure(107, "measure stop latency", on_cell.stop_latency),
+        *_contact_stiffness(cell, services, valid_for),
+    )
+
+
+def _contact_stiffness(
+    cell: DeckCell, services: CellServices, valid_for: timedelta
+) -> Sequence[Procedure]:
+    recipes = {STIFFNESS: cell.recipes[0]}
+    recipes |= {STIFFNESS_BY_RECIPE + recipe.id: recipe for recipe in cell.recipes}
+    return [
+        Procedure(
+            number,
+            STIFFNESS,
+            "measure contact stiffness",
+            partial(measure_contact_stiffness_on_cell, cell, recipe, services),
+            valid_for,
+            contact=True,
+        )
+        for number, recipe in recipes.items()
+    ]
+
+
+class _OnCell:
+    """Each procedure with everything out of its way."""
+
+    def __init__(self, cell: DeckCell, services: CellServices, waiting: WaitingPlacements) -> None:
+        self._cell, self._services, self._waiting = cell, services, waiting
+
+    async def head(self, station: StereoStation, context: ProcedureContext) -> ProcedureOutcome:
+        """101, 102."""
+        settings = self._cell.settings
+        columns, rows = (int(number) for number in settings.board.split("x"))
+        board = CalibrationBoard(columns, rows, settings.square_mm * MM)
+        await clear_the_cell(self._cell, context.board, measuring=station)
+        return await calibrate_head(
+            context,
+            station,
+            self._cell.workers,
+            board=board,
+            view_count=settings.stereo_views,
+        )
+
+    async def base_frame(self, context: ProcedureContext) -> ProcedureOutcome:
+        """103."""
+        cell, settings, main = self._cell, self._cell.settings, self._cell.main_config
+        turns = AxisTurns(
+            start_rad=np.radians(settings.base_frame_joints_deg),
+            arc_deg=settings.circle_arc_deg,
+            stops=settings.circle_stops,
+            speed_ratio=main.speed_percent / 100,
+            frames=settings.tracker_frames,
+        )
+        # The check of the cell file saw to it that the robot states both lengths.
+        arm = ArmGeometry(d1_m=(main.d1_mm or 0.0) * MM, a1_m=(main.a1_mm or 0.0) * MM)
+        await clear_the_cell(cell, context.board)
+        return await calibrate_base(
+            context,
+            cell.main,
+            cell.tracker,
+            cell.workers,
+            turns=turns,
+            arm=arm,
+            go_home=partial(main_to_home, cell),
+        )
+
+    async def board(
+        self, station: StereoStation, context: ProcedureContext
+    ) -> ProcedureOutcome | None:
+        """104, 105."""
+        await clear_the_cell(self._cell, context.board, measuring=station)
+        calibrations = self._services.calibrations
+        return await measure_board(context, self._cell, station, calibrations, self._waiting)
+
+    async def payload(self, context: ProcedureContext) -> ProcedureOutcome:
+        """106: home holds the deck in the mating orientation, high above the frame."""
+        cell, settings = self._cell, self._cell.settings
+        await clear_the_cell(cell, context.board)
+        return await identify_payload_on_cell(
+            context,
+            cell.arm,
+            cell.workers,
+            pose_count=settings.payload_poses,
+            cone_deg=settings.payload_cone_deg,
+        )
+
+    async def stop_latency(self, context: ProcedureContext) -> ProcedureOutcome:
+        """107."""
+        cell = self._cell
+        await clear_the_cell(cell, context.board)
+        bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.recipes)
+        return await measure_stop_latency_on_cell(
+            context, cell.main, cell.workers, bound_ms=bound_ms
+        )

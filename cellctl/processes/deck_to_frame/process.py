@@ -1,0 +1,110 @@
+"""The process itself: one deck onto one frame (the paper's section 1.2), as cellctl sees it."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.recipe import Recipe
+from cellctl.errors.vision import SeatedOffPosition
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import ROLES
+from cellctl.processes.deck_to_frame.settings import DeckSettings
+from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
+from cellctl.runtime.steps import Steps
+
+if TYPE_CHECKING:
+    from cellctl.processes.deck_to_frame.facts import RunFacts
+    from cellctl.processes.deck_to_frame.run import OpenRun
+    from cellctl.processes.deck_to_frame.state import Ready
+    from cellctl.processes.deck_to_frame.stations import DeckCell
+
+# What computes is imported where it is used: whoever only reads a cell file loads this module too,
+# and an operator's command must not wait for vision and force.
+
+
+class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
+    """System A: measure frame and deck with two heads, correct, mate under force, verify."""
+
+    name = "deck-to-frame"
+    recipe_model = DeckRecipe
+    settings_model = DeckSettings
+    roles = ROLES
+    spoiled_by = frozenset({SeatedOffPosition})
+
+    def __init__(self, services: CellServices) -> None:
+        from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements
+        from cellctl.processes.deck_to_frame.stations import FrameMemory
+
+        super().__init__(services)
+        self._memory = FrameMemory()
+        self._waiting = WaitingPlacements()
+        services.calibrations.on_stored.append(self._waiting.drop)
+        services.calibrations.on_invalidated.append(self._waiting.clear)
+
+    @classmethod
+    def check(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """Feature files, and whether the recipe's figures give a mating plan."""
+        from cellctl.processes.deck_to_frame.checks import recipe_issues
+
+        return recipe_issues(cell, cast(DeckRecipe, recipe), key, folder)
+
+    async def prepare(self, recipe: Recipe) -> "Prepared[RunFacts]":
+        """Read calibrations and drawings, and compare them with what is connected."""
+        from cellctl.processes.deck_to_frame.facts import read_facts
+
+        deck_recipe = cast(DeckRecipe, recipe)
+        facts = await read_facts(self.cell(deck_recipe), deck_recipe, self.services.calibrations)
+        return Prepared(facts, (*facts.stored, *facts.commissioned.records))
+
+    def open(self, prepared: "Prepared[RunFacts]", context: RunContext) -> "OpenRun":
+        """Facts, record and the way to tell of progress."""
+        from cellctl.processes.deck_to_frame.run import OpenRun
+
+        return OpenRun.of(prepared.facts, self.services, context)
+
+    async def begin(self, run: "OpenRun") -> "Ready":
+        """The deck clear of the station, the heads over it; these count as unmoved from here on."""
+        from cellctl.processes.deck_to_frame.beginning import to_the_beginning
+
+        return await to_the_beginning(run)
+
+    def steps(self, recipe: Recipe) -> "Steps[Ready, Any]":  # noqa: ARG002 - alike for all
+        """Measure frame, measure deck, pre-assembly, correct pose, mate, verify."""
+        from cellctl.processes.deck_to_frame.steps import ASSEMBLY
+
+        return ASSEMBLY
+
+    async def clear(self) -> None:
+        """Lift the deck off the station, wherever a recipe's deck would be low over its frame."""
+        from cellctl.processes.deck_to_frame.lift_off import lift_off
+
+        for cell in self._cells():
+            await lift_off(cell)
+
+    def procedures(self) -> Sequence[Procedure]:
+        """Calibration and commissioning, 101 to 108."""
+        from cellctl.processes.deck_to_frame.procedures import deck_procedures
+
+        # The cell's measurements belong to its devices: they are offered once, with those of the
+        # first recipe.
+        cell = next(iter(self._cells()), None)
+        return () if cell is None else deck_procedures(cell, self.services, self._waiting)
+
+    def cell(self, recipe: DeckRecipe) -> "DeckCell":
+        """The devices in the roles of a recipe."""
+        from cellctl.processes.deck_to_frame.stations import DeckCell
+
+        return DeckCell.of(self.services.cell, recipe, self._memory)
+
+    def _cells(self) -> "Iterable[DeckCell]":
+        """Each set of devices that recipes use, once."""
+        from cellctl.processes.deck_to_frame.stations import deck_recipes
+
+        recipes = deck_recipes(self.services.cell.config)
+        bound = {tuple(recipe.device(role) for role in ROLES): recipe for recipe in recipes}
+        return [self.cell(recipe) for recipe in bound.values()]

@@ -1,0 +1,45 @@
+"""A snapshot of the cell for whoever watches it: line, terminal, page."""
+
+from dataclasses import dataclass
+
+from cellctl.packml.mode import Mode
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+
+NO_VALUE = float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class CellStatus:
+    """A snapshot in the line's units (mm, degrees, N, N·m, h); NaN is a value that is missing."""
+
+    state: State = State.ABORTED
+    state_requested: State = State.ABORTED
+    mode: Mode = Mode.PRODUCTION
+    step: int = 0
+    step_label: str = ""
+    iteration: int = 0
+    ready: bool = False
+    error: bool = False
+    warning: bool = False
+    calibration_ok: bool = False
+    simulation: bool = False
+    manual: bool = False
+    force_guard_tripped: bool = False
+    hold_requested: bool = False
+    alarms: tuple[int, ...] = ()
+    """Numbers of all active alarms, the oldest first."""
+    first_out_alarm: int = 0
+    recipe_active: int = 0
+    cycle_counter: int = 0
+    run_number: int = 0
+    run_result: Result = Result.NONE
+    validity_h: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    """Heads, base frame, board transfer, payload."""
+    error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
+    """x, y, z in mm, rx, ry, rz in degrees."""
+    force_peaks: tuple[float, ...] = (NO_VALUE,) * 6
+    """Fx, Fy, Fz in N, Mx, My, Mz in N·m."""
+    force_z_n: float = NO_VALUE
+    force_limit_n: float = NO_VALUE
+    serial: str = ""

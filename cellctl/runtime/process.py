@@ -1,0 +1,111 @@
+"""The seam that processes plug into: everything that differs from one process to another.
+
+A process is a class behind the entry point ``cellctl.process``. Its static half
+(``ProcessDefinition``) tells the cell file's models, roles and checks; the daemon makes one object
+of it for its cell, and calls the methods below. The rest of cellctl knows no process.
+"""
+
+from abc import abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, TypeVar
+
+from cellctl.calibration.files import StoredCalibration
+from cellctl.cell.devices import Cell
+from cellctl.config.process_definition import ProcessDefinition, process_definition
+from cellctl.config.recipe import Recipe
+from cellctl.errors import CellError
+from cellctl.errors.config import UnknownDriver
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.runtime.calibration_folder import CalibrationFolder
+from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.progress import ProgressBoard
+from cellctl.runtime.steps import SafePoint, Steps
+
+P = TypeVar("P")
+R = TypeVar("R")
+S = TypeVar("S")
+
+
+@dataclass(frozen=True, slots=True)
+class CellServices:
+    """What the daemon lends to every process of its cell."""
+
+    cell: Cell
+    calibrations: CalibrationFolder
+    board: ProgressBoard
+    store: AsyncRunStore
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared(Generic[P]):
+    """A run for which everything was read and checked; nothing has moved yet."""
+
+    facts: P
+    """Whatever the process needs for the run."""
+    stored: tuple[StoredCalibration, ...]
+    """Calibrations that count in the run, for its record."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunContext:
+    """One open run."""
+
+    number: int
+    """Of its record."""
+    safe_point: SafePoint
+    """Obeys a pending Hold; a step that waits long or repeats itself calls it in between."""
+
+
+class Process(ProcessDefinition, Generic[P, R, S]):
+    """One process in one cell.
+
+    ``P`` is what is known before a run, ``R`` an open run, ``S`` what the first step takes.
+    """
+
+    spoiled_by: ClassVar[frozenset[type[CellError]]] = frozenset()
+    """Faults that say that the part is bad, where the run itself went as it should."""
+
+    def __init__(self, services: CellServices) -> None:
+        self.services = services
+
+    @abstractmethod
+    async def prepare(self, recipe: Recipe) -> Prepared[P]:
+        """Starting, before anything moves: read and check everything that a run needs.
+
+        Raises the fault that keeps the run from beginning.
+        """
+
+    @abstractmethod
+    def open(self, prepared: Prepared[P], context: RunContext) -> R:
+        """The run, once its record is open: what lasts over all beginnings of its steps."""
+
+    @abstractmethod
+    async def begin(self, run: R) -> S:
+        """Bring the cell to where the steps begin; what the first one takes.
+
+        Called at the end of Starting, and again whenever the steps begin anew after a Hold.
+        """
+
+    @abstractmethod
+    def steps(self, recipe: Recipe) -> Steps[S, Any]:
+        """The steps of Execute in their order."""
+
+    @abstractmethod
+    async def clear(self) -> None:
+        """Reset, with all robots ready: leave the station, whatever a run has left there."""
+
+    def procedures(self) -> Sequence[Procedure]:
+        """Calibrations and other measurements of Maintenance, by their numbers."""
+        return ()
+
+
+def open_processes(services: CellServices) -> dict[str, Process[Any, Any, Any]]:
+    """Every process that the cell file names, by name; raises ``UnknownDriver``."""
+    processes: dict[str, Process[Any, Any, Any]] = {}
+    for name in services.cell.config.processes:
+        definition = process_definition(name)
+        if not issubclass(definition, Process):
+            raise UnknownDriver(f"process '{name}' has checks but cannot run")
+        processes[name] = definition(services)
+    return processes

@@ -1,0 +1,94 @@
+"""A run in Production: one part, made by the steps of a process."""
+
+from typing import Any
+
+from cellctl import log
+from cellctl.config.recipe import Recipe
+from cellctl.errors import CellError
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.runtime.job import Job
+from cellctl.runtime.job_record import JobRecord
+from cellctl.runtime.process import Process, RunContext
+from cellctl.runtime.steps import HeldMeanwhile, SafePoint, StepRunner
+
+_log = log.get(__name__)
+
+DRY_RUN = "dry run"
+"""Mode of a run that ends before the first contact."""
+
+
+class ProductionJob(Job):
+    """Opens the record before anything moves and closes it whatever happens."""
+
+    makes_part = True
+
+    def __init__(
+        self,
+        process: Process[Any, Any, Any],
+        recipe: Recipe,
+        command: UnitCommand,
+        safe_point: SafePoint,
+    ) -> None:
+        self.number = recipe.id
+        self.serial = command.serial
+        self._process = process
+        self._recipe = recipe
+        self._command = command
+        self._board = process.services.board
+        self._safe_point = safe_point
+        self._record = JobRecord(process.services.cell, process.services.store, command)
+        self._begun: tuple[Any, Any] | None = None
+        """The run of the process, and what its first step takes."""
+
+    @property
+    def run_number(self) -> int:
+        """Of its record; 0 while there is none."""
+        return self._record.number
+
+    @property
+    def outcome(self) -> RunResult:
+        """A dry run ends without a part: never good."""
+        return RunResult.BAD if self._command.dry_run else RunResult.GOOD
+
+    async def start(self) -> None:
+        """Read and check everything, open the record, then bring the cell to the beginning.
+
+        Raises what the process raises, and the faults of the records.
+        """
+        prepared = await self._process.prepare(self._recipe)
+        mode = DRY_RUN if self._command.dry_run else PRODUCTION
+        await self._record.open(self._recipe, mode, prepared.stored)
+        run = self._process.open(prepared, RunContext(self.run_number, self._safe_point))
+        self._begun = run, await self._process.begin(run)
+
+    async def execute(self) -> None:
+        """All steps in their order; from the beginning again when the cell was held on the way.
+
+        Raises ``RuntimeError`` before ``start`` has ended.
+        """
+        if self._begun is None:
+            raise RuntimeError("a run is executed before it was started")
+        run, state = self._begun
+        steps = self._process.steps(self._recipe)
+        if self._command.dry_run:
+            steps = steps.before_contact()
+        runner = StepRunner(
+            self._board, self._safe_point, self.run_number, self._command.single_step
+        )
+        while True:
+            try:
+                await runner.run(steps, state)
+            except HeldMeanwhile:
+                _log.info("held meanwhile: everything is measured again")
+                state = await self._process.begin(run)
+            else:
+                return
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
+        """Close the run record; nothing to close when it could not be opened."""
+        self._board.leave_step()
+        if isinstance(fault, tuple(self._process.spoiled_by)):
+            outcome = RunResult.BAD
+        await self._record.close(outcome, fault)
+        return outcome
