@@ -13,7 +13,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.processes.deck_to_frame import preparation
+from cellctl.processes.deck_to_frame import beginning
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry
 from cellctl.processes.deck_to_frame.steps import mate_deck
@@ -80,7 +80,7 @@ class DaemonRig:
         self.contact = Contact()
         self.measurers: list[TruthMeasurer] = []
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"
-        monkeypatch.setattr(preparation, "PartMeasurer", self._measurer)
+        monkeypatch.setattr(beginning, "PartMeasurer", self._measurer)
         monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
         self._store = store
         self._seq = 0

@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
 from cellctl.cell.devices import Cell
-from cellctl.cell.stereo_station import HeadStation
+from cellctl.cell.stereo_station import StereoStation
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors import CellError
@@ -21,8 +21,13 @@ from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.unit_command import UnitCommand
+from cellctl.processes.deck_to_frame.facts import RunFacts
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.settings import DeckSettings
+from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
 from cellctl.runtime.calibration_folder import ALL_KINDS, PAYLOAD, CalibrationFolder
+from cellctl.runtime.commissioned import Commissioned
 from cellctl.vision.features import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.misfit import Misfit
@@ -90,32 +95,43 @@ class CellInMemory:
     stop_motion: Any = Cell.stop_motion
     rearm: Any = Cell.rearm
     health_checks: Any = Cell.health_checks
-    ask_heads_and_tracker: Any = Cell.ask_heads_and_tracker
+    ask_silent_devices: Any = Cell.ask_silent_devices
     connect: Any = Cell.connect
     disconnect: Any = Cell.disconnect
+    stereo_station: Any = Cell.stereo_station
+    guarded_robot: Any = Cell.guarded_robot
+    trips_awaited: Any = Cell.trips_awaited
+    awaits_trips: Any = Cell.awaits_trips
+    _by_path: Any = Cell._by_path
 
     def __init__(self, config: CellConfig, folder: Path) -> None:
         self.config, self.folder = config, folder
         self.main, self.aux_1, self.aux_2 = map(StillRobot, ("main", "aux_1", "aux_2"))
-        cameras = [Head(name, serial) for name, serial in HEADS.items()]
-        robots = config.robots
-        self.head_1 = HeadStation("head_1", cameras[0], self.aux_1, robots.aux_1)
-        self.head_2 = HeadStation("head_2", cameras[1], self.aux_2, robots.aux_2)
+        self.robots = {robot.name: robot for robot in (self.main, self.aux_1, self.aux_2)}
+        self.stereo_cameras = {name: Head(name, serial) for name, serial in HEADS.items()}
         self.tracker = InProcessTracker("tracker", {})
+        self.trackers = {"tracker": self.tracker}
+        self.others: dict[str, Any] = {}
         self.guard = TinyGuard()
+        self.guards = {"force": self.guard}
         self.workers = InlineWorkers()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}
-        self.base_T_frame: RigidTransform | None = None
-        self.awaits_trips = False
+        self._awaited_trips: set[str] = set()
 
     @property
-    def heads(self) -> tuple[HeadStation, HeadStation]:
+    def head_1(self) -> StereoStation:
+        station: StereoStation = self.stereo_station("head_1")
+        return station
+
+    @property
+    def head_2(self) -> StereoStation:
+        station: StereoStation = self.stereo_station("head_2")
+        return station
+
+    @property
+    def heads(self) -> tuple[StereoStation, StereoStation]:
         return self.head_1, self.head_2
-
-    @property
-    def robots(self) -> tuple[StillRobot, StillRobot, StillRobot]:
-        return self.main, self.aux_1, self.aux_2
 
 
 @dataclass
@@ -129,14 +145,43 @@ class Bench:
     """Nominal ``base_T_frame``."""
     grip: RigidTransform
     """Nominal ``flange_T_deck``."""
+    memory: FrameMemory = field(default_factory=FrameMemory)
 
     @property
     def as_cell(self) -> Cell:
         return cast(Cell, self.cell)
 
+    @property
+    def recipe(self) -> DeckRecipe:
+        return cast(DeckRecipe, self.cell.config.recipes[0])
+
+    @property
+    def settings(self) -> DeckSettings:
+        return cast(DeckSettings, self.cell.config.processes["deck-to-frame"])
+
+    @property
+    def deck(self) -> DeckCell:
+        """The devices in the roles of the process."""
+        return DeckCell.of(self.as_cell, self.recipe, self.memory)
+
+    def facts(self, **changes: Any) -> RunFacts:
+        """Of a run with the shipped recipe."""
+        frame, deck = self.features()
+        values: dict[str, Any] = {
+            "cell": self.deck,
+            "recipe": self.recipe,
+            "calibrations": self.calibrations.read(timedelta(0)),
+            "stored": (),
+            "commissioned": Commissioned(),
+            "payload_kg": 200.0,
+            "frame_features": frame,
+            "deck_features": deck,
+        }
+        return RunFacts(**(values | changes))
+
     def flange_over_seat(self, height_m: float) -> RigidTransform:
         """Nominal flange pose with the deck so high above its seat."""
-        recipe = self.cell.config.recipes[0]
+        recipe = self.recipe
         up = RigidTransform.from_translation([0.0, 0.0, recipe.deck_thickness_mm / 1e3 + height_m])
         return self.station * up * self.grip.inv()
 
@@ -145,7 +190,7 @@ class Bench:
         return self.calibrations.read(timedelta(0)).geometry.base_T_c1.pose
 
     def features(self) -> tuple[FeatureFile, FeatureFile]:
-        recipe, folder = self.cell.config.recipes[0], CELL_FILE.parent
+        recipe, folder = self.recipe, CELL_FILE.parent
         return (
             read_features(folder / recipe.frame_features),
             read_features(folder / recipe.deck_features),
@@ -162,7 +207,7 @@ def make_bench(tmp_path: Path) -> Bench:
     for head in cell.heads:
         cast(InProcessHead, head.camera)._connected = True
     cell.tracker._connected = True
-    recipe = config.recipes[0]
+    recipe = cast(DeckRecipe, config.recipes[0])
     station = pose_from_xyzabc(recipe.base_T_frame)
     grip = pose_from_xyzabc(recipe.flange_T_deck)
     world = World(
@@ -176,10 +221,10 @@ def make_bench(tmp_path: Path) -> Bench:
 
 
 def teach(bench: Bench) -> None:
-    main = bench.cell.config.robots.main
+    poses = bench.cell.config.robots["main"].poses_deg
     bench.cell.main.taught = [
-        (np.radians(main.home_joints_deg), RigidTransform.from_translation([1.5, 0.0, 1.8])),
-        (np.radians(main.deck_measure_joints_deg), bench.flange_over_seat(0.05)),
+        (np.radians(poses["home"]), RigidTransform.from_translation([1.5, 0.0, 1.8])),
+        (np.radians(poses["deck_measure"]), bench.flange_over_seat(0.05)),
     ]
 
 

@@ -7,8 +7,7 @@ from cellctl.calibration.base_frame import BaseFrameResult
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
-from cellctl.procedures.base_frame import calibrate_base
-from cellctl.runtime.job import HeldMeanwhile
+from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.calibration.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
 from tests.unit.procedures.rig import ProcedureRig
 
@@ -34,7 +33,8 @@ class Watching:
 
 @pytest.fixture
 def watching(rig: ProcedureRig) -> Watching:
-    rig.bench.cell.tracker = watching = Watching(rig)  # type: ignore[assignment]
+    rig.bench.cell.trackers["tracker"] = watching = Watching(rig)  # type: ignore[assignment]
+    rig.renew()
     rig.answer(base_frame_picture=lambda _: b"png")
     return watching
 
@@ -42,8 +42,8 @@ def watching(rig: ProcedureRig) -> Watching:
 async def test_the_base_is_found_and_the_arm_goes_home(
     rig: ProcedureRig, watching: Watching
 ) -> None:
-    outcome = await calibrate_base(rig.context)
-    settings, main = rig.bench.cell.config.procedures, rig.bench.cell.config.robots.main
+    outcome = await rig.run(103)
+    settings, main = rig.bench.settings, rig.bench.deck.main_config
     assert (outcome.item, outcome.serial_number, outcome.passed) == ("base_frame", "ET-7", True)
     found = BaseFrameResult.from_record(outcome.record).c_T_base.pose
     distance, angle = pose_error(C_T_BASE, found)
@@ -62,7 +62,7 @@ async def test_the_base_is_found_and_the_arm_goes_home(
     np.testing.assert_allclose(np.delete(first, 0, axis=1), 0.0, atol=1e-9)
     np.testing.assert_allclose(np.delete(second, 1, axis=1), 0.0, atol=1e-9)
     for end in (home, home_again):
-        np.testing.assert_allclose(end, main.home_joints_deg, atol=1e-9)
+        np.testing.assert_allclose(end, main.poses_deg["home"], atol=1e-9)
     assert watching.frames == [settings.tracker_frames] * 2 * stops
     assert all(move.speed == main.speed_percent / 100 for move in rig.bench.cell.main.moves)
 
@@ -70,12 +70,12 @@ async def test_the_base_is_found_and_the_arm_goes_home(
 async def test_a_hold_on_the_way_spoils_the_circle(rig: ProcedureRig, watching: Watching) -> None:
     rig.pauses._held_at = (5,)
     with pytest.raises(HeldMeanwhile):
-        await calibrate_base(rig.context)
+        await rig.run(103)
     assert len(watching.frames) == 4
 
 
 async def test_a_silent_head_ends_it(rig: ProcedureRig) -> None:
     rig.bench.cell.tracker.silent = True
     with pytest.raises(ReplyTimeout):
-        await calibrate_base(rig.context)
+        await rig.run(103)
     assert len(rig.bench.cell.main.moves) == 3, "home, middle of the arc, first stop"

@@ -1,18 +1,16 @@
 """A procedure as a job: what is kept, what is put aside, and what the audit log says."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from cellctl.calibration.files import read_calibration
 from cellctl.errors.calibration import ResultOutOfLimits
-from cellctl.procedures.context import ProcedureContext, ProcedureOutcome
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
-from cellctl.runtime import maintenance
-from cellctl.runtime.job import HeldMeanwhile
-from cellctl.runtime.maintenance import PROCEDURES
-from cellctl.runtime.step import Step
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.procedures.rig import ProcedureRig
 
 CHECKS = [
@@ -30,7 +28,7 @@ def outcome(rig: ProcedureRig, *, passed: bool = True) -> ProcedureOutcome:
 
 
 @pytest.fixture
-def procedure(rig: ProcedureRig, monkeypatch: pytest.MonkeyPatch) -> list[object]:
+def procedure(rig: ProcedureRig) -> list[object]:
     """Answers of procedure 101, one after the other."""
     answers: list[object] = []
 
@@ -41,26 +39,26 @@ def procedure(rig: ProcedureRig, monkeypatch: pytest.MonkeyPatch) -> list[object
         assert answer is None or isinstance(answer, ProcedureOutcome)
         return answer
 
-    monkeypatch.setitem(maintenance.PROCEDURES, Step.CALIBRATE_HEAD_1, run)
+    rig.procedures[101] = replace(rig.procedures[101], run=run)
     return answers
 
 
-def test_every_step_of_maintenance_has_its_procedure() -> None:
-    assert set(PROCEDURES) == {step for step in Step if step > 100}
+def test_the_procedures_of_the_process(rig: ProcedureRig) -> None:
+    assert set(rig.procedures) == {*range(101, 109), 10_801}
 
 
 async def test_a_result_that_passed_is_kept(rig: ProcedureRig, procedure: list[object]) -> None:
     procedure.append(outcome(rig))
     job = rig.job(101)
     await job.start()
-    assert rig.board.current.step is Step.CALIBRATE_HEAD_1
-    await job.execute(rig.pauses)
+    assert rig.board.current.step == 101
+    await job.execute()
     assert await job.close(RunResult.GOOD, None) is RunResult.GOOD
-    assert rig.board.current.step is Step.NONE
+    assert rig.board.current.step == 0
     stored = read_calibration(rig.bench.calibrations.path, "head_1")
     assert stored.serial_number == "FH-0001"
     days = (stored.valid_until - stored.made).days
-    assert days == rig.bench.cell.config.procedures.validity_days
+    assert days == rig.bench.settings.validity_days
     assert (rig.bench.calibrations.path / "head_1.png").read_bytes() == b"png"
     known = await rig.archive.do(RunStore.calibrations)
     assert [entry.id for entry in known] == [stored.id]
@@ -77,7 +75,7 @@ async def test_a_bad_result_is_put_aside_with_its_reason(
     procedure.append(outcome(rig, passed=False))
     job = rig.job(101)
     with pytest.raises(ResultOutOfLimits, match=r"head_1: rms 0\.31, limit 0\.2 px; kept in"):
-        await job.execute(rig.pauses)
+        await job.execute()
     assert read_calibration(rig.bench.calibrations.path, "head_1").id == before
     aside = rig.bench.calibrations.path / "rejected" / "head_1.json"
     assert json.loads(aside.read_text())["checks"] == CHECKS
@@ -91,20 +89,20 @@ async def test_a_bad_result_keeps_its_reason_when_it_cannot_be_put_aside(
     (rig.bench.calibrations.path / "rejected").write_text("a file, no folder")
     procedure.append(outcome(rig, passed=False))
     with pytest.raises(ResultOutOfLimits, match=r"rms 0\.31, limit 0\.2 px; and not kept"):
-        await rig.job(101).execute(rig.pauses)
+        await rig.job(101).execute()
 
 
 async def test_a_procedure_that_was_held_begins_again(
     rig: ProcedureRig, procedure: list[object]
 ) -> None:
     procedure += [HeldMeanwhile(), HeldMeanwhile(), outcome(rig)]
-    await rig.job(101).execute(rig.pauses)
+    await rig.job(101).execute()
     assert procedure == []
 
 
 async def test_half_of_a_pair_stores_nothing(rig: ProcedureRig, procedure: list[object]) -> None:
     procedure.append(None)
-    await rig.job(101).execute(rig.pauses)
+    await rig.job(101).execute()
     assert await rig.archive.do(RunStore.calibrations) == []
 
 

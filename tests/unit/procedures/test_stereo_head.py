@@ -8,7 +8,6 @@ import pytest
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import MM
-from cellctl.procedures.stereo_head import calibrate_head
 from tests.unit.procedures.rig import ProcedureRig
 
 
@@ -37,11 +36,11 @@ class Solver:
 
 async def test_all_views_are_taken_and_the_head_comes_back(rig: ProcedureRig) -> None:
     solver, station = Solver(rig), rig.bench.cell.head_1
-    outcome = await calibrate_head(rig.context, station)
-    count = rig.bench.cell.config.procedures.stereo_views
+    outcome = await rig.run(101)
+    count = rig.bench.settings.stereo_views
     robot = rig.bench.cell.aux_1
     taught, *views, back = robot.moves
-    np.testing.assert_allclose(taught.target, np.radians(station.config.measuring_joints_deg))
+    np.testing.assert_allclose(taught.target, np.radians(station.config.poses_deg["measuring"]))
     assert len(views) == count == len(solver.views)
     assert all(move.kind == "linear" for move in views)
     assert views[0].speed == pytest.approx(station.config.linear_speed_mm_s * MM)
@@ -60,7 +59,7 @@ async def test_all_views_are_taken_and_the_head_comes_back(rig: ProcedureRig) ->
 async def test_no_board_is_a_fault_of_its_own_and_the_head_is_back(rig: ProcedureRig) -> None:
     solver = Solver(rig, seen=False)
     with pytest.raises(BoardNotFound, match=r"head_2 sees no 9 x 6 chessboard.* in any of 24"):
-        await calibrate_head(rig.context, rig.bench.cell.head_2)
+        await rig.run(102)
     assert solver.given == ()
     moves = rig.bench.cell.aux_2.moves
     np.testing.assert_allclose(moves[-1].target.as_matrix(), moves[1].target.as_matrix())
@@ -70,5 +69,5 @@ async def test_a_camera_that_falls_silent_ends_it(rig: ProcedureRig) -> None:
     Solver(rig)
     rig.bench.cell.head_1.camera.silent = True  # type: ignore[attr-defined]
     with pytest.raises(ReplyTimeout):
-        await calibrate_head(rig.context, rig.bench.cell.head_1)
+        await rig.run(101)
     assert len(rig.bench.cell.aux_1.moves) == 2

@@ -13,7 +13,7 @@ from cellctl.interfaces import RobotState
 from cellctl.procedures import payload
 from cellctl.procedures.payload import still_wrench
 from cellctl.procedures.stop_latency import StopLatency, measure_stop_latency
-from cellctl.runtime.job import HeldMeanwhile
+from cellctl.runtime.steps import HeldMeanwhile
 
 UP = np.array([0.0, 0.0, 1.0])
 

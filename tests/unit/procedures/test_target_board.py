@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import timedelta
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,13 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.board_pose import target_board_discs
 from cellctl.calibration.board_transfer import TransferResult
+from cellctl.calibration.files import read_calibration
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout
-from cellctl.geometry.pose import pose_error, pose_from_xyzabc
+from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.interfaces import Target
-from cellctl.procedures.target_board import PAIRS, measure_board
+from cellctl.procedures.target_board import PAIRS
+from cellctl.runtime.procedure import ProcedureOutcome
 from cellctl.vision.ellipse import Ellipse
 from cellctl.vision.features import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
@@ -31,6 +34,9 @@ BASE_T_C = {
 
 class Field(InProcessTracker):
     """Averages over many frames."""
+
+    def see(self, truth: dict[str, Array]) -> None:
+        self._truth = truth
 
     async def measure(self, frames: int = 1) -> tuple[Target, ...]:
         return tuple(
@@ -48,6 +54,10 @@ class Boards:
         self.head_T_board = pose_from_xyzabc([5, -8, 505, 3, 1, 179])
         self.predicted: list[RigidTransform] = []
         rig.answer(measure_pair=self._measure, transfer_picture=lambda _: b"png")
+        rig.bench.cell.tracker = self.field = Field("tracker", {})
+        rig.bench.cell.trackers["tracker"] = self.field
+        self.field._connected = True
+        rig.renew()
 
     def place(self, head: str) -> None:
         c_T_board = self.c_T_base * BASE_T_C[head] * self.head_T_board
@@ -55,7 +65,10 @@ class Boards:
             name: c_T_board.apply(place) + self.rng.normal(0, FIELD_SIGMA_M, 3)
             for name, place in target_board_discs().items()
         }
-        self.rig.bench.cell.tracker = field = Field("tracker", truth | {"F1": np.zeros(3)})
+        cell = self.rig.bench.cell
+        cell.tracker = cell.trackers["tracker"] = field = Field(
+            "tracker", truth | {"F1": np.zeros(3)}
+        )
         field._connected = True
 
     def _measure(
@@ -76,6 +89,11 @@ class Boards:
         )  # fmt: skip
 
 
+async def half(rig: ProcedureRig, number: int) -> ProcedureOutcome | None:
+    """104 or 105."""
+    return await rig.procedures[number].run(rig.context)
+
+
 @pytest.fixture
 def boards(rig: ProcedureRig) -> Boards:
     return Boards(rig)
@@ -84,9 +102,9 @@ def boards(rig: ProcedureRig) -> Boards:
 async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Boards) -> None:
     cell = rig.bench.cell
     boards.place("head_1")
-    assert await measure_board(rig.context, cell.head_1) is None
+    assert await half(rig, 104) is None
     boards.place("head_2")
-    outcome = await measure_board(rig.context, cell.head_2)
+    outcome = await half(rig, 105)
     assert outcome is not None
     assert (outcome.item, outcome.passed, outcome.picture_png) == ("board_transfer", True, b"png")
     result = TransferResult.from_record(outcome.record)
@@ -96,37 +114,53 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
         assert np.degrees(np.linalg.norm(angle)) < 0.03
     assert len(boards.predicted) == 2 * PAIRS
     for head in cell.heads:
-        assert outcome.record["head_joints_deg"][head.name] == head.config.measuring_joints_deg
+        assert outcome.record["head_joints_deg"][head.name] == head.config.poses_deg["measuring"]
     for head, robot, turn in zip(cell.heads, (cell.aux_1, cell.aux_2), (0, 1), strict=True):
-        place = np.radians(head.config.measuring_joints_deg)
+        place = np.radians(head.config.poses_deg["measuring"])
         np.testing.assert_allclose(robot.moves[turn].target, place)
 
 
 async def test_a_placement_serves_once(rig: ProcedureRig, boards: Boards) -> None:
-    for head in (rig.bench.cell.head_1, rig.bench.cell.head_2):
-        boards.place(head.name)
-        await measure_board(rig.context, head)
-    assert rig.bench.calibrations.placements == {}
-    assert await measure_board(rig.context, rig.bench.cell.head_2) is None
+    for head, number in (("head_1", 104), ("head_2", 105)):
+        boards.place(head)
+        await half(rig, number)
+    assert rig.process._waiting.by_head == {}
+    assert await half(rig, 105) is None
 
 
 async def test_the_same_head_twice_does_not_make_a_pair(rig: ProcedureRig, boards: Boards) -> None:
     boards.place("head_1")
     for _ in range(2):
-        assert await measure_board(rig.context, rig.bench.cell.head_1) is None
+        assert await half(rig, 104) is None
 
 
 async def test_the_head_must_be_calibrated_first(rig: ProcedureRig, boards: Boards) -> None:
     (rig.bench.calibrations.path / "head_1.json").unlink()
     boards.place("head_1")
     with pytest.raises(CalibrationMissing, match="head_1"):
-        await measure_board(rig.context, rig.bench.cell.head_1)
+        await half(rig, 104)
 
 
 async def test_a_silent_large_field_head_ends_both(rig: ProcedureRig, boards: Boards) -> None:
     boards.place("head_1")
     rig.bench.cell.tracker.silent = True
     with pytest.raises(ReplyTimeout):
-        await measure_board(rig.context, rig.bench.cell.head_1)
+        await half(rig, 104)
     assert len(asyncio.all_tasks()) == 1, "nobody goes on grabbing"
-    assert rig.bench.calibrations.placements == {}
+    assert rig.process._waiting.by_head == {}
+
+
+@pytest.mark.parametrize("spoil", ["head_1 is calibrated anew", "a fault invalidates something"])
+async def test_what_a_head_saw_before_counts_no_longer(
+    rig: ProcedureRig, boards: Boards, spoil: str
+) -> None:
+    boards.place("head_1")
+    assert await half(rig, 104) is None
+    store = rig.bench.calibrations
+    if spoil.startswith("head_1"):
+        stored = read_calibration(store.path, "head_1")
+        store.store("head_1", stored.record, stored.serial_number, timedelta(days=1))
+    else:
+        store.invalidate(["payload"], "collision")
+    boards.place("head_2")
+    assert await half(rig, 105) is None, "head I has to see the board again"

@@ -13,11 +13,11 @@ from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
-from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
+from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.store import RunStore
-from cellctl.runtime.commissioned import Commissioned
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.workers import VisionWorkers
 from tests.unit.cell.bench import Bench, TruthMeasurer
@@ -54,21 +54,13 @@ class RunRig:
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
 
     def run(self, **changes: Any) -> AssemblyRun:
-        frame, deck = self.bench.features()
-        values: dict[str, Any] = {
-            "cell": self.bench.as_cell,
-            "recipe": self.bench.cell.config.recipes[0],
-            "calibrations": self.calibrations,
-            "commissioned": Commissioned(),
-            "payload_kg": 200.0,
-            "frame_features": frame,
-            "deck_features": deck,
-            "board": self.board,
-            "journal": self.journal,
-            "pause": self.pauses,
-            "measurer": cast(PartMeasurer, self.truth),
-        }
-        return AssemblyRun(**(values | changes))
+        """With changes of its facts."""
+        opened = OpenRun(self.bench.facts(**changes), self.board, self.journal, self.pauses)
+        return AssemblyRun(opened, cast(PartMeasurer, self.truth))
+
+    def ready(self, **changes: Any) -> Ready:
+        """Before the first step."""
+        return Ready(self.run(**changes))
 
     async def record(self) -> RunRecord:
         return await self.archive.do(RunStore.run, self.number)

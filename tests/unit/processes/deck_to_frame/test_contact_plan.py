@@ -6,37 +6,34 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.config.cell import CellConfig
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.force.detectors import Cusum, touch_threshold_n
+from cellctl.processes.deck_to_frame.facts import read_facts
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan, mating_settings
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
-from cellctl.processes.deck_to_frame.preparation import prepare
 from cellctl.processes.deck_to_frame.recipe import Pins
-from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
+from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.runtime.commissioned import Commissioned
 from tests.unit.processes.deck_to_frame.rig import RunRig
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off
 
 
 async def plan_of(rig: RunRig, commissioned: Commissioned) -> MatingPlan:
-    run = await at_the_stand_off(rig)
-    await compensate(run)
-    return contact_plan(run, commissioned)
+    return contact_plan(await correct_pose(await at_the_stand_off(rig)), commissioned)
 
 
 def settings_of(rig: RunRig, payload_kg: float = 200.0, **recipe: Any) -> MatingSettings:
     """Of the shipped recipe with changes."""
-    config = rig.bench.cell.config
-    changed = config.recipes[0].model_copy(update=recipe)
-    return mating_settings(config, changed, Commissioned(), payload_kg)
+    changed = rig.bench.recipe.model_copy(update=recipe)
+    return mating_settings(rig.bench.deck.force_config, changed, Commissioned(), payload_kg)
 
 
 async def test_without_commissioning_the_bounds_of_the_recipe_count(rig: RunRig) -> None:
-    mating = rig.run().recipe.mating
+    mating = rig.bench.recipe.mating
     figures = (await plan_of(rig, Commissioned())).speed.figures
     assert figures.stop_latency_s == mating.stop_latency_ms / 1e3
     assert figures.stiffness_n_m == mating.stiffness_n_per_mm * 1e3
@@ -53,9 +50,8 @@ async def test_what_was_measured_makes_the_approach_faster(rig: RunRig) -> None:
 
 
 def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
-    config = rig.bench.cell.config
     pins = Pins(engagement_mm=3.0, max_yaw_deg=0.02, max_travel_mm=0.1)
-    mating = config.recipes[0].mating.model_copy(update={"pins": pins})
+    mating = rig.bench.recipe.mating.model_copy(update={"pins": pins})
     settings = settings_of(rig, mating=mating).pins
     assert settings is not None
     assert settings.engagement_m == pytest.approx(3e-3)
@@ -66,10 +62,9 @@ def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
 
 
 def test_no_measurement_goes_beyond_the_bound(rig: RunRig) -> None:
-    config = rig.bench.cell.config
-    stiff = Commissioned(stiffness_n_m=9e5)
-    settings = mating_settings(config, config.recipes[0], stiff, 200.0)
-    assert settings.stiffness_n_m == config.recipes[0].mating.stiffness_n_per_mm * 1e3
+    recipe, stiff = rig.bench.recipe, Commissioned(stiffness_n_m=9e5)
+    settings = mating_settings(rig.bench.deck.force_config, recipe, stiff, 200.0)
+    assert settings.stiffness_n_m == recipe.mating.stiffness_n_per_mm * 1e3
 
 
 def test_the_shipped_recipe_is_what_the_settings_default_to(rig: RunRig) -> None:
@@ -79,7 +74,7 @@ def test_the_shipped_recipe_is_what_the_settings_default_to(rig: RunRig) -> None
 
 
 def test_force_and_side_force_of_the_recipe_reach_the_seat_and_the_speed(rig: RunRig) -> None:
-    mating = rig.run().recipe.mating
+    mating = rig.bench.recipe.mating
     forces = {"target_force_n": 60.0, "limit_force_n": 90.0, "max_lateral_force_n": 40.0}
     settings = settings_of(rig, mating=mating.model_copy(update=forces))
     assert settings.touch_peak_n == 60.0
@@ -89,7 +84,7 @@ def test_force_and_side_force_of_the_recipe_reach_the_seat_and_the_speed(rig: Ru
 
 
 def test_another_deck_has_its_own_size_mass_and_zero(rig: RunRig) -> None:
-    mating = rig.run().recipe.mating.model_copy(
+    mating = rig.bench.recipe.mating.model_copy(
         update={"max_untared_force_n": 30.0, "max_untared_moment_n_m": 12.0}
     )
     settings = settings_of(rig, 70.0, face_mm=(600.0, 400.0), mating=mating)
@@ -100,39 +95,37 @@ def test_another_deck_has_its_own_size_mass_and_zero(rig: RunRig) -> None:
 
 
 async def test_a_robot_that_was_slowed_down_meanwhile_gets_no_plan(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    await compensate(run)
+    corrected = await correct_pose(await at_the_stand_off(rig))
     rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
     with pytest.raises(SpeedOverridden):
-        contact_plan(run, Commissioned())
+        contact_plan(corrected, Commissioned())
 
 
 async def test_a_run_is_not_prepared_for_a_head_that_was_taught_another_pose(rig: RunRig) -> None:
-    cell = rig.bench.cell
-    moved = cell.head_1.config.model_copy(update={"measuring_joints_deg": (0.0,) * 6})
-    cell.head_1 = replace(cell.head_1, config=moved)
+    deck = rig.bench.deck
+    poses_deg = deck.head_1.config.poses_deg | {"measuring": (0.0,) * 6}
+    moved = deck.head_1.config.model_copy(update={"poses_deg": poses_deg})
+    deck = replace(deck, head_1=replace(deck.head_1, config=moved))
     with pytest.raises(HeadPoseChanged):
-        await prepare(rig.bench.as_cell, rig.bench.calibrations, rig.run().recipe)
+        await read_facts(deck, rig.bench.recipe, rig.bench.calibrations)
 
 
 async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig) -> None:
     rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
     with pytest.raises(SpeedOverridden):
-        await prepare(rig.bench.as_cell, rig.bench.calibrations, rig.run().recipe)
+        await read_facts(rig.bench.deck, rig.bench.recipe, rig.bench.calibrations)
 
 
-def with_rate(config: CellConfig, rate_hz: float) -> CellConfig:
-    sensor = config.force.sensor
-    sensor = sensor.model_copy(update={"settings": {**sensor.settings, "rate_hz": rate_hz}})
-    return config.model_copy(update={"force": config.force.model_copy(update={"sensor": sensor})})
+def with_rate(sensor: ForceSensorConfig, rate_hz: float) -> ForceSensorConfig:
+    return sensor.model_copy(update={"settings": {**sensor.settings, "rate_hz": rate_hz}})
 
 
 @pytest.mark.parametrize(("rate_hz", "threshold_n"), [(500.0, 60.0), (200.0, 60.0), (4e3, 480.0)])
 def test_period_touch_and_band_follow_the_rate_of_the_sensor(
     rig: RunRig, rate_hz: float, threshold_n: float
 ) -> None:
-    config = with_rate(rig.bench.cell.config, rate_hz)
-    settings = mating_settings(config, config.recipes[0], Commissioned(), 200.0)
+    sensor = with_rate(rig.bench.deck.force_config, rate_hz)
+    settings = mating_settings(sensor, rig.bench.recipe, Commissioned(), 200.0)
     assert settings.sample_period_s == 1.0 / rate_hz
     assert settings.touch.threshold_n == pytest.approx(threshold_n)
     lowest_hz, highest_hz = contact_limits(settings).rate_hz

@@ -1,5 +1,6 @@
 """Guarded moves on simulated time, with the swing of the load and real contact: no false alarm."""
 
+from contextlib import nullcontext
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -11,32 +12,38 @@ from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from benchmarks.campaign_mating_trial import nominal_settings, plan_for
 from cellctl.cell.devices import Cell
+from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded
+from cellctl.guard.client import GuardClient
+from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.facts import RunFacts
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
-from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
+from cellctl.processes.deck_to_frame.settings import DeckSettings
+from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory, deck_recipes
 from tests.unit.cell.bench import CELL_FILE
 
 LATENCY_S = 0.05
 
 
-def cell_of(world: MatingCell) -> Cell:
-    parts = SimpleNamespace(
-        main=world.robot,
-        guard=world.guard,
-        config=load_cell(CELL_FILE),
-        base_T_frame=None,
-        awaits_trips=False,
-    )
-    return cast(Cell, parts)
+def cell_of(world: MatingCell) -> DeckCell:
+    """Without heads and tracker: nothing here looks."""
+    config = load_cell(CELL_FILE)
+    cell = cast(Cell, SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext()))
+    robot, guard = cast(Robot, world.robot), cast(GuardClient, world.guard)
+    arm = GuardedRobot(robot, config.robots["main"], "force", guard, config.force_sensors["force"])
+    nothing: Any = None
+    settings = cast(DeckSettings, config.processes["deck-to-frame"])
+    recipes = deck_recipes(config)
+    return DeckCell(cell, arm, nothing, nothing, nothing, settings, recipes, FrameMemory())
 
 
 def run_on(world: MatingCell) -> AssemblyRun:
-    values: dict[str, Any] = dict.fromkeys(AssemblyRun.__dataclass_fields__)
-    cell = cell_of(world)
-    values |= {"cell": cell, "recipe": cell.config.recipes[0], "payload_kg": 200.0}
-    return AssemblyRun(**values | {"flange_T_deck": world.calibrated_deck()})
+    cell, nothing = cell_of(world), cast(Any, None)
+    facts = RunFacts(cell, cell.recipes[0], nothing, (), nothing, 200.0, nothing, nothing)
+    return AssemblyRun(OpenRun(facts, nothing, nothing, nothing), nothing)
 
 
 def raised(world: MatingCell, height_m: float) -> RigidTransform:
@@ -67,8 +74,9 @@ def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     run, above = run_on(world), raised(world, 0.04)
 
     async def up_and_down() -> None:
-        await run.move_flange(above)
-        await run.lower_flange(RigidTransform.from_translation([0, 0, -0.015]) * above)
+        await run.move_flange(above, world.calibrated_deck())
+        lower = RigidTransform.from_translation([0, 0, -0.015]) * above
+        await run.lower_flange(lower, world.calibrated_deck())
 
     run_simulated(world.start_s, world.advance, up_and_down)
     assert world.guard.trip is None
@@ -81,7 +89,7 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
     run, below = run_on(world), raised(world, -0.013)
 
     async def down() -> None:
-        await run.lower_flange(below)
+        await run.lower_flange(below, world.calibrated_deck())
 
     with pytest.raises(ForceLimitExceeded, match="Fz"):
         run_simulated(world.start_s, world.advance, down)

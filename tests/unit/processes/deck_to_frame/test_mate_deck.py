@@ -1,6 +1,7 @@
 """Step 50 around the mating itself: plan, further attempts, force curves whatever happens."""
 
 import asyncio
+import importlib
 from collections.abc import Awaitable, Callable
 
 import numpy as np
@@ -13,15 +14,15 @@ from cellctl.force.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
-from cellctl.processes.deck_to_frame.run import AssemblyRun
-from cellctl.processes.deck_to_frame.steps import mate_deck as module
-from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
+from cellctl.processes.deck_to_frame.state import Corrected
+from cellctl.processes.deck_to_frame.steps import MATE
+from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.mate_deck import mate_deck
-from cellctl.runtime.job import HeldMeanwhile
-from cellctl.runtime.step import Step
-from tests.unit.processes.deck_to_frame.rig import Pauses, RunRig, curve, seated
+from cellctl.runtime.steps import HeldMeanwhile
+from tests.unit.processes.deck_to_frame.rig import RunRig, curve, seated
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off
 
+module = importlib.import_module("cellctl.processes.deck_to_frame.steps.mate_deck")
 Plan = Callable[[int], Awaitable[MatingPlan]]
 Report = Callable[[MatingProgress], None]
 
@@ -31,7 +32,6 @@ class Mating:
 
     def __init__(self, attempts: int = 1, fault: BaseException | None = None) -> None:
         self.plans: list[MatingPlan] = []
-        self.steps: list[Step] = []
         self.felt: ForceCurve = curve()
         self._attempts, self._fault = attempts, fault
 
@@ -47,60 +47,60 @@ class Mating:
         return seated(self.plans[-1])
 
 
-async def ready(rig: RunRig, mating: Mating, monkeypatch: pytest.MonkeyPatch) -> AssemblyRun:
+async def ready(rig: RunRig, mating: Mating, monkeypatch: pytest.MonkeyPatch) -> Corrected:
     monkeypatch.setattr(module, "mate_until_seated", mating)
-    run = await at_the_stand_off(rig)
-    await compensate(run)
-    rig.board.update(step=Step.MATE)
-    return run
+    corrected = await correct_pose(await at_the_stand_off(rig))
+    rig.board.update(step=MATE.number, step_label=MATE.label, contact=MATE.contact)
+    return corrected
 
 
 async def test_a_mating_with_its_record(rig: RunRig, monkeypatch: pytest.MonkeyPatch) -> None:
     mating = Mating()
-    run = await ready(rig, mating, monkeypatch)
-    await mate_deck(run)
+    corrected = await ready(rig, mating, monkeypatch)
+    await mate_deck(corrected)
     plan = mating.plans[0]
     assert plan.window.expected_m == pytest.approx(0.010, abs=1e-4)
-    assert plan.settings.limit_force_n == run.recipe.mating.limit_force_n
-    assert plan.settings.stale_s == pytest.approx(rig.bench.cell.config.force.stale_ms / 1e3)
+    assert plan.settings.limit_force_n == rig.bench.recipe.mating.limit_force_n
+    assert plan.settings.stale_s == pytest.approx(rig.bench.deck.force_config.stale_ms / 1e3)
     record = await rig.record()
     assert record.mating is not None
     assert record.mating["outcome"] == "seated"
     assert record.mating["approach"]["speed_mm_s"] > 0
     assert [a.name for a in record.artefacts if "force" in a.name] == ["force-1.mcap"]
     assert rig.board.current.force_peaks[2] == pytest.approx(36.0)
-    assert rig.board.current.force_limit_n == run.recipe.mating.limit_force_n
+    assert rig.board.current.force_limit_n == rig.bench.recipe.mating.limit_force_n
     assert rig.board.current.message == MatingPhase.ENDED.value
 
 
 async def test_a_further_attempt_is_measured_and_corrected_anew(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = await ready(rig, Mating(attempts=2), monkeypatch)
-    await mate_deck(run)
+    corrected = await ready(rig, Mating(attempts=2), monkeypatch)
+    await mate_deck(corrected)
     record = await rig.record()
     assert [entry.iteration for entry in record.iterations] == [1, 2]
     names = [a.name for a in record.artefacts if "force" in a.name]
     assert names == ["force-1.mcap", "force-2.mcap"]
-    assert rig.board.current.step is Step.MATE
+    assert rig.board.current.step == MATE.number
+    assert rig.board.current.contact
 
 
 async def test_a_robot_that_moved_since_it_was_measured_does_not_mate(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = await ready(rig, Mating(), monkeypatch)
+    corrected = await ready(rig, Mating(), monkeypatch)
     rig.bench.cell.main.flange *= pose_from_xyzabc([0, 0, 0.1, 0, 0, 0])
     with pytest.raises(HeadMoved, match="main robot"):
-        await mate_deck(run)
+        await mate_deck(corrected)
 
 
 @pytest.mark.parametrize("fault", [MatingOverforce("46 N"), asyncio.CancelledError()])
 async def test_the_curve_of_a_failure_is_kept(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch, fault: BaseException
 ) -> None:
-    run = await ready(rig, Mating(fault=fault), monkeypatch)
+    corrected = await ready(rig, Mating(fault=fault), monkeypatch)
     with pytest.raises(type(fault)):
-        await mate_deck(run)
+        await mate_deck(corrected)
     record = await rig.record()
     assert any(a.name == "force-1.mcap" for a in record.artefacts)
     assert record.mating is not None
@@ -110,14 +110,14 @@ async def test_the_curve_of_a_failure_is_kept(
 async def test_a_disk_that_fails_does_not_hide_the_fault(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = await ready(rig, Mating(fault=MatingOverforce("46 N")), monkeypatch)
+    corrected = await ready(rig, Mating(fault=MatingOverforce("46 N")), monkeypatch)
 
     def full(*_: object) -> bytes:
         raise RecordNotWritten("disk full")
 
     rig.bench.cell.workers.answers["encode_curve"] = full
     with pytest.raises(MatingOverforce) as caught:
-        await mate_deck(run)
+        await mate_deck(corrected)
     assert any("disk full" in note for note in caught.value.__notes__)
 
 
@@ -126,21 +126,21 @@ async def test_an_empty_curve_is_no_second_fault(
 ) -> None:
     mating = Mating(fault=MatingOverforce("46 N"))
     mating.felt = ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))
-    run = await ready(rig, mating, monkeypatch)
+    corrected = await ready(rig, mating, monkeypatch)
     with pytest.raises(MatingOverforce):
-        await mate_deck(run)
+        await mate_deck(corrected)
     assert np.isnan(rig.board.current.force_peaks).all()
 
 
 async def test_a_hold_between_attempts_keeps_every_curve_once(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = await ready(rig, Mating(attempts=2), monkeypatch)
-    run.pause = Pauses(held_at=(1,))
+    corrected = await ready(rig, Mating(attempts=2), monkeypatch)
+    rig.pauses._held_at = (len(rig.pauses.asked) + 1,)
     with pytest.raises(HeldMeanwhile):
-        await mate_deck(run)
-    run.pause = Pauses()
+        await mate_deck(corrected)
+    rig.pauses._held_at = ()
     monkeypatch.setattr(module, "mate_until_seated", Mating())
-    await mate_deck(run)
+    await mate_deck(corrected)
     names = [a.name for a in (await rig.record()).artefacts if "force" in a.name]
     assert names == ["force-1.mcap", "force-2.mcap"]

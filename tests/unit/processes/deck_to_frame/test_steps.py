@@ -1,7 +1,9 @@
 """Steps 10 to 40 and 60 against a true world that the encoders do not see."""
 
 import asyncio
+import dataclasses
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,33 +19,28 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 from cellctl.guard.report import GuardTrip, TripReason
-from cellctl.processes.deck_to_frame.run import AssemblyRun
-from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
+from cellctl.processes.deck_to_frame.state import AtStandOff, Seated
+from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck
 from cellctl.processes.deck_to_frame.steps.measure_frame import measure_frame
 from cellctl.processes.deck_to_frame.steps.pre_assembly import pre_assembly
 from cellctl.processes.deck_to_frame.steps.verify import verify
-from cellctl.runtime.job import HeldMeanwhile
-from tests.unit.processes.deck_to_frame.rig import Pauses, RunRig
+from cellctl.runtime.steps import HeldMeanwhile
+from tests.unit.processes.deck_to_frame.rig import RunRig
 
 
-async def at_the_stand_off(rig: RunRig) -> AssemblyRun:
-    run = rig.run()
-    await measure_frame(run)
-    await measure_deck(run)
-    await pre_assembly(run)
-    return run
+async def at_the_stand_off(rig: RunRig, **changes: Any) -> AtStandOff:
+    """With changes of the facts of the run."""
+    return await pre_assembly(await measure_deck(await measure_frame(rig.ready(**changes))))
 
 
 async def test_the_frame_is_found_and_remembered(rig: RunRig) -> None:
-    run = rig.run()
-    await measure_frame(run)
-    assert run.c1_T_M is not None
-    seen = run.base_T_c1 * run.c1_T_M.pose
+    found = await measure_frame(rig.ready())
+    seen = found.run.base_T_c1 * found.c1_T_M.pose
     np.testing.assert_allclose(
         pose_to_xyzabc(seen), pose_to_xyzabc(rig.bench.world.base_T_frame), atol=1e-6
     )
-    assert rig.bench.cell.base_T_frame is not None
+    assert rig.bench.memory.base_T_frame is not None
     record = await rig.record()
     assert [entry.kind for entry in record.measurements] == ["frame"]
     names = [artefact.name for artefact in record.artefacts]
@@ -55,25 +52,25 @@ async def test_the_frame_is_found_and_remembered(rig: RunRig) -> None:
 async def test_a_misplaced_frame_is_refused_and_not_remembered(rig: RunRig) -> None:
     rig.bench.world.base_T_frame = rig.bench.station * pose_from_xyzabc([40.0, 0, 0, 0, 0, 0])
     with pytest.raises(PartMisplaced, match="frame is 40"):
-        await measure_frame(rig.run())
-    assert rig.bench.cell.base_T_frame is None
+        await measure_frame(rig.ready())
+    assert rig.bench.memory.base_T_frame is None
 
 
 async def test_the_deck_is_found_on_the_flange(rig: RunRig) -> None:
-    run = rig.run()
-    await measure_deck(run)
-    assert run.flange_T_deck is not None
+    found = await measure_deck(await measure_frame(rig.ready()))
     expected = rig.bench.world.robot_error * rig.bench.world.flange_T_deck
     np.testing.assert_allclose(
-        pose_to_xyzabc(run.flange_T_deck), pose_to_xyzabc(expected), atol=1e-6
+        pose_to_xyzabc(found.flange_T_deck), pose_to_xyzabc(expected), atol=1e-6
     )
-    assert [entry.kind for entry in (await rig.record()).measurements] == ["deck", "flange_T_deck"]
+    kinds = [entry.kind for entry in (await rig.record()).measurements]
+    assert kinds == ["frame", "deck", "flange_T_deck"]
 
 
 async def test_a_deck_that_slipped_is_refused(rig: RunRig) -> None:
     rig.bench.world.flange_T_deck = rig.bench.grip * pose_from_xyzabc([0, 0, 0, 4.0, 0, 0])
+    frame = await measure_frame(rig.ready())
     with pytest.raises(PartMisplaced, match="deck on flange"):
-        await measure_deck(rig.run())
+        await measure_deck(frame)
 
 
 async def test_a_swinging_deck_is_not_measured(
@@ -81,28 +78,29 @@ async def test_a_swinging_deck_is_not_measured(
 ) -> None:
     monkeypatch.setattr("cellctl.cell.settling.TIMEOUT_S", 0.01)
     rig.bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
+    frame = await measure_frame(rig.ready())
     with pytest.raises(NotSettled):
-        await measure_deck(rig.run())
-    assert rig.truth.measured == []
+        await measure_deck(frame)
+    assert rig.truth.measured == ["frame"]
 
 
 async def test_the_first_assembly_motion_leads_to_the_stand_off(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     assert rig.bench.cell.main.moves[-1].kind == "linear"
     np.testing.assert_allclose(
         pose_to_xyzabc(rig.true_deck), [0, 0, 25.0, 0, 0, 0], atol=1e-5
     )  # the robot's error is the same at both poses here, so nothing is left
-    assert len(run.commanded) == 1
-    np.testing.assert_array_equal(run.commanded[0].as_matrix(), run.target_M_T_D.as_matrix())
+    target = stand_off.run.target_M_T_D.as_matrix()
+    np.testing.assert_array_equal(stand_off.commanded.as_matrix(), target)
 
 
 async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     above, down = rig.bench.cell.main.moves[-2:]
     assert above.speed == pytest.approx(0.05)
-    assert down.speed == pytest.approx(run.recipe.mating.fast_speed_mm_s * 1e-3)
+    assert down.speed == pytest.approx(stand_off.run.recipe.mating.fast_speed_mm_s * 1e-3)
     height_mm = (above.target.translation - down.target.translation)[2] * 1e3
-    assert height_mm == pytest.approx(run.recipe.station_tolerance_mm, rel=1e-4)
+    assert height_mm == pytest.approx(stand_off.run.recipe.station_tolerance_mm, rel=1e-4)
     wide, tight = rig.bench.cell.guard.limits
     assert wide.filtered[2] == pytest.approx(2 * 200.0 * 0.2 + 50.0)
     assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 50.0)
@@ -111,13 +109,11 @@ async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
 
 
 async def test_what_is_met_over_the_station_stops_the_run(rig: RunRig) -> None:
-    run = rig.run()
-    await measure_frame(run)
-    await measure_deck(run)
+    deck = await measure_deck(await measure_frame(rig.ready()))
     main, guard = rig.bench.cell.main, rig.bench.cell.guard
     moves = len(main.moves)
     main.road_is_free = asyncio.Event()
-    going = asyncio.create_task(pre_assembly(run))
+    going = asyncio.create_task(pre_assembly(deck))
     while len(main.moves) == moves:  # noqa: ASYNC110 - the arm is on its way then
         await asyncio.sleep(0.001)
     guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 143.00 N, limit 142.00 N", 2)
@@ -130,10 +126,10 @@ async def test_what_is_met_over_the_station_stops_the_run(rig: RunRig) -> None:
     assert main.latched
 
 
-async def test_compensation_ends_within_the_thresholds(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+async def test_the_correction_ends_within_the_thresholds(rig: RunRig) -> None:
+    stand_off = await at_the_stand_off(rig)
     rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
-    await compensate(run)
+    corrected = await correct_pose(stand_off)
     np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[:3], [0, 0, 25.0], atol=0.05)
     np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[3:], 0.0, atol=0.005)
     iterations = (await rig.record()).iterations
@@ -142,57 +138,59 @@ async def test_compensation_ends_within_the_thresholds(rig: RunRig) -> None:
     assert iterations[1].correction_mm_deg == ()
     assert rig.board.current.iteration == 2
     assert max(np.abs(rig.board.current.error_mm_deg)) < 0.05
-    assert run.measured_at is not None
-    assert run.M_T_D is not None
+    at = rig.bench.cell.main.flange.as_matrix()
+    np.testing.assert_array_equal(corrected.measured_at.as_matrix(), at)
+    true_mm_deg = pose_to_xyzabc(rig.true_deck)
+    np.testing.assert_allclose(pose_to_xyzabc(corrected.M_T_D.pose), true_mm_deg, atol=1e-6)
 
 
 async def test_the_paper_s_rule_converges_too(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    settings = run.recipe.compensation.model_copy(update={"rule": "paper"})
-    run.recipe = run.recipe.model_copy(update={"compensation": settings})
+    shipped = rig.bench.recipe
+    settings = shipped.pose_correction.model_copy(update={"rule": "paper"})
+    recipe = shipped.model_copy(update={"pose_correction": settings})
+    stand_off = await at_the_stand_off(rig, recipe=recipe)
     rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
-    await compensate(run)
+    await correct_pose(stand_off)
     np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[:3], [0, 0, 25.0], atol=0.05)
 
 
-async def test_a_second_compensation_goes_on_counting(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    await compensate(run)
-    await compensate(run)
+async def test_a_second_correction_goes_on_counting(rig: RunRig) -> None:
+    stand_off = await at_the_stand_off(rig)
+    await correct_pose(await correct_pose(stand_off))
     assert [entry.iteration for entry in (await rig.record()).iterations] == [1, 2]
 
 
 async def test_an_implausible_jump_moves_nothing(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     moves = len(rig.bench.cell.main.moves)
     rig.bench.world.flange_T_deck *= pose_from_xyzabc([12.0, 0, 0, 0, 0, 0])
     with pytest.raises(CorrectionImplausible):
-        await compensate(run)
+        await correct_pose(stand_off)
     assert len(rig.bench.cell.main.moves) == moves
     assert len((await rig.record()).iterations) == 1, "recorded all the same"
 
 
 async def test_a_correction_down_to_the_frame_is_not_commanded(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     moves = len(rig.bench.cell.main.moves)
     rig.bench.world.flange_T_deck *= pose_from_xyzabc([0, 0, 6.0, 0, 0, 0])
     with pytest.raises(TargetOutOfBounds):
-        await compensate(run)
+        await correct_pose(stand_off)
     assert len(rig.bench.cell.main.moves) == moves
 
 
 async def test_corrections_do_not_add_up_to_a_journey(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     slip = pose_from_xyzabc([9.0, 0, 0, 0, 0, 0])
     rig.bench.world.flange_T_deck *= slip
-    await compensate(run)
+    corrected = await correct_pose(stand_off)
     rig.bench.world.flange_T_deck *= slip
     with pytest.raises(PartMisplaced, match="commanded deck"):
-        await compensate(run)
+        await correct_pose(corrected)
 
 
 async def test_a_robot_that_does_not_obey_is_noticed(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     rig.bench.world.robot_error *= pose_from_xyzabc([1.0, 0, 0, 0, 0, 0])
     stuck = rig.bench.cell.main.flange
     main = rig.bench.cell.main
@@ -202,12 +200,12 @@ async def test_a_robot_that_does_not_obey_is_noticed(rig: RunRig) -> None:
 
     main.move_linear = refuse_silently  # type: ignore[method-assign, assignment]
     with pytest.raises(NoProgress):
-        await compensate(run)
+        await correct_pose(stand_off)
     assert main.flange is stuck
 
 
 async def test_a_growing_error_is_noticed(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     world, main = rig.bench.world, rig.bench.cell.main
     world.robot_error *= pose_from_xyzabc([1.0, 0, 0, 0, 0, 0])
     go = main.move_linear
@@ -218,47 +216,49 @@ async def test_a_growing_error_is_noticed(rig: RunRig) -> None:
 
     main.move_linear = slip  # type: ignore[method-assign, assignment]
     with pytest.raises(CorrectionDiverging):
-        await compensate(run)
+        await correct_pose(stand_off)
 
 
 async def test_a_hold_in_the_loop_spoils_what_was_measured(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    run.pause = Pauses(held_at=(2,))
+    stand_off = await at_the_stand_off(rig)
+    rig.pauses._held_at = (2,)
     rig.bench.world.robot_error *= pose_from_xyzabc([0.6, 0, 0, 0, 0, 0])
     with pytest.raises(HeldMeanwhile):
-        await compensate(run)
+        await correct_pose(stand_off)
     assert len((await rig.record()).iterations) == 1
 
 
-async def seat(rig: RunRig, run: AssemblyRun, offset_mm_deg: list[float]) -> None:
+async def seat(stand_off: AtStandOff, rig: RunRig, offset_mm_deg: list[float]) -> None:
     truth = rig.bench.world
+    corrected = await correct_pose(stand_off)
     M_T_D = pose_from_xyzabc(np.add([0, 0, 15.0, 0, 0, 0], offset_mm_deg))
     deck_on_flange = truth.robot_error * truth.flange_T_deck
     rig.bench.cell.main.flange = truth.base_T_frame * M_T_D * deck_on_flange.inv()
-    await verify(run)
+    fields = {field.name: getattr(corrected, field.name) for field in dataclasses.fields(corrected)}
+    await verify(Seated(**fields))
 
 
 async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    await seat(rig, run, [0.03, 0, 0, 0, 0, 0])
+    stand_off = await at_the_stand_off(rig)
+    await seat(stand_off, rig, [0.03, 0, 0, 0, 0, 0])
     mating = (await rig.record()).mating
     assert mating is not None
     assert set(mating["pin_offsets_mm"]) == {
-        hole.name for hole in run.deck_features.holes if hole.kind == "pin"
+        hole.name for hole in stand_off.run.facts.deck_features.holes if hole.kind == "pin"
     }
     assert mating["pin_offsets_mm"]["P1"] == pytest.approx(0.03, abs=1e-5)
 
 
 async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
+    stand_off = await at_the_stand_off(rig)
     with pytest.raises(SeatedOffPosition, match=r"P1 0\.300 mm"):
-        await seat(rig, run, [0.3, 0, 0, 0, 0, 0])
+        await seat(stand_off, rig, [0.3, 0, 0, 0, 0, 0])
     assert (await rig.record()).mating is not None
 
 
 async def test_a_part_without_pins_is_verified_at_every_hole(rig: RunRig) -> None:
-    run = await at_the_stand_off(rig)
-    holes = tuple(replace(hole, kind="countersink") for hole in run.deck_features.holes)
-    run.deck_features = replace(run.deck_features, holes=holes)
+    _, deck = rig.bench.features()
+    holes = tuple(replace(hole, kind="countersink") for hole in deck.holes)
+    stand_off = await at_the_stand_off(rig, deck_features=replace(deck, holes=holes))
     with pytest.raises(SeatedOffPosition, match="P2"):
-        await seat(rig, run, [0.3, 0, 0, 0, 0, 0])
+        await seat(stand_off, rig, [0.3, 0, 0, 0, 0, 0])
