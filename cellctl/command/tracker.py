@@ -6,10 +6,10 @@ from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
-from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.packml.unit_command import UnitCommand
+from cellctl.packml.validation import validate_command, validate_mode
 
 Finish = Callable[[int, Result], object]
 
@@ -74,9 +74,9 @@ class LineCoupling:
     def _refused_in_new_mode(self, command: UnitCommand) -> RejectCode:
         """A command that is refused leaves the mode as it was, too."""
         state = self._machine.state
-        if command.cntrl_cmd == Command.UNDEFINED or judge_mode(state, command.unit_mode):
+        if command.cntrl_cmd == Command.UNDEFINED or validate_mode(state, command.unit_mode):
             return RejectCode.NONE
-        return judge_command(state, Mode(command.unit_mode), command.cntrl_cmd)
+        return validate_command(state, Mode(command.unit_mode), command.cntrl_cmd)
 
     def _changed(self, before: State, after: State) -> None:
         if self._pursued is None or before is after:
