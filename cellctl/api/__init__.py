@@ -1,1 +1,7 @@
-"""How others reach the daemon: the line PLC by Modbus TCP, operators by the local socket."""
+"""The interfaces of the daemon to the outside.
+
+``modbus`` serves the line PLC, ``local`` the operators at the cell's own PC. Both only translate:
+what they receive becomes a ``UnitCommand`` for ``CommandArbiter.submit``, and what they show comes
+from the unit's status. A further interface needs no change outside its own folder except a
+``Source`` of its own and its start in the daemon.
+"""

@@ -1,17 +1,15 @@
-"""The line's commands on the state machine, and how each of them ends."""
+"""Gives commands to the state machine and reports how each of them ends."""
 
 from collections.abc import Callable
 
+from cellctl.command.submission import Submission
+from cellctl.command.validator import validate_in_new_mode
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
-from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
-from cellctl.packml.requests import judge_command, judge_mode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.packml.unit_command import UnitCommand
-
-Finish = Callable[[int, Result], object]
+from cellctl.packml.unit_command import Source
 
 _GOAL = {
     Command.RESET: State.IDLE,
@@ -26,68 +24,65 @@ _GOAL = {
     Command.COMPLETE: State.COMPLETED,
 }
 _ENDS = {State.STOPPED: Result.STOPPED, State.ABORTED: Result.ABORTED, State.COMPLETED: Result.BAD}
-"""Where every command ends, though it may have wanted to go elsewhere."""
+"""States that end every command, also one with another goal."""
 
 
-class LineCoupling:
-    """Obeys one command at a time and reports its end.
+class CommandTracker:
+    """Follows one command of each source to its end.
 
-    A command ends when the unit reaches its goal, or Stopped, Aborted or Completed instead. Start
-    and Complete end with the result of the run.
+    A command ends when the unit reaches the command's goal, or Stopped, Aborted or Completed
+    instead. Start and Complete end with the result of the run. A later command of the same source
+    takes the place of an earlier one, whose end is then not reported; a command of another source
+    may end it, but does not take its place.
     """
 
-    def __init__(
-        self, machine: PackMLMachine, finish: Finish, run_result: Callable[[], Result]
-    ) -> None:
-        """``finish`` is ``PlcPort.finish``; ``run_result`` is asked in Completed."""
+    def __init__(self, machine: PackMLMachine, run_result: Callable[[], Result]) -> None:
+        """``run_result``: result of the last run; asked for in Completed."""
         self._machine = machine
-        self._finish = finish
         self._run_result = run_result
-        self._pursued: tuple[int, Command] | None = None
+        self._pursued: dict[Source, Submission] = {}
         machine.on_change.append(self._changed)
 
-    async def obey(self, command: UnitCommand) -> RejectCode:
-        """Change the mode if asked, then command the unit. Stop and Abort change no mode.
+    async def execute(self, submission: Submission) -> RejectCode:
+        """Change the mode if asked, then command the unit; Stop and Abort change no mode.
 
-        A mode that is set already counts as reached. A command of the terminal may end one of the
-        line, and takes the place of none.
+        A mode that is set already counts as reached.
         """
-        machine = self._machine
-        changes_mode = command.unit_mode not in (0, machine.mode) and not command.ends_motion
-        if changes_mode:
-            code = self._refused_in_new_mode(command) or await machine.set_mode(command.unit_mode)
+        command, machine = submission.command, self._machine
+        if command.unit_mode not in (0, machine.mode) and not command.ends_motion:
+            code = validate_in_new_mode(command, machine.state)
+            code = code or await machine.set_mode(command.unit_mode)
             if code is not RejectCode.NONE:
                 return code
         if command.cntrl_cmd == Command.UNDEFINED and (command.unit_mode or command.alarm_ack_id):
-            self._finish(command.seq, Result.GOOD)
+            submission.ended(Result.GOOD)  # the mode is set, or the alarm was acknowledged before
             return RejectCode.NONE
-        if command.local:
-            return await machine.command(command.cntrl_cmd)
-        before, self._pursued = self._pursued, None
-        if command.cntrl_cmd in _GOAL:
-            self._pursued = command.seq, Command(command.cntrl_cmd)
-        code = await machine.command(command.cntrl_cmd)
+        return await self._command(submission)
+
+    async def _command(self, submission: Submission) -> RejectCode:
+        number, source = submission.command.cntrl_cmd, submission.command.source
+        # Pursued before the machine is commanded: it may reach the goal before it returns.
+        before = self._pursued.pop(source, None)
+        if number in _GOAL:
+            self._pursued[source] = submission
+        code = await self._machine.command(number)
         if code is not RejectCode.NONE:
-            self._pursued = before
+            self._pursued.pop(source, None)
+            if before is not None:
+                self._pursued[source] = before
         return code
 
-    def _refused_in_new_mode(self, command: UnitCommand) -> RejectCode:
-        """A command that is refused leaves the mode as it was, too."""
-        state = self._machine.state
-        if command.cntrl_cmd == Command.UNDEFINED or judge_mode(state, command.unit_mode):
-            return RejectCode.NONE
-        return judge_command(state, Mode(command.unit_mode), command.cntrl_cmd)
-
     def _changed(self, before: State, after: State) -> None:
-        if self._pursued is None or before is after:
+        if before is after:
             return
-        seq, command = self._pursued
-        if after is _GOAL[command]:
-            reached = after is State.COMPLETED
-            result = self._run_result() if reached else Result.GOOD
-        elif after in _ENDS:
-            result = _ENDS[after]
-        else:
-            return
-        self._pursued = None
-        self._finish(seq, result)
+        for source, submission in tuple(self._pursued.items()):
+            result = self._result(Command(submission.command.cntrl_cmd), after)
+            if result is not Result.NONE:
+                del self._pursued[source]
+                submission.ended(result)
+
+    def _result(self, command: Command, state: State) -> Result:
+        """How a command has ended when the unit arrives in this state; NONE when it has not."""
+        if state is not _GOAL[command]:
+            return _ENDS.get(state, Result.NONE)
+        return self._run_result() if state is State.COMPLETED else Result.GOOD

@@ -13,10 +13,13 @@ from typing import Any
 
 from cellctl import log
 from cellctl.api.local.api import local_server
-from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.interface import PlcInterface
+from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
-from cellctl.command.arbiter import Line
+from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
+from cellctl.config.cell import Plc
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.errors import CellError
@@ -53,22 +56,40 @@ async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | No
         unit = UnitController(cell, archive)
         stack.push_async_callback(unit.background.drain)
         await unit.open()
-        line = Line(unit, archive)
-        previous_seq = await archive.do(RunStore.line_seq)
-        port = PlcPort(config.plc, line, unit.line_lost, previous_seq=previous_seq)
-        line.attach(port)
-        stack.push_async_callback(port.stop)
-        await port.start()  # first of all: a second daemon must not take over the robots
-        local = local_server(cell, unit, line, archive, data_dir)
+        arbiter, plc = await _command_path(config.plc, unit, archive)
+        publisher = StatusPublisher(unit, plc.publish)
+        stack.push_async_callback(plc.stop)
+        await plc.start()  # first of all: a second daemon must not take over the robots
+        local = local_server(cell, unit, arbiter, archive, data_dir)
         stack.push_async_callback(local.stop)
         await local.start()
         stack.push_async_callback(cell.disconnect)
         stack.push_async_exit(partial(_end, unit))
-        await until_told(stop, _work(cell, unit, line, port))
+        await until_told(stop, _work(cell, unit, plc, publisher))
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")
     return 0
+
+
+async def _command_path(
+    config: Plc, unit: UnitController, archive: AsyncRunStore
+) -> tuple[CommandArbiter, PlcInterface]:
+    """The arbiter of all commands and the interface to the line PLC, which is not yet listening.
+
+    They share the line's heartbeat: the interface feeds it, and the arbiter asks it whether the
+    line is in control.
+    """
+    heartbeat = HeartbeatWatch(config.heartbeat_timeout_s, unit.line_lost)
+    arbiter = CommandArbiter(unit, archive, line_alive=lambda: heartbeat.alive)
+    plc = PlcInterface(
+        config,
+        arbiter.submit,
+        heartbeat,
+        lambda seq: archive.do(RunStore.note_line_seq, seq),
+        previous_seq=await archive.do(RunStore.line_seq),
+    )
+    return arbiter, plc
 
 
 async def until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
@@ -99,25 +120,27 @@ async def _end(
     await unit.close(error if isinstance(error, CellError) else None)
 
 
-async def _work(cell: Cell, unit: UnitController, line: Line, port: PlcPort) -> None:
+async def _work(
+    cell: Cell, unit: UnitController, plc: PlcInterface, publisher: StatusPublisher
+) -> None:
     """Everything that goes on until the end, with the devices or without."""
     async with asyncio.TaskGroup() as tasks:
-        tasks.create_task(supervise(cell, unit, line, port))
+        tasks.create_task(supervise(cell, unit, plc, publisher))
         await unit.come_up()
         notify("READY=1")
         if not unit.live:
-            _tell(cell, port, ready=False, error=str(unit.machine.fault or "aborted"))
+            _tell(cell, plc, ready=False, error=str(unit.machine.fault or "aborted"))
             await unit.until_live()
-        _tell(cell, port, ready=True)
+        _tell(cell, plc, ready=True)
 
 
-def _tell(cell: Cell, port: PlcPort, **how: bool | str) -> None:
+def _tell(cell: Cell, plc: PlcInterface, **how: bool | str) -> None:
     """Systemd, the log, and whoever started the daemon."""
     name = cell.config.name
     status = "ready" if how["ready"] else f"waits for Clear: {how['error']}"
-    _log.info(status, cell=name, modbus_port=port.port)
-    notify(f"STATUS={status}, Modbus TCP on port {port.port}")
-    json.dump({**how, "cell": name, "modbus_port": port.port}, sys.stdout)
+    _log.info(status, cell=name, modbus_port=plc.port)
+    notify(f"STATUS={status}, Modbus TCP on port {plc.port}")
+    json.dump({**how, "cell": name, "modbus_port": plc.port}, sys.stdout)
     print(flush=True)
 
 

@@ -3,9 +3,9 @@
 import asyncio
 from functools import partial
 
-from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.interface import PlcInterface
+from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
-from cellctl.command.arbiter import Line
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.notify import Watchdog
 from cellctl.errors import CellError
@@ -17,26 +17,28 @@ LINK_PERIOD_S = 0.25
 ASK_PERIOD_S = 2.0
 
 
-async def supervise(cell: Cell, unit: UnitController, line: Line, port: PlcPort) -> None:
+async def supervise(
+    cell: Cell, unit: UnitController, plc: PlcInterface, publisher: StatusPublisher
+) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
-    beat = partial(_beat, port, Watchdog())
+    beat = partial(_beat, plc, Watchdog())
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(unit.machine.beat_while_alive(beat))
-        tasks.create_task(port.failed())
-        tasks.create_task(_publish(line))
+        tasks.create_task(plc.failed())
+        tasks.create_task(_publish(publisher))
         tasks.create_task(_watch_links(cell, unit))
         tasks.create_task(_poll_devices(cell, unit))
 
 
-def _beat(port: PlcPort, watchdog: Watchdog) -> None:
+def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:
     """The machine has taken a turn: it lives, so does the daemon for systemd."""
-    port.beat()
+    plc.beat()
     watchdog.feed()
 
 
-async def _publish(line: Line) -> None:
+async def _publish(publisher: StatusPublisher) -> None:
     while True:
-        line.publish()
+        publisher.publish()
         await asyncio.sleep(PUBLISH_PERIOD_S)
 
 

@@ -1,4 +1,4 @@
-"""What runs while the unit is in a state: one task, started on entry, cancelled on leaving."""
+"""The coroutine of the present state: one task, started on entry and cancelled on leaving."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Mapping
@@ -49,6 +49,8 @@ class Activities:
         task, self._task = self._task, None
         if task is not None and not task.done():
             if previous is State.EXECUTE and state in _PAUSE:
+                # Execute waits in ``resumed`` at a safe point. It keeps its local variables, so
+                # that it can go on where it was.
                 self._parked = task
                 self._resumed.clear()
             else:
@@ -58,6 +60,7 @@ class Activities:
             self._resumed.set()
             return
         if self._parked is not None and state not in _PAUSED:
+            # Stop, Abort or Complete while it was held: it will never go on.
             self._leave(self._parked)
             self._parked = None
         if state in WHEN_DONE:
@@ -87,6 +90,8 @@ class Activities:
 
     async def _run(self, state: State) -> None:
         settle = partial(self._settle, tuple(self._leaving))
+        # What was left may still be stopping its robots. Two coroutines must not command the same
+        # device, so the new one waits; Aborting must not wait, and stopping twice does no harm.
         if state is not State.ABORTING:
             await settle()
         try:

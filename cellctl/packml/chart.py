@@ -1,55 +1,42 @@
-"""The tables as a `transitions` machine: it alone holds and changes the state."""
+"""The two tables as a `transitions` machine, which alone holds and changes the state."""
 
-from typing import Any
-
-from transitions.extensions.asyncio import AsyncMachine
+from transitions import Machine
 
 from cellctl.packml.command import Command
 from cellctl.packml.state import STATES, State
 from cellctl.packml.tables import ON_COMMAND, WHEN_DONE
 
-_DONE = "done"
-
-
-class _Unit:
-    """The model that `transitions` writes the state to."""
-
-    state: Any
+_STATE_COMPLETE = "STATE_COMPLETE"
 
 
 class StateChart:
-    """Fires events; knows nothing of what the states do.
+    """Changes the state; knows nothing of what the states do.
 
-    The queue of `transitions` answers True for every queued event, so the caller asks for the
-    state afterwards; ``PackMLMachine`` lets one event through at a time.
+    It decides nothing either. Whether a command is legal has been decided before, with its reject
+    code (``packml.validation``). An event that the tables do not know is therefore a defect of the
+    caller, and `transitions` raises its ``MachineError`` instead of ignoring the event.
     """
 
+    state: State
+    """The present state; written by `transitions`."""
+
     def __init__(self, initial: State) -> None:
-        self._unit: Any = _Unit()
-        self._machine = AsyncMachine(
-            model=self._unit,
-            states=[state.name for state in STATES],
-            transitions=[
-                *([c.name, source.name, target.name] for (source, c), target in ON_COMMAND.items()),
-                *([_DONE, source.name, target.name] for source, target in WHEN_DONE.items()),
-            ],
-            initial=initial.name,
-            queued=True,
-            auto_transitions=False,
-            ignore_invalid_triggers=True,
+        # The synchronous machine is enough: no callback hangs on a transition, so there is nothing
+        # to wait for, and no other task can ever see a state that is half changed.
+        self._machine = Machine(
+            model=self, states=list(STATES), initial=initial, auto_transitions=False
         )
+        for (source, command), target in ON_COMMAND.items():
+            self._machine.add_transition(command.name, source, target)
+        for source, target in WHEN_DONE.items():
+            self._machine.add_transition(_STATE_COMPLETE, source, target)
 
-    @property
-    def state(self) -> State:
-        """The present state."""
-        return State[self._unit.state]
-
-    async def command(self, command: Command) -> State:
-        """Fire a command; the state afterwards, unchanged if the tables do not know it."""
-        await self._unit.trigger(command.name)
+    def command(self, command: Command) -> State:
+        """Fire a command that is legal in the present state; the state afterwards."""
+        self._machine.dispatch(command.name)
         return self.state
 
-    async def done(self) -> State:
+    def complete(self) -> State:
         """Fire state complete; the state afterwards."""
-        await self._unit.trigger(_DONE)
+        self._machine.dispatch(_STATE_COMPLETE)
         return self.state

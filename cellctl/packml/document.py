@@ -19,12 +19,12 @@ file are the whole machine: `transitions` is built from them, and nothing else c
 
 - Entering an acting state or Execute starts its coroutine; leaving cancels it. The next state
   begins when the cancelled coroutine has cleaned up; only Aborting acts at once and waits later.
-- Hold and Suspend in Execute are noted and obeyed at the next safe point of the step. Execute is
+- Hold and Suspend in Execute are noted and executed at the next safe point of the step. Execute is
   then parked, not cancelled: after Unhold it goes on and is told that it was held.
 - A numbered fault leads by its reaction to Holding, Stopping or Aborting; where the present state
   does not allow that, to the next stronger one. Any other exception aborts. Faults latch; the
   command that leaves Held, Stopped or Aborted (Unhold, Reset, Clear) releases them.
-- A command is judged when it arrives and again when its turn comes.
+- A command is validated when it arrives and again when its turn comes.
 - After a start of the daemon the unit is Stopped or Aborted, whatever it was before.
 """
 

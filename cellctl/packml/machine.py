@@ -1,4 +1,4 @@
-"""The unit: takes commands and faults one at a time and moves from state to state."""
+"""The PackML state machine of the unit: one command or fault at a time changes its state."""
 
 import asyncio
 from collections import deque
@@ -12,9 +12,9 @@ from cellctl.packml.chart import StateChart
 from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
-from cellctl.packml.requests import Refusal, judge_command, judge_mode
 from cellctl.packml.state import State
 from cellctl.packml.tables import ON_COMMAND, requested
+from cellctl.packml.validation import Refusal, validate_command, validate_mode
 
 Gate = Callable[[State, Command], RejectCode]
 
@@ -98,19 +98,24 @@ class PackMLMachine:
         """All latched faults, oldest first."""
         return tuple(self._faults)
 
-    def judge(self, command: int) -> RejectCode:
-        """Why a command would be refused now."""
-        code = judge_command(self.state, self._mode, command)
+    def validate(self, command: int) -> RejectCode:
+        """Why a command would be refused now; NONE when it would be executed."""
+        code = validate_command(self.state, self._mode, command)
         return code or self._gate(self.state, Command(command))
 
     async def command(self, command: int) -> RejectCode:
-        """Take a command; returns once the state has changed or Hold is noted, or refuses."""
-        code = self.judge(command)
+        """Execute a command or refuse it.
+
+        Returns once the state has changed, or once Hold or Suspend is noted for the next safe
+        point of Execute.
+        """
+        code = self.validate(command)
         if code is RejectCode.NONE:
             async with self._turn:
-                code = self.judge(command)  # the state may have changed while it waited its turn
+                # Validated again: the state may have changed while the command waited its turn.
+                code = self.validate(command)
                 if code is RejectCode.NONE:
-                    await self._obey(Command(command))
+                    self._execute(Command(command))
         if code is not RejectCode.NONE:
             self._refused(f"command {command}", code)
         return code
@@ -118,7 +123,7 @@ class PackMLMachine:
     async def set_mode(self, mode: int) -> RejectCode:
         """Change the unit mode, in Stopped, Idle or Aborted only."""
         async with self._turn:
-            code = judge_mode(self.state, mode)
+            code = validate_mode(self.state, mode)
             if code is RejectCode.NONE:
                 self._mode = Mode(mode)
                 self._announce()
@@ -137,7 +142,7 @@ class PackMLMachine:
             async with self._turn:
                 if self._pause is None or self.state is not State.EXECUTE:
                     continue
-                await self._fire(self._pause)
+                self._fire(self._pause)
             await self._activities.resumed()
             paused = True
         return paused
@@ -159,7 +164,7 @@ class PackMLMachine:
                 self._report(error)  # nothing moves that it could end
                 return
             self._latch(error)
-            await self._fire(command)
+            self._fire(command)
 
     async def wait_for(self, *states: State, timeout_s: float | None = None) -> State:
         """Wait until the unit is in one of the states; raises ``TimeoutError``.
@@ -185,20 +190,22 @@ class PackMLMachine:
             reaction.cancel()
         await asyncio.gather(*self._reactions, return_exceptions=True)
 
-    async def _obey(self, command: Command) -> None:
+    def _execute(self, command: Command) -> None:
         if command in _RELEASES_FAULTS:
             self._faults.clear()
         if self.state is State.EXECUTE and command in _PAUSE_COMMANDS:
+            # Execute pauses only where the step says that it is safe. A pending Hold, whose cause
+            # lies in this cell, is not replaced by a later Suspend, whose cause lies in the line.
             if self._pause is not Command.HOLD:
                 self._pause = command
             self._announce()
         else:
-            await self._fire(command)
+            self._fire(command)
 
-    async def _fire(self, command: Command | None) -> None:
+    def _fire(self, command: Command | None) -> None:
         """Change the state by a command, or by state complete; holds the turn."""
         previous = self.state
-        state = await (self._chart.done() if command is None else self._chart.command(command))
+        state = self._chart.complete() if command is None else self._chart.command(command)
         if state is not State.EXECUTE and state not in _BEFORE_EXECUTE:
             self._pause = None
         self._activities.follow(previous, state)
@@ -213,17 +220,19 @@ class PackMLMachine:
         """The coroutine of a state has ended: go on, unless a command was quicker."""
         async with self._turn:
             if not self._activities.is_current(task):
+                # The state has been left already. A fault in the clean-up must not be lost, but the
+                # state that came after has its own reaction to whatever ended this one.
                 if isinstance(error, Exception):
                     self._latch(self._fault(error))
                 return
             command = None if error is None else self._reaction_to(error)
-            await self._fire(command)
+            self._fire(command)
 
     def _reaction_to(self, error: BaseException) -> Command | None:
         fault = self._fault(error)
         self._latch(fault)
         if self.state is State.ABORTING:
-            return None  # there is no state beyond; Aborted with the fault latched
+            return None  # nothing is stronger than Aborting: it ends in Aborted, fault latched
         allowed = (c for c in _LEADS_TO[fault.reaction] if (self.state, c) in ON_COMMAND)
         return next(allowed)
 

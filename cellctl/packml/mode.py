@@ -4,11 +4,11 @@ from enum import IntEnum
 
 
 class Mode(IntEnum):
-    """4 to 31 would be free for own modes; this cell has none."""
+    """The standard leaves 4 to 31 to the manufacturer; this unit has none of its own."""
 
     INVALID = 0
     PRODUCTION = 1
-    """Assembly."""
+    """A process runs on a part."""
     MAINTENANCE = 2
     """Calibration, identification, verification: the recipe number selects the procedure."""
     MANUAL = 3

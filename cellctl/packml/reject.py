@@ -1,4 +1,4 @@
-"""Why a request was refused: the number in the PLC's `reject_code` and the operator's words."""
+"""Why a command was refused: the number in the PLC's `reject_code` and words for the operator."""
 
 from enum import IntEnum
 

@@ -1,10 +1,10 @@
-"""How a command of the line ended: the number in `result`."""
+"""How a command ended: the number that the line PLC reads in `result`."""
 
 from enum import IntEnum
 
 
 class Result(IntEnum):
-    """Belongs to ``done_seq``."""
+    """Belongs to the command with the number ``done_seq``."""
 
     NONE = 0
     """Not ended."""

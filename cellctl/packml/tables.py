@@ -1,4 +1,4 @@
-"""The whole machine: which command leads where, and where a finished state leads.
+"""The whole machine as data: where each command leads, and where each finished state leads.
 
 ISA-TR88.00.02, 2022 edition, with its default masks. Nothing else in cellctl decides about states;
 `docs/state-machine.md` is generated from here.

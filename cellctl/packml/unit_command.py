@@ -1,71 +1,82 @@
-"""A command to the unit, in the one form in which the line and an operator's terminal give it."""
+"""One command to the unit, in the same form whoever gives it."""
 
-import re
 from dataclasses import dataclass, field
+from enum import IntFlag, StrEnum
 
 from cellctl.clock import now_s
 from cellctl.packml.command import Command
-from cellctl.packml.reject import RejectCode
 
-_CHARSET = re.compile(r"[A-Z0-9._-]*")
-DRY_RUN, SINGLE_STEP = 0b01, 0b10
-"""Bits of the options."""
+
+class Source(StrEnum):
+    """Through which interface a command arrives. A further API adds one member here."""
+
+    LINE = "line"
+    """The line PLC. It alone commands motion while it is alive and the unit is in Production."""
+    TERMINAL = "terminal"
+    """An operator at the cell's own PC."""
+
+
+class Options(IntFlag):
+    """How a part is made. Bits that are not named here are kept, so that they can be refused."""
+
+    NONE = 0
+    DRY_RUN = 0b01
+    SINGLE_STEP = 0b10
+
+
+KNOWN_OPTIONS = Options.DRY_RUN | Options.SINGLE_STEP
 
 
 @dataclass(frozen=True, slots=True)
 class UnitCommand:
-    """What the PLC asked for, as it stood when it was committed. Numbers are not yet judged.
+    """What somebody asks of the unit. Nothing in it has been validated yet.
 
-    An operator at the cell's terminal asks in the same form, without a number.
+    Mode, command, recipe and options are plain numbers for that reason: an unknown number has to
+    reach the validator, which refuses it with its code. 0 (or an empty text) means "not asked for".
     """
 
-    seq: int
-    unit_mode: int
-    cntrl_cmd: int
-    recipe_id: int
-    options: int
-    serial: str
-    order: str
-    alarm_ack_id: int
-    by: str = ""
-    """Who asks at the terminal; empty for the line."""
+    source: Source
+    person: str = ""
+    """Who asks, as the interface knows them; empty for the line PLC, which knows no persons."""
+    cntrl_cmd: int = Command.UNDEFINED
+    """Number of a ``Command``: CntrlCmd of the PackTags."""
+    unit_mode: int = 0
+    """Number of the ``Mode`` that is asked for; 0 leaves the mode as it is."""
+    recipe_id: int = 0
+    """Recipe in Production, procedure in Maintenance."""
+    options: Options = Options.NONE
+    serial: str = ""
+    """Serial number of the part."""
+    order: str = ""
+    """Operator or order, as the line names it."""
+    alarm_ack_id: int = 0
+    """Fault number of the alarm to acknowledge."""
     arrived_s: float = field(default_factory=now_s, compare=False)
-    """Monotonic."""
-
-    @property
-    def local(self) -> bool:
-        """True for a command of the terminal."""
-        return bool(self.by)
+    """Monotonic time in seconds at which the command was given."""
 
     @property
     def who(self) -> str:
-        """Who asks, for the audit log."""
-        return self.by or self.order or "line"
+        """Who asks, for the audit log; never empty."""
+        if self.source is Source.LINE:
+            return self.order or "line"
+        return f"{self.source}:{self.person}"
+
+    @property
+    def operator(self) -> str:
+        """Who or what is recorded with a run; empty when the line names nobody."""
+        return self.order or ("" if self.source is Source.LINE else self.who)
 
     @property
     def dry_run(self) -> bool:
-        """Option bit 0."""
-        return bool(self.options & DRY_RUN)
+        """Whether the part is only measured and corrected, never mated."""
+        return bool(self.options & Options.DRY_RUN)
 
     @property
     def single_step(self) -> bool:
-        """Option bit 1."""
-        return bool(self.options & SINGLE_STEP)
+        """Whether the unit is held after each step."""
+        return bool(self.options & Options.SINGLE_STEP)
 
     @property
     def ends_motion(self) -> bool:
-        """Stop and Abort are taken whatever else is wrong."""
+        """True for Stop and Abort, which are executed whatever else is wrong with the command."""
         return self.cntrl_cmd in (Command.STOP, Command.ABORT)
-
-    def judge(self) -> RejectCode:
-        """What is wrong with the parameters in themselves."""
-        if self.ends_motion:
-            return RejectCode.NONE
-        starts = self.cntrl_cmd == Command.START
-        if not _CHARSET.fullmatch(self.serial) or (starts and not self.serial):
-            return RejectCode.SERIAL_INVALID
-        if not _CHARSET.fullmatch(self.order):
-            return RejectCode.ORDER_INVALID
-        if self.options & ~(DRY_RUN | SINGLE_STEP):
-            return RejectCode.OPTIONS_UNKNOWN
-        return RejectCode.NONE

@@ -84,7 +84,7 @@ class JobRecord:
             config_hash=made_with.cell_hash,
             calibration_ids={one.kind: one.id for one in stored},
             simulated=cell.config.simulated,
-            operator=command.order or command.by,
+            operator=command.operator,
         )
         for artefact in made_with.artefacts():
             await self.store.do(RunStore.add_artefact, self.number, *artefact)

@@ -71,7 +71,7 @@ class StatusView:
 
     def _may_start(self) -> bool:
         machine = self._machine
-        taken = machine.judge(Command.START) is RejectCode.NONE
+        taken = machine.validate(Command.START) is RejectCode.NONE
         return taken and self._jobs.ready(machine.mode)
 
     def _any_manual(self) -> bool:

@@ -1,22 +1,25 @@
 """The daemon's unit and line around a cell in memory; only vision and contact are stood in for."""
 
 import asyncio
+import importlib
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
-from cellctl.api.modbus.interface import PlcPort
-from cellctl.command.arbiter import Line
+from cellctl.api.modbus.publisher import StatusPublisher
+from cellctl.command.arbiter import DISK_TIMEOUT_S, CommandArbiter
+from cellctl.command.submission import Submission
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.packml.unit_command import Source, UnitCommand
 from cellctl.processes.deck_to_frame import beginning
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry
-from cellctl.processes.deck_to_frame.steps import mate_deck
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunHead, RunRecord
 from cellctl.records.store import RunStore
@@ -26,6 +29,7 @@ from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
 WAIT_S = 10.0
+BY_ANNA: dict[str, Any] = {"source": Source.TERMINAL, "person": "anna"}
 
 
 class PaperPort:
@@ -40,12 +44,26 @@ class PaperPort:
     def publish(self, status: CellStatus) -> None:
         self.status = status
 
-    def finish(self, seq: int, result: Result) -> bool:
-        self.ended[seq] = result
-        return True
-
     def beat(self) -> None:
         self.beats += 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RigSubmission(Submission):
+    """A command of the line with its number; the line's heartbeat is not asked for."""
+
+    seq: int
+    rig: "DaemonRig"
+
+    @property
+    def reference(self) -> dict[str, int]:
+        return {"seq": self.seq}
+
+    async def remember(self) -> None:
+        await self.rig.archive.do(RunStore.note_line_seq, self.seq)
+
+    def ended(self, result: Result) -> None:
+        self.rig.port.ended[self.seq] = result
 
 
 class Contact:
@@ -73,7 +91,7 @@ class Contact:
 
 
 class DaemonRig:
-    """UnitController, line and archive."""
+    """Unit, arbiter and archive."""
 
     def __init__(self, bench: Bench, store: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self.bench = bench
@@ -81,7 +99,8 @@ class DaemonRig:
         self.measurers: list[TruthMeasurer] = []
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"
         monkeypatch.setattr(beginning, "PartMeasurer", self._measurer)
-        monkeypatch.setattr(mate_deck, "mate_until_seated", self.contact)
+        module = importlib.import_module("cellctl.processes.deck_to_frame.steps.mate_deck")
+        monkeypatch.setattr(module, "mate_until_seated", self.contact)
         self._store = store
         self._seq = 0
 
@@ -89,13 +108,22 @@ class DaemonRig:
         """As a daemon starts on this store."""
         self.archive = AsyncRunStore(self._store)
         self.unit = UnitController(self.bench.as_cell, self.archive)
-        self.line = Line(self.unit, self.archive)
         self.port = PaperPort()
-        self.line.attach(cast(PlcPort, self.port))
+        self.arbitrate()
+        self.publisher = StatusPublisher(self.unit, self.port.publish)
         await self.unit.open()
         await self.unit.come_up()
         self.states: list[State] = []
         self.unit.machine.on_change.append(self._changed)
+
+    def arbitrate(self, disk_timeout_s: float = DISK_TIMEOUT_S) -> None:
+        """Submit to a new arbiter from now on."""
+        self.arbiter = CommandArbiter(
+            self.unit,
+            self.archive,
+            line_alive=lambda: self.port.line_alive,
+            disk_timeout_s=disk_timeout_s,
+        )
 
     async def close(self) -> None:
         await self.unit.close()
@@ -107,14 +135,20 @@ class DaemonRig:
 
     async def take(self, command: Command, **fields: Any) -> RejectCode:
         """A command of the line with the next number."""
-        self._seq += 1
         fields = {"recipe_id": 1, "unit_mode": 0} | fields
-        return await self.line.take(start_command(self._seq, cntrl_cmd=command, **fields))
+        return await self.submit(start_command(cntrl_cmd=command, **fields))
 
-    async def ask(self, command: Command, by: str = "terminal:anna", **fields: Any) -> RejectCode:
-        """A command of the terminal."""
-        fields = {"recipe_id": 1, "unit_mode": 0} | fields
-        return await self.line.take(start_command(0, cntrl_cmd=command, by=by, **fields))
+    async def ask(self, command: Command, **fields: Any) -> RejectCode:
+        """A command of Anna at the terminal."""
+        fields = {"recipe_id": 1, "unit_mode": 0} | BY_ANNA | fields
+        return await self.submit(start_command(cntrl_cmd=command, **fields))
+
+    async def submit(self, command: UnitCommand) -> RejectCode:
+        """Any command; one of the line gets the next number."""
+        if command.source is not Source.LINE:
+            return await self.arbiter.submit(Submission(command))
+        self._seq += 1
+        return await self.arbiter.submit(RigSubmission(command, self._seq, self))
 
     async def to(self, *states: State) -> State:
         return await self.unit.machine.wait_for(*states, timeout_s=WAIT_S)
@@ -148,7 +182,7 @@ class DaemonRig:
         return await self.archive.do(RunStore.run, number)
 
     def shown(self) -> CellStatus:
-        self.line.publish()
+        self.publisher.publish()
         return self.port.status
 
     def _measurer(self, cell: object, geometry: HeadGeometry, method: str) -> TruthMeasurer:

@@ -8,8 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.api.modbus.interface import PlcPort
-from cellctl.command.tracker import LineCoupling
+from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.interface import PlcInterface
+from cellctl.command.submission import Submission
+from cellctl.command.tracker import CommandTracker
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError, Reaction
 from cellctl.packml import PackMLMachine, RejectCode, State
@@ -32,18 +34,24 @@ class FakelessCell:
     def __init__(self, execute: Action, result: Result, initial: State = State.ABORTED) -> None:
         self.machine = PackMLMachine({State.EXECUTE: execute}, initial=initial)
         self.commands: list[UnitCommand] = []
-        self.port = PlcPort(Plc(port=0), self, lambda: None, previous_seq=1)
-        self.coupling = LineCoupling(self.machine, self.port.finish, lambda: result)
+        heartbeat = HeartbeatWatch(Plc().heartbeat_timeout_s, lambda: None)
+        self.port = PlcInterface(Plc(port=0), self.submit, heartbeat, self.remember, previous_seq=1)
+        self.tracker = CommandTracker(self.machine, lambda: result)
         self.machine.on_change.append(lambda _before, _after: self.publish())
         self.status = CellStatus()
         self.beat: asyncio.Task[None] | None = None
 
-    async def judge(self, _command: UnitCommand) -> RejectCode:
-        return RejectCode.NONE
+    async def submit(self, submission: Submission) -> RejectCode:
+        """As the arbiter does, with checks that refuse only what a dead line may not do."""
+        if not submission.command.ends_motion:
+            code = submission.link_fault()
+            if code is not RejectCode.NONE:
+                return code
+        self.commands.append(submission.command)
+        return await self.tracker.execute(submission)
 
-    async def obey(self, command: UnitCommand) -> RejectCode:
-        self.commands.append(command)
-        return await self.coupling.obey(command)
+    async def remember(self, seq: int) -> None:
+        """The number is on the disk."""
 
     def publish(self) -> None:
         machine = self.machine

@@ -6,14 +6,16 @@ from collections.abc import AsyncIterator, Callable
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from cellctl.api.modbus.interface import PlcPort
-from cellctl.command.tracker import LineCoupling
+from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.interface import PlcInterface
+from cellctl.api.modbus.submission import LineSubmission
+from cellctl.command.submission import Submission
+from cellctl.command.tracker import CommandTracker
 from cellctl.config.cell import Plc
 from cellctl.errors.line import LineTaskDied
 from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
-from cellctl.packml.unit_command import UnitCommand
 from cellctl.runtime.cell_status import CellStatus
 
 ACK, DONE, RESULT, REJECT, HEARTBEAT, STATUS, STATE = 7, 8, 9, 10, 11, 5, 2
@@ -21,37 +23,57 @@ LOST = 1 << 5
 
 
 class Line:
-    """A port with a recording handler, and a client."""
+    """The interface with a recording stand-in for the arbiter, and a client."""
 
     def __init__(self) -> None:
-        self.commands: list[UnitCommand] = []
-        """As they were obeyed."""
-        self.answer: Callable[[UnitCommand], RejectCode] = lambda _command: RejectCode.NONE
+        self.commands: list[LineSubmission] = []
+        """As they were executed."""
+        self.answer: Callable[[LineSubmission], RejectCode] = lambda _submission: RejectCode.NONE
         self.disk = asyncio.Event()
         self.disk.set()
         self.lost = asyncio.Event()
-        self.ports: list[PlcPort] = []
+        self.ports: list[PlcInterface] = []
         self.clients: list[AsyncModbusTcpClient] = []
         self.beat = 0
 
-    async def judge(self, command: UnitCommand) -> RejectCode:
-        await self.disk.wait()
-        return RejectCode.NONE
+    async def submit(self, submission: Submission) -> RejectCode:
+        """As the arbiter does: Stop and Abort are not validated."""
+        assert isinstance(submission, LineSubmission)
+        if not submission.command.ends_motion:
+            code = await submission.unless_overtaken(self.validate(submission))
+            if code is not RejectCode.NONE:
+                return code
+        return await self.execute(submission)
 
-    async def obey(self, command: UnitCommand) -> RejectCode:
-        self.commands.append(command)
-        return self.answer(command)
+    async def validate(self, submission: LineSubmission) -> RejectCode:
+        code = submission.link_fault()
+        if code is RejectCode.NONE:
+            await self.disk.wait()
+        return code
+
+    async def execute(self, submission: LineSubmission) -> RejectCode:
+        self.commands.append(submission)
+        return self.answer(submission)
+
+    async def remember(self, seq: int) -> None:
+        """The number is on the disk."""
+
+    def interface(self, config: Plc, previous_seq: int | None = None) -> PlcInterface:
+        heartbeat = HeartbeatWatch(config.heartbeat_timeout_s, self.lost.set)
+        return PlcInterface(
+            config, self.submit, heartbeat, self.remember, previous_seq=previous_seq
+        )
 
     async def open(
         self, *, previous_seq: int | None = None, timeout_s: float = 5.0
-    ) -> tuple[PlcPort, AsyncModbusTcpClient]:
+    ) -> tuple[PlcInterface, AsyncModbusTcpClient]:
         config = Plc(port=0, heartbeat_timeout_s=timeout_s)
-        port = PlcPort(config, self, self.lost.set, previous_seq=previous_seq)
+        port = self.interface(config, previous_seq)
         await port.start()
         self.ports.append(port)
         return port, await self.connect(port)
 
-    async def connect(self, port: PlcPort) -> AsyncModbusTcpClient:
+    async def connect(self, port: PlcInterface) -> AsyncModbusTcpClient:
         client = AsyncModbusTcpClient("127.0.0.1", port=port.port, timeout=2, retries=0)
         assert await client.connect()
         self.clients.append(client)
@@ -103,7 +125,7 @@ async def test_a_command_is_acknowledged_and_later_done(line: Line) -> None:
     block = await until(client, lambda b: b[ACK] == 1)
     assert (block[DONE], block[RESULT], block[REJECT]) == (0, 0, 0)
     assert block[STATUS] & 0b10
-    assert line.commands[0].serial == "SAT-0042"
+    assert line.commands[0].command.serial == "SAT-0042"
     port.finish(1, Result.GOOD)
     block = await inputs(client)
     assert (block[DONE], block[RESULT]) == (1, Result.GOOD)
@@ -120,8 +142,8 @@ async def test_a_refusal_is_a_number_not_a_modbus_exception(line: Line) -> None:
 
 
 async def test_a_fault_while_deciding_refuses_and_the_next_command_is_heard(line: Line) -> None:
-    def answer(command: UnitCommand) -> RejectCode:
-        if command.seq == 1:
+    def answer(submission: LineSubmission) -> RejectCode:
+        if submission.seq == 1:
             raise ConnectTimeout("main robot")
         return RejectCode.NONE
 
@@ -144,7 +166,7 @@ async def test_nothing_old_is_executed_after_a_restart(line: Line) -> None:
     )
     await line.command(client, 8, Command.RESET)
     await until(client, lambda b: b[ACK] == 8)
-    assert [command.seq for command in line.commands] == [8]
+    assert [submission.seq for submission in line.commands] == [8]
 
 
 async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> None:
@@ -154,7 +176,7 @@ async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> No
         await until(client, lambda b, seq=seq: b[ACK] == seq)  # type: ignore[misc]
         if seq == 1:
             assert (await inputs(client))[REJECT] == RejectCode.LINE_HEARTBEAT_MISSING
-    assert [command.cntrl_cmd for command in line.commands] == [Command.STOP, Command.ABORT]
+    assert [one.command.cntrl_cmd for one in line.commands] == [Command.STOP, Command.ABORT]
 
 
 async def test_a_heartbeat_that_stands_still_is_lost_and_comes_back(line: Line) -> None:
@@ -170,7 +192,7 @@ async def test_a_heartbeat_that_stands_still_is_lost_and_comes_back(line: Line) 
 
 async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:
     port, client = await line.open()
-    port._heartbeat = 0xFFFE
+    port._beats = 0xFFFE
     seen = []
     for _ in range(3):
         port.beat()
@@ -179,7 +201,7 @@ async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:
 
 
 async def test_the_cell_does_not_beat_once_commands_are_no_longer_taken(line: Line) -> None:
-    def answer(_command: UnitCommand) -> RejectCode:
+    def answer(_submission: LineSubmission) -> RejectCode:
         raise RuntimeError("defect")
 
     line.answer = answer
@@ -212,7 +234,7 @@ async def test_blocks_are_never_torn(line: Line) -> None:
     await publishing
 
 
-async def test_commands_come_in_order_though_judging_takes_time(line: Line) -> None:
+async def test_commands_come_in_order_though_validation_takes_time(line: Line) -> None:
     _, client = await line.open()
     line.disk.clear()
     for seq in range(1, 6):
@@ -220,7 +242,7 @@ async def test_commands_come_in_order_though_judging_takes_time(line: Line) -> N
     assert line.commands == []
     line.disk.set()
     await until(client, lambda b: b[ACK] == 5)
-    assert [command.seq for command in line.commands] == [1, 2, 3, 4, 5]
+    assert [submission.seq for submission in line.commands] == [1, 2, 3, 4, 5]
 
 
 @pytest.mark.parametrize("end", [Command.STOP, Command.ABORT])
@@ -240,7 +262,7 @@ async def test_stop_and_abort_wait_for_no_command_and_nothing_older_follows(
     line.disk.set()
     await line.command(client, 4, Command.HOLD)
     await until(client, lambda b: b[ACK] == 4)
-    assert [command.seq for command in line.commands] == [3, 4]
+    assert [submission.seq for submission in line.commands] == [3, 4]
 
 
 async def test_a_flood_of_commands_drops_the_oldest_with_an_answer_but_no_abort(
@@ -258,10 +280,10 @@ async def test_a_flood_of_commands_drops_the_oldest_with_an_answer_but_no_abort(
     line.disk.set()
     await until(client, lambda b: b[ACK] == 41)
     assert sorted({seq for seq, _ in answers}) == list(range(1, 42))
-    assert line.commands[0].cntrl_cmd == Command.ABORT
+    assert line.commands[0].command.cntrl_cmd == Command.ABORT
 
 
-def answered(port: PlcPort) -> list[tuple[int, RejectCode]]:
+def answered(port: PlcInterface) -> list[tuple[int, RejectCode]]:
     """Every number with its answer, in order, however short it stands in the registers."""
     answers: list[tuple[int, RejectCode]] = []
     latch = port._latch
@@ -285,9 +307,8 @@ def answered(port: PlcPort) -> list[tuple[int, RejectCode]]:
 
 async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
     machine = PackMLMachine({}, initial=State.ABORTED)
-    port = PlcPort(Plc(port=0), line, line.lost.set)
-    coupling = LineCoupling(machine, port.finish, lambda: Result.GOOD)
-    line.obey = coupling.obey  # type: ignore[method-assign]
+    port = line.interface(Plc(port=0))
+    line.execute = CommandTracker(machine, lambda: Result.GOOD).execute  # type: ignore[method-assign]
     machine.on_change.append(
         lambda _before, after: port.publish(
             CellStatus(state=after, state_requested=machine.state_requested, mode=machine.mode)

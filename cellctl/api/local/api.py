@@ -7,17 +7,21 @@ from cellctl.api.local.server import LocalServer
 from cellctl.api.local.socket_file import SocketFile, default_path
 from cellctl.api.local.terminal import Terminal
 from cellctl.cell.devices import Cell
-from cellctl.command.arbiter import Line
+from cellctl.command.arbiter import CommandArbiter
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.runtime.unit import UnitController
 
 
 def local_server(
-    cell: Cell, unit: UnitController, line: Line, archive: AsyncRunStore, data_dir: Path
+    cell: Cell,
+    unit: UnitController,
+    arbiter: CommandArbiter,
+    archive: AsyncRunStore,
+    data_dir: Path,
 ) -> LocalServer:
     """Not yet listening; ``data_dir`` has the socket unless cell file or systemd say otherwise."""
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
-    reporter = Reporter(cell, unit, line, archive)
-    terminal = Terminal(cell.config, unit.machine, line, reporter)
+    reporter = Reporter(cell, unit, arbiter, archive)
+    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter)
     return LocalServer(SocketFile(path, settings.group), terminal.handle)

@@ -1,4 +1,4 @@
-"""What goes through the socket: one JSON object a line, a request and then its answer."""
+"""The messages of the local API: one JSON object a line, and one answer to each request."""
 
 from typing import Annotated, Literal, TypeVar
 
@@ -78,14 +78,14 @@ Request = StatusRequest | CommandRequest
 
 
 class Taken(Message):
-    """The command is obeyed; where it leads shows in the status."""
+    """The command is being executed; the status shows where it leads."""
 
     answer: Literal["taken"] = "taken"
     state: str
 
 
 class Refused(Message):
-    """The command is not obeyed."""
+    """The command is not executed."""
 
     answer: Literal["refused"] = "refused"
     code: int

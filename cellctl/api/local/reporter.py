@@ -1,4 +1,4 @@
-"""The cell's status in words, for operators; changes nothing and moves nothing."""
+"""Compiles the status of the cell for operators, in words; changes nothing."""
 
 import asyncio
 from datetime import datetime
@@ -8,8 +8,8 @@ from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, 
 from cellctl.calibration.files import StoredCalibration, read_calibration
 from cellctl.cell.devices import Cell
 from cellctl.clock import utc_now
-from cellctl.command.arbiter import Line
-from cellctl.command.authority import line_in_control
+from cellctl.command.arbiter import CommandArbiter
+from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError, catalogue
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
@@ -21,21 +21,21 @@ class Reporter:
     """Reads machine, devices and records; files and store in threads of their own."""
 
     def __init__(
-        self, cell: Cell, unit: UnitController, line: Line, archive: AsyncRunStore
+        self, cell: Cell, unit: UnitController, arbiter: CommandArbiter, archive: AsyncRunStore
     ) -> None:
         self._cell = cell
         self._unit = unit
-        self._line = line
+        self._arbiter = arbiter
         self._archive = archive
 
     async def report(self) -> StatusReport:
-        """Everything at this moment; what cannot be read is said, not raised."""
+        """Everything at this moment. What cannot be read is reported as such, not raised."""
         calibrations = await asyncio.to_thread(self._calibrations)
         texts, last_run, records = await self._from_store()
         unit, machine = self._unit, self._unit.machine
         shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts)
         trips = [guard.trip for guard in self._cell.guards.values() if guard.trip is not None]
-        alive = self._line.alive
+        alive = self._arbiter.line_alive
         return StatusReport(
             cell=self._cell.config.name,
             simulated=self._cell.config.simulated,

@@ -1,4 +1,4 @@
-"""The local API's wire: connections, lines, limits; knows nothing of the cell."""
+"""The connections of the local API, their lines and limits; knows nothing of the cell."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -20,7 +20,7 @@ from cellctl.errors.internal import Unexpected
 from cellctl.errors.local import MessageMalformed
 
 Handle = Callable[[Request, int], Awaitable[Answer]]
-"""Gets the request and the number of the user who asks."""
+"""Answers a request; the second argument is the number of the user who asks."""
 
 _log = log.get(__name__)
 
@@ -108,7 +108,7 @@ class LocalServer:
             return first + await reader.readuntil()
 
     async def _answer(self, line: bytes, uid: int) -> Answer:
-        """Whoever asked may vanish: what was begun is carried out all the same."""
+        """The answer to one line. A command that was begun ends even when its client is gone."""
         try:
             request = parse_request(line)
         except MessageMalformed as fault:

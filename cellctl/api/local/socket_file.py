@@ -1,4 +1,4 @@
-"""The socket in the file system: who may use it, and what becomes of a dead daemon's."""
+"""The socket in the file system: who may connect, and how the file of a dead daemon is replaced."""
 
 import os
 import shutil
@@ -19,7 +19,7 @@ def default_path(data_dir: Path) -> Path:
 
 
 class SocketFile:
-    """A listening socket that leaves nothing behind."""
+    """A listening socket that removes its file at the end."""
 
     def __init__(self, path: Path, group: str) -> None:
         """``group``: name of the group that may connect; empty for the daemon's own."""
@@ -28,7 +28,7 @@ class SocketFile:
         self._inode = 0
 
     def open(self) -> socket.socket:
-        """Listen, in place of a dead daemon's file.
+        """Listen; replaces the file that a dead daemon has left.
 
         Raises ``LocalApiInUse`` while somebody listens there, else ``CannotServeLocally``.
         """
@@ -54,7 +54,7 @@ class SocketFile:
         return listener
 
     def remove(self) -> None:
-        """Take the file away, unless it is another daemon's by now. Idempotent."""
+        """Remove the file, unless it belongs to another daemon by now. Idempotent."""
         try:
             if self._inode and self.path.stat().st_ino == self._inode:
                 self.path.unlink()

@@ -1,4 +1,4 @@
-"""Who is at the other end of a connection, as the kernel says, by name for the records."""
+"""The user at the other end of a connection: number from the kernel, name for the records."""
 
 import asyncio
 import pwd
@@ -19,7 +19,10 @@ def peer_uid(sock: socket.socket) -> int:
 
 
 class Users:
-    """Names by number. This PC's own users are known at once; a directory service may be slow."""
+    """Names of users by number.
+
+    The users of this PC are known at once; those of a directory service are looked up on demand.
+    """
 
     def __init__(self) -> None:
         self._names: dict[int, str] = {}
@@ -28,12 +31,12 @@ class Users:
             if len(rest) > 1 and rest[1].isdigit():
                 self._names.setdefault(int(rest[1]), name)
 
-    def actor(self, uid: int) -> str:
-        """For records; with the number where the name is not known."""
-        return f"terminal:{self._names.get(uid, uid)}"
+    def name(self, uid: int) -> str:
+        """The user's name as far as it is known by now; else the number."""
+        return self._names.get(uid, str(uid))
 
     async def look_up(self, uid: int) -> None:
-        """Ask for a name that is not known; gives up after a second, the number has to do then."""
+        """Look up a name that is not known; gives up after a second and leaves it unknown."""
         if uid in self._names:
             return
         try:

@@ -1,19 +1,23 @@
-"""The PLC's heartbeat: it must change. A counter that stands still, at any value, is lost."""
+"""The heartbeat of the line PLC: a counter that must change. Any constant value means lost."""
 
 import asyncio
 from collections.abc import Callable
 
 _LATE_S = 0.1
+"""A timer that fires later than this shows that the event loop itself was held up."""
 _GRACE_S = 0.25
-"""A loop that was itself held up gives beats that wait in the socket this long to be read."""
+"""After such a delay, beats that already wait in the socket get this long to be read."""
 
 
 class HeartbeatWatch:
-    """Missing until the first change, alive while it changes, lost after ``timeout_s`` without."""
+    """Missing until the first change, alive while it changes, lost after ``timeout_s`` without.
+
+    Observers of ``on_lost`` are called once at each loss and must not raise.
+    """
 
     def __init__(self, timeout_s: float, on_lost: Callable[[], None]) -> None:
         self._timeout_s = timeout_s
-        self._on_lost = on_lost
+        self.on_lost = [on_lost]
         self._value = 0
         self._timer: asyncio.TimerHandle | None = None
         self._lost = False
@@ -52,8 +56,10 @@ class HeartbeatWatch:
 
     def _expired(self, due_s: float) -> None:
         if asyncio.get_running_loop().time() - due_s > _LATE_S:
+            # The PLC is not to blame for a delay of this process.
             self._arm(_GRACE_S)
             return
         self._timer = None
         self._lost = True
-        self._on_lost()
+        for observer in self.on_lost:
+            observer()

@@ -1,4 +1,8 @@
-"""Values to registers and back."""
+"""Values to 16-bit registers and back.
+
+Modbus defines no order of the two words of a 32-bit value, and PLCs differ. So the order is a
+setting, and the map has constants with which the line's programmer can test it.
+"""
 
 import math
 import struct
@@ -52,7 +56,7 @@ def thousandths(value: float) -> int:
 
 
 def millionths(value: float) -> int:
-    """Degrees to microdegrees as i32; NaN is "undefined"."""
+    """A value in its millionth unit (degrees to microdegrees) as i32; NaN is "undefined"."""
     return _scaled(value, 1e6)
 
 
@@ -69,4 +73,6 @@ def input_block(values: Mapping[str, Value], order: WordOrder) -> tuple[int, ...
 def _scaled(value: float, factor: float) -> int:
     if math.isnan(value):
         return UNDEFINED_I32
+    # Clipped, because a value that wraps around would show the PLC a plausible wrong number. The
+    # smallest i32 stays free: it means "undefined".
     return round(max(-_I32_MAX, min(_I32_MAX, value * factor)))

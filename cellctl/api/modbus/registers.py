@@ -1,4 +1,4 @@
-"""The two blocks as a Modbus client may touch them, whatever the transport."""
+"""The two register blocks, and what a Modbus client may do to them on any transport."""
 
 from collections.abc import Callable, Sequence
 
@@ -14,9 +14,9 @@ class AddressRefused(Exception):  # an answer to the client, not a fault of the 
 
 
 class RegisterFile:
-    """Holding registers of the line and input registers of the cell.
+    """The holding registers, which the line writes, and the input registers, which the cell writes.
 
-    Reads and writes do not await, so a request is never torn by another.
+    Reads and writes do not await, so no request sees another one half done.
     """
 
     def __init__(
@@ -39,25 +39,29 @@ class RegisterFile:
         self._input = block
 
     def read_input(self, address: int, count: int) -> tuple[int, ...]:
-        """FC4. Spare registers read 0."""
+        """FC4; spare registers read 0. Raises ``AddressRefused``."""
         if address + count > INPUT_SIZE:
             raise AddressRefused
         return self._input[address : address + count]
 
     def read_holding(self, address: int, count: int) -> tuple[int, ...]:
-        """FC3."""
+        """FC3. Raises ``AddressRefused``."""
         if any(register not in _OWNER for register in range(address, address + count)):
             raise AddressRefused
         return tuple(self._holding[address : address + count])
 
     def write_holding(self, address: int, values: Sequence[int]) -> None:
-        """FC6, 16, 22, 23: all or nothing; an item is written whole or not at all."""
+        """FC6, 16, 22, 23: all or nothing; an item is written whole or not at all.
+
+        Raises ``AddressRefused``.
+        """
         written = range(address, address + len(values))
         for register in written:
             owner = _OWNER.get(register)
             if owner is None or owner[0] not in written or owner[-1] not in written:
                 raise AddressRefused
         self._holding[address : address + len(values)] = values
+        # The heartbeat first: a command in the same request must not be refused for its absence.
         if _HEARTBEAT in written:
             self._on_heartbeat(self._holding[_HEARTBEAT])
         if _COMMIT in written:

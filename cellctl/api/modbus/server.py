@@ -1,4 +1,4 @@
-"""Modbus TCP server for one or a few line PLCs, strict where stock servers are lenient.
+"""Modbus TCP server for one or a few line PLCs; stricter than the usual servers.
 
 Requests of a connection are answered one by one in order, pipelined ones too. A header that is not
 Modbus TCP closes the connection. Every unit id is served. Reasons: docs/decisions/0010.
@@ -31,13 +31,13 @@ class ServerLimits:
 
     clients: int = 8
     idle_s: float = 60.0
-    """A PLC beats at least twice a second; who is silent this long is gone."""
+    """A PLC writes its heartbeat at least twice a second; one that is silent so long is gone."""
     frame_s: float = 3.0
     """From the first byte of a request to its last, and for an answer to be taken."""
 
 
 class ModbusServer:
-    """Listens and answers; knows the wire and nothing of the cell."""
+    """Listens and answers; knows connections and frames, and nothing of the cell."""
 
     def __init__(
         self,

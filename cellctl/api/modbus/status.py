@@ -1,4 +1,4 @@
-"""How the state of the cell becomes registers."""
+"""The status that the line PLC sees, and the item of the register map for each value."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ _U16_MAX = 0xFFFF
 
 @dataclass(frozen=True, slots=True)
 class Handshake:
-    """The port's own part of the block."""
+    """What the interface itself adds to the status: the handshake and the heartbeats."""
 
     ack_seq: int = 0
     done_seq: int = 0
@@ -72,6 +72,7 @@ def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Valu
 
 
 def _status_word(status: CellStatus, handshake: Handshake) -> int:
+    # Both numbers are 0 before the first command: nothing is busy, and nothing is done either.
     ended = handshake.ack_seq == handshake.done_seq
     flags = {
         "ready": status.ready,

@@ -20,7 +20,7 @@ from cellctl.errors.internal import WorkerDied
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
-from cellctl.packml.unit_command import UnitCommand
+from cellctl.packml.unit_command import Options, Source, UnitCommand
 from cellctl.processes.deck_to_frame.facts import RunFacts
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
@@ -278,11 +278,10 @@ def measurement(
     return PartMeasurement(pose, (found, found), (pair, pair), 2, base_T_flange)
 
 
-def start_command(seq: int = 1, serial: str = "SAT-0001", **changes: Any) -> UnitCommand:
-    """Start of recipe 1 in Production."""
-    values: dict[str, Any] = {"unit_mode": 1, "cntrl_cmd": 2, "recipe_id": 1, "options": 0}
-    values |= {"order": "", "alarm_ack_id": 0}
-    return UnitCommand(seq=seq, serial=serial, **(values | changes))
+def start_command(serial: str = "SAT-0001", *, options: int = 0, **changes: Any) -> UnitCommand:
+    """Start of recipe 1 in Production, by the line."""
+    values: dict[str, Any] = {"source": Source.LINE, "unit_mode": 1, "cntrl_cmd": 2, "recipe_id": 1}
+    return UnitCommand(serial=serial, options=Options(options), **(values | changes))
 
 
 def spoil(path: Path, **changes: Any) -> None:

@@ -3,22 +3,25 @@
 import asyncio
 from datetime import timedelta
 from itertools import product
+from typing import Any
 
 import pytest
 
 from cellctl.clock import now_s
-from cellctl.command.authority import judge_authority
+from cellctl.command.validator import validate_authority
 from cellctl.errors.link import LinkLost
 from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.packml.unit_command import Source
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import renew_calibrations, start_command
 from tests.unit.command.test_arbiter import audit
-from tests.unit.daemon_rig import DaemonRig
+from tests.unit.daemon_rig import BY_ANNA, DaemonRig
 
+BY_LINE: dict[str, Any] = {"source": Source.LINE}
 IN_CONTROL = RejectCode.LINE_IN_CONTROL
 ANYBODYS = {Command.UNDEFINED, Command.STOP, Command.ABORT, Command.HOLD, Command.SUSPEND}
 ANYBODYS |= {Command.CLEAR, Command.COMPLETE}
@@ -26,11 +29,11 @@ ANYBODYS |= {Command.CLEAR, Command.COMPLETE}
 
 @pytest.mark.parametrize("command", Command)
 def test_the_line_alone_moves_the_cell_in_production(command: Command) -> None:
-    asked = start_command(0, cntrl_cmd=command, unit_mode=0, by="terminal:anna")
-    code = judge_authority(asked, Mode.PRODUCTION, line_alive=True)
+    asked = start_command(cntrl_cmd=command, unit_mode=0, **BY_ANNA)
+    code = validate_authority(asked, Mode.PRODUCTION, line_alive=True)
     assert (code is RejectCode.NONE) == (command in ANYBODYS)
-    assert judge_authority(asked, Mode.PRODUCTION, line_alive=False) is RejectCode.NONE
-    assert judge_authority(asked, Mode.MAINTENANCE, line_alive=True) is RejectCode.NONE
+    assert validate_authority(asked, Mode.PRODUCTION, line_alive=False) is RejectCode.NONE
+    assert validate_authority(asked, Mode.MAINTENANCE, line_alive=True) is RejectCode.NONE
 
 
 @pytest.mark.parametrize(
@@ -48,14 +51,14 @@ def test_the_line_alone_moves_the_cell_in_production(command: Command) -> None:
 def test_the_line_gives_control_away_and_nobody_takes_it(
     mode: Mode, wanted: Mode, command: Command, code: RejectCode
 ) -> None:
-    asked = start_command(0, cntrl_cmd=command, unit_mode=wanted, by="terminal:anna")
-    assert judge_authority(asked, mode, line_alive=True) is code
+    asked = start_command(cntrl_cmd=command, unit_mode=wanted, **BY_ANNA)
+    assert validate_authority(asked, mode, line_alive=True) is code
 
 
 def test_the_line_needs_nobodys_leave() -> None:
     for mode, command in product(Mode, Command):
-        asked = start_command(1, cntrl_cmd=command)
-        assert judge_authority(asked, mode, line_alive=True) is RejectCode.NONE
+        asked = start_command(cntrl_cmd=command)
+        assert validate_authority(asked, mode, line_alive=True) is RejectCode.NONE
 
 
 async def test_a_cell_without_a_line_is_run_from_the_terminal(rig: DaemonRig) -> None:
@@ -79,7 +82,7 @@ async def test_a_cell_without_a_line_is_run_from_the_terminal(rig: DaemonRig) ->
     assert await rig.archive.do(RunStore.line_seq) is None
 
 
-async def test_the_terminal_comes_before_the_same_judge(rig: DaemonRig) -> None:
+async def test_the_terminals_commands_meet_the_same_checks(rig: DaemonRig) -> None:
     rig.bench.cell.connected = False
     assert await rig.ask(Command.RESET) is RejectCode.DEVICE_NOT_READY
     rig.bench.cell.connected = True
@@ -124,67 +127,71 @@ async def test_an_alarm_is_acknowledged_in_the_name_of_who_asks(rig: DaemonRig) 
 async def test_a_line_that_comes_alive_meanwhile_keeps_the_terminal_from_moving(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Between the judgement and the machine."""
+    """Between validation and execution."""
     await rig.idle()
-    desk = rig.unit.factory
-    judge = desk.judge
+    factory = rig.unit.factory
+    validate = factory.validate
 
     async def slow(*asked: object) -> RejectCode:
         rig.port.line_alive = True
-        return await judge(*asked)  # type: ignore[arg-type]
+        return await validate(*asked)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(desk, "judge", slow)
+    monkeypatch.setattr(factory, "validate", slow)
     assert await rig.ask(Command.START) is IN_CONTROL
     assert rig.unit.machine.state is State.IDLE
 
 
 @pytest.mark.parametrize("stop", [Command.STOP, Command.ABORT])
-@pytest.mark.parametrize("by", ["", "terminal:anna"])
+@pytest.mark.parametrize(
+    ("one", "other"), [(BY_LINE, BY_ANNA), (BY_ANNA, BY_LINE)], ids=["line", "anna"]
+)
 async def test_nobodys_command_survives_a_stop_that_came_after_it(
-    rig: DaemonRig, stop: Command, by: str
+    rig: DaemonRig, stop: Command, one: Any, other: Any
 ) -> None:
-    early = start_command(7, cntrl_cmd=Command.RESET, unit_mode=0, by=by)
-    await rig.line.take(start_command(8, cntrl_cmd=stop, by="" if by else "terminal:anna"))
+    early = start_command(cntrl_cmd=Command.RESET, unit_mode=0, **one)
+    await rig.submit(start_command(cntrl_cmd=stop, **other))
     if stop is Command.ABORT:
         await rig.to(State.ABORTED)
         assert await rig.take(Command.CLEAR) is RejectCode.NONE
         await rig.to(State.STOPPED)
-    assert await rig.line.take(early) is RejectCode.SUPERSEDED
+    assert await rig.submit(early) is RejectCode.SUPERSEDED
     assert rig.unit.machine.state is State.STOPPED
     assert await rig.take(Command.RESET) is RejectCode.NONE
 
 
-async def test_what_the_line_gives_after_its_stop_is_obeyed_after_it(rig: DaemonRig) -> None:
-    stop = start_command(7, cntrl_cmd=Command.STOP)
-    reset = start_command(8, cntrl_cmd=Command.RESET, unit_mode=0)
-    await rig.line.take(stop)
-    assert await rig.line.take(reset) is RejectCode.NONE
+async def test_what_the_line_gives_after_its_stop_is_executed_after_it(rig: DaemonRig) -> None:
+    stop = start_command(cntrl_cmd=Command.STOP)
+    reset = start_command(cntrl_cmd=Command.RESET, unit_mode=0)
+    await rig.submit(stop)
+    assert await rig.submit(reset) is RejectCode.NONE
 
 
-@pytest.mark.parametrize("by", ["", "terminal:anna"])
-async def test_a_command_given_before_the_others_is_not_obeyed_after_it(
-    rig: DaemonRig, by: str
+@pytest.mark.parametrize(
+    ("one", "other"), [(BY_LINE, BY_ANNA), (BY_ANNA, BY_LINE)], ids=["line", "anna"]
+)
+async def test_a_command_given_before_the_others_is_not_executed_after_it(
+    rig: DaemonRig, one: Any, other: Any
 ) -> None:
-    early = start_command(7, cntrl_cmd=Command.RESET, unit_mode=0, by=by, arrived_s=now_s())
-    other = start_command(8, cntrl_cmd=0, unit_mode=2, by="" if by else "terminal:anna")
-    assert await rig.line.take(other) is RejectCode.NONE
-    assert await rig.line.take(early) is RejectCode.SUPERSEDED
+    early = start_command(cntrl_cmd=Command.RESET, unit_mode=0, arrived_s=now_s(), **one)
+    later = start_command(cntrl_cmd=0, unit_mode=2, **other)
+    assert await rig.submit(later) is RejectCode.NONE
+    assert await rig.submit(early) is RejectCode.SUPERSEDED
 
 
 async def test_two_starts_at_once_begin_the_one_that_was_taken(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Both are judged in Idle; the refused one must not leave its order behind."""
+    """Both are validated in Idle; the refused one must not leave its order behind."""
     await rig.idle()
-    desk, both = rig.unit.factory, asyncio.Barrier(2)
-    judge = desk.judge
+    factory, both = rig.unit.factory, asyncio.Barrier(2)
+    validate = factory.validate
 
     async def together(*asked: object) -> RejectCode:
-        code = await judge(*asked)  # type: ignore[arg-type]
+        code = await validate(*asked)  # type: ignore[arg-type]
         await both.wait()
         return code
 
-    monkeypatch.setattr(desk, "judge", together)
+    monkeypatch.setattr(factory, "validate", together)
     codes = await asyncio.gather(
         rig.ask(Command.START, serial="TERMINAL.1"), rig.take(Command.START, serial="LINE.1")
     )

@@ -4,8 +4,9 @@ import asyncio
 from typing import cast
 
 import pytest
+from cellctl.runtime.step import Step
 
-from cellctl.api.modbus.interface import PlcPort
+from cellctl.api.modbus.interface import PlcInterface
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkWatch, supervise
 from cellctl.errors.force import GuardDied
@@ -16,7 +17,6 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.runtime.step import Step
 from tests.unit.daemon_rig import DaemonRig, PaperPort
 
 TRIP = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
@@ -129,7 +129,7 @@ class Port(PaperPort):
 
 async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio.Task[None]]:
     port = Port()
-    work = supervise(rig.bench.as_cell, rig.unit, rig.line, cast(PlcPort, port))
+    work = supervise(rig.bench.as_cell, rig.unit, cast(PlcInterface, port), rig.publisher)
     task = asyncio.create_task(until_told(stop, work))
     await rig.until(lambda: port.beats > 0)
     return port, task

@@ -312,7 +312,7 @@ async def test_a_failed_clean_up_turns_stopping_into_aborting(rig: Rig) -> None:
     assert isinstance(machine.fault, AbortError)
 
 
-async def test_a_command_is_judged_again_when_its_turn_comes(rig: Rig) -> None:
+async def test_a_command_is_validated_again_when_its_turn_comes(rig: Rig) -> None:
     machine = rig.machine(initial=State.STOPPED)
     codes = await asyncio.gather(machine.command(Command.RESET), machine.command(Command.RESET))
     assert sorted(codes) == [RejectCode.NONE, RejectCode.COMMAND_NOT_ALLOWED]

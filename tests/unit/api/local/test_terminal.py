@@ -1,4 +1,4 @@
-"""From requests to the judge and back, around a cell in memory."""
+"""From requests to the arbiter and back, around a cell in memory."""
 
 import os
 import pwd
@@ -41,8 +41,8 @@ ME = f"terminal:{pwd.getpwuid(UID).pw_name}"
 class Operator:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
-        reporter = Reporter(cell, rig.unit, rig.line, rig.archive)
-        self._terminal = Terminal(cell.config, rig.unit.machine, rig.line, reporter)
+        reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive)
+        self._terminal = Terminal(cell.config, rig.unit.machine, rig.arbiter.submit, reporter)
 
     async def ask(self, request: Request, uid: int = UID) -> Taken | Refused:
         answer = await self._terminal.handle(request, uid)
@@ -136,8 +136,8 @@ async def test_a_stop_waits_for_no_directory_of_users(
 async def test_an_unknown_user_is_a_number() -> None:
     users = Users()
     await users.look_up(4_000_000)
-    assert users.actor(4_000_000) == "terminal:4000000"
-    assert users.actor(UID) == ME
+    assert users.name(4_000_000) == "4000000"
+    assert f"terminal:{users.name(UID)}" == ME
 
 
 async def test_faults_and_alarms_come_with_their_remedy(rig: DaemonRig, operator: Operator) -> None:

@@ -118,5 +118,5 @@ def test_head_and_tail_agree() -> None:
 def test_the_documented_map_is_current() -> None:
     from cellctl.api.modbus.document import register_map_document
 
-    page = Path(__file__).parents[3] / "docs/register-map.md"
+    page = Path(__file__).parents[4] / "docs/register-map.md"
     assert page.read_text(encoding="utf-8") == register_map_document()

@@ -1,4 +1,8 @@
-"""Whether a request may be obeyed in a state and mode: pure functions on the tables."""
+"""Whether the tables allow a command or a mode in a given state: pure functions.
+
+The state machine asks them for itself. The command path asks them early as well, so that a command
+which would be refused in its new mode does not change the mode first.
+"""
 
 from dataclasses import dataclass
 
@@ -11,7 +15,7 @@ from cellctl.packml.tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
-    """One refused request, kept for the operator."""
+    """One refused command or mode change, kept for the operator."""
 
     time_s: float
     """Monotonic."""
@@ -21,8 +25,8 @@ class Refusal:
     code: RejectCode
 
 
-def judge_command(state: State, mode: Mode, command: int) -> RejectCode:
-    """Why a command is refused, NONE if it is not."""
+def validate_command(state: State, mode: Mode, command: int) -> RejectCode:
+    """Why a command is refused in this state and mode; NONE when it is not."""
     if command not in COMMANDS:
         return RejectCode.COMMAND_UNDEFINED
     target = ON_COMMAND.get((state, Command(command)))
@@ -33,8 +37,10 @@ def judge_command(state: State, mode: Mode, command: int) -> RejectCode:
     return RejectCode.NONE
 
 
-def judge_mode(state: State, mode: int) -> RejectCode:
-    """Why a mode change is refused, NONE if it is not."""
+def validate_mode(state: State, mode: int) -> RejectCode:
+    """Why a change to this mode is refused in this state; NONE when it is not."""
+    # The standard keeps 1 to 31 for modes. A number outside is no mode at all; one inside that the
+    # tables do not name is a mode of other machines. The PLC programmer needs to tell them apart.
     if not 1 <= mode <= 31:
         return RejectCode.MODE_UNDEFINED
     if mode not in NOT_IN_MODE:

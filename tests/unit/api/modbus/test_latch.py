@@ -1,20 +1,15 @@
-"""When a command counts, and the numbers of the handshake."""
-
-from dataclasses import replace
+"""When registers are a command, and the numbers of the handshake."""
 
 import pytest
 
-from cellctl.api.modbus.commands import CommandLatch
 from cellctl.api.modbus.image import encode
+from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.register_map import HOLDING_SIZE, item
-from cellctl.packml import Command, RejectCode
+from cellctl.packml import RejectCode
 from cellctl.packml.result import Result
-from cellctl.packml.unit_command import UnitCommand
+from cellctl.packml.unit_command import Source, UnitCommand
 
-START = UnitCommand(
-    seq=1, unit_mode=1, cntrl_cmd=2, recipe_id=1, options=0, serial="SAT-0001", order="",
-    alarm_ack_id=0,
-)  # fmt: skip
+START = UnitCommand(Source.LINE, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001")
 
 
 def holding(seq: int, **values: int | str) -> list[int]:
@@ -29,7 +24,7 @@ def test_the_block_is_latched_as_it_stands() -> None:
     command = CommandLatch(None, "big").commit(
         holding(1, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001")
     )
-    assert command == START
+    assert command == (1, START)
 
 
 def test_a_number_counts_once() -> None:
@@ -97,22 +92,3 @@ def test_a_later_command_takes_the_place_of_an_earlier_one() -> None:
     latch.accept(2)
     assert not latch.finish(1, Result.GOOD)
     assert latch.finish(2, Result.GOOD)
-
-
-@pytest.mark.parametrize(
-    ("change", "code"),
-    [
-        ({}, RejectCode.NONE),
-        ({"serial": ""}, RejectCode.SERIAL_INVALID),
-        ({"serial": "sat-1"}, RejectCode.SERIAL_INVALID),
-        ({"serial": "SAT 1"}, RejectCode.SERIAL_INVALID),
-        ({"serial": "SAT\ufffd"}, RejectCode.SERIAL_INVALID),
-        ({"order": "a/b"}, RejectCode.ORDER_INVALID),
-        ({"options": 4}, RejectCode.OPTIONS_UNKNOWN),
-        ({"serial": "", "cntrl_cmd": Command.RESET}, RejectCode.NONE),
-        ({"serial": "???", "options": 99, "cntrl_cmd": Command.STOP}, RejectCode.NONE),
-        ({"serial": "???", "options": 99, "cntrl_cmd": Command.ABORT}, RejectCode.NONE),
-    ],
-)
-def test_parameters_are_judged(change: dict[str, object], code: RejectCode) -> None:
-    assert replace(START, **change).judge() is code  # type: ignore[arg-type]

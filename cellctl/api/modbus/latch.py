@@ -1,0 +1,108 @@
+"""The handshake with the line PLC: when its registers are a command, and what becomes of it.
+
+Registers 0 to 26 are read as a command at the moment when ``cmd_seq`` changes. The first number
+after a start of the cell is suspect, because it may have been in the PLC for days. Only 1 is
+accepted, with which a PLC says that it begins anew; and not even 1 when that was the last number
+before the start.
+"""
+
+from collections.abc import Sequence
+
+from cellctl.api.modbus.image import WordOrder, decode
+from cellctl.api.modbus.register_map import item
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.result import Result
+from cellctl.packml.unit_command import Options, Source, UnitCommand
+
+
+class CommandLatch:
+    """Reads the holding registers after each commit and keeps the numbers of the handshake.
+
+    The PLC sees two numbers: ``ack_seq``, the last command that was accepted or refused, and
+    ``done_seq``, the last one that has ended. They differ while a command is being executed.
+    """
+
+    def __init__(self, previous_seq: int | None, order: WordOrder) -> None:
+        """``previous_seq``: number of the last command before this start, None if not known."""
+        self._previous_seq = previous_seq
+        self._order = order
+        self._fresh = True
+        self._seen = 0
+        self._begun: tuple[int, Result] | None = None
+        self.ack_seq = 0
+        self.done_seq = 0
+        self.result = Result.NONE
+        self.reject_code = RejectCode.NONE
+
+    def commit(self, holding: Sequence[int]) -> tuple[int, UnitCommand] | None:
+        """The number and the command in the holding registers.
+
+        None when they are no new command: the same number again, 0, or left from before the start.
+        """
+        seq = _number(holding, "cmd_seq")
+        if seq == self._seen:
+            return None
+        self._seen = seq
+        if seq == 0:
+            # A PLC that clears its registers begins the handshake anew. It does not lift the rule
+            # for the first number: the next one may still be an old one.
+            self.ack_seq = self.done_seq = 0
+            self.result, self.reject_code = Result.NONE, RejectCode.NONE
+            return None
+        fresh, self._fresh = self._fresh, False
+        if fresh and (seq != 1 or self._previous_seq == 1):
+            self._end(seq, Result.IGNORED, RejectCode.IGNORED_AFTER_RESTART)
+            return None
+        return seq, _parse(holding, self._order)
+
+    def begin(self, seq: int) -> None:
+        """The command is being submitted. It may end before it is known to be accepted."""
+        self._begun = (seq, Result.NONE)
+
+    def accept(self, seq: int) -> None:
+        """The command is being executed."""
+        self.ack_seq, self.result, self.reject_code = seq, Result.NONE, RejectCode.NONE
+        early, self._begun = self._begun, None
+        if early is not None and early[1] is not Result.NONE:
+            self.finish(seq, early[1])
+
+    def reject(self, seq: int, code: RejectCode) -> None:
+        """The command will not be executed."""
+        self._begun = None
+        self._end(seq, Result.REJECTED, code)
+
+    def supersede(self, seq: int) -> None:
+        """A command that waited in the queue was dropped; another one may be in submission."""
+        self._end(seq, Result.REJECTED, RejectCode.SUPERSEDED)
+
+    def finish(self, seq: int, result: Result) -> bool:
+        """The command has ended; False when a later one has taken its place."""
+        if self._begun is not None and seq == self._begun[0]:
+            # Shown by ``accept`` only: the PLC must see ack_seq before, or together with, done_seq.
+            self._begun = (seq, result)
+            return True
+        if seq != self.ack_seq or self.ack_seq == self.done_seq:
+            return False
+        self.done_seq, self.result = seq, result
+        return True
+
+    def _end(self, seq: int, result: Result, code: RejectCode) -> None:
+        self.ack_seq = self.done_seq = seq
+        self.result, self.reject_code = result, code
+
+
+def _parse(holding: Sequence[int], order: WordOrder) -> UnitCommand:
+    return UnitCommand(
+        Source.LINE,
+        unit_mode=_number(holding, "unit_mode"),
+        cntrl_cmd=_number(holding, "cntrl_cmd"),
+        recipe_id=_number(holding, "recipe_id"),
+        options=Options(_number(holding, "options")),
+        serial=str(decode(item("serial"), holding, order)),
+        order=str(decode(item("order"), holding, order)),
+        alarm_ack_id=_number(holding, "alarm_ack_id"),
+    )
+
+
+def _number(holding: Sequence[int], name: str) -> int:
+    return holding[item(name).address]
