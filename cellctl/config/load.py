@@ -1,7 +1,7 @@
 """Read a cell file and say everything that is wrong with it."""
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Protocol, cast
 
@@ -34,8 +34,29 @@ def problems(path: Path) -> list[ConfigIssue]:
     return _examine(path)[0]
 
 
+def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
+    """A cell file that was understood before, as the record of a run keeps it.
+
+    Nothing outside of it is checked. Raises ``ConfigInvalid``, ``UnknownDriver``.
+    """
+    found, cell = _parse(dict(document))
+    if cell is None or found:
+        raise ConfigInvalid("; ".join(f"{issue.key}: {issue.allowed}" for issue in found))
+    return cell
+
+
 def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
-    raw = _read_toml(path)
+    found, cell = _parse(_read_toml(path))
+    if cell is None:
+        return found, None
+    found += _driver_issues(cell)
+    found += cross_issues(cell, found)
+    for index, recipe in enumerate(cell.recipes):
+        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent)
+    return found, cell
+
+
+def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
     # Recipes and settings of processes are checked by the models that their processes bring,
     # everything else by the core's own model.
     recipes, settings = raw.pop("recipes", []), raw.pop("processes", {})
@@ -50,12 +71,7 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
     if cell is None or len(recipe_models) != sum(one is not None for one in recipe_models):
         return found, None
     known = tuple(recipe for recipe in recipe_models if recipe is not None)
-    cell = cell.model_copy(update={"recipes": known, "processes": setting_models})
-    found += _driver_issues(cell)
-    found += cross_issues(cell, found)
-    for index, recipe in enumerate(known):
-        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent)
-    return found, cell
+    return found, cell.model_copy(update={"recipes": known, "processes": setting_models})
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

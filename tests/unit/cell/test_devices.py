@@ -11,11 +11,12 @@ from tests.unit.cell.bench import CELL_FILE, Bench
 
 def test_a_cell_is_built_from_its_file_without_io(bench: Bench) -> None:
     cell = Cell(bench.cell.config, CELL_FILE.parent)
-    assert [robot.name for robot in cell.robots] == ["main", "aux_1", "aux_2"]
-    assert [head.name for head in cell.heads] == ["head_1", "head_2"]
-    assert cell.heads[1].robot is cell.aux_2
+    assert list(cell.robots) == ["main", "aux_1", "aux_2"]
+    assert list(cell.stereo_cameras) == ["head_1", "head_2"]
+    assert cell.stereo_station("head_2").robot is cell.robots["aux_2"]
+    assert cell.guarded_robot("force").robot is cell.robots["main"]
     with pytest.raises(GuardDied):
-        cell.health_checks()["guard"]()
+        cell.health_checks()["force_sensors.force"]()
     cell.workers.close()
 
 
@@ -36,7 +37,7 @@ async def test_all_devices_that_fail_are_named(bench: Bench) -> None:
     with pytest.raises(ConnectTimeout) as caught:
         await bench.cell.connect()
     assert "robots.aux_1" in caught.value.detail
-    assert "guard: F510" in caught.value.detail
+    assert "force_sensors.force: F510" in caught.value.detail
 
 
 async def test_a_defect_is_not_taken_for_a_device(bench: Bench) -> None:
@@ -50,7 +51,7 @@ async def test_stop_reaches_every_robot_though_one_fails(bench: Bench) -> None:
     bench.cell.aux_1.faults["stop"] = LinkLost("aux_1")
     with pytest.raises(StopFailed) as caught:
         await bench.cell.stop_motion()
-    assert [robot.stops for robot in bench.cell.robots] == [1, 1, 1]
+    assert [robot.stops for robot in bench.cell.robots.values()] == [1, 1, 1]
     assert any("F202" in note for note in caught.value.__notes__)
     assert bench.cell.guard.asked == ["disarm"]
 
@@ -58,13 +59,13 @@ async def test_stop_reaches_every_robot_though_one_fails(bench: Bench) -> None:
 async def test_nothing_is_stopped_that_was_never_connected(bench: Bench) -> None:
     await bench.cell.disconnect()
     await bench.cell.stop_motion()
-    assert [robot.stops for robot in bench.cell.robots] == [0, 0, 0]
+    assert [robot.stops for robot in bench.cell.robots.values()] == [0, 0, 0]
 
 
 async def test_a_dead_guard_does_not_keep_the_robots_from_stopping(bench: Bench) -> None:
     bench.cell.guard.faults["disarm"] = GuardDied("killed")
     await bench.cell.stop_motion()
-    assert all(robot.latched for robot in bench.cell.robots)
+    assert all(robot.latched for robot in bench.cell.robots.values())
 
 
 async def test_rearm_releases_the_guard_first(bench: Bench) -> None:
@@ -72,11 +73,11 @@ async def test_rearm_releases_the_guard_first(bench: Bench) -> None:
     bench.cell.guard.faults["acknowledge"] = GuardDied("killed")
     with pytest.raises(GuardDied):
         await bench.cell.rearm()
-    assert all(robot.latched for robot in bench.cell.robots)
+    assert all(robot.latched for robot in bench.cell.robots.values())
     bench.cell.guard.faults.clear()
     await bench.cell.rearm()
-    assert not any(robot.latched for robot in bench.cell.robots)
-    assert not any(robot.moves for robot in bench.cell.robots)
+    assert not any(robot.latched for robot in bench.cell.robots.values())
+    assert not any(robot.moves for robot in bench.cell.robots.values())
 
 
 async def test_disconnecting_skips_nobody(bench: Bench) -> None:

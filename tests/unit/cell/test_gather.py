@@ -4,7 +4,7 @@ import asyncio
 
 import pytest
 
-from cellctl.cell.gather import together
+from cellctl.cell.gather import gather_or_cancel
 from cellctl.errors.link import LinkLost
 from cellctl.errors.robot import MotionRejected, StopFailed
 
@@ -40,25 +40,25 @@ async def fail() -> int:
 
 
 async def test_results_come_in_the_order_given() -> None:
-    assert await together(value(1), value(2)) == [1, 2]
+    assert await gather_or_cancel(value(1), value(2)) == [1, 2]
 
 
 async def test_the_first_failure_ends_the_others_before_it_is_raised() -> None:
     worker = Worker()
     with pytest.raises(MotionRejected, match="first"):
-        await together(worker.work(), fail())
+        await gather_or_cancel(worker.work(), fail())
     assert worker.cleaned
 
 
 async def test_what_fails_while_leaving_is_noted_on_the_first() -> None:
     worker = Worker(StopFailed("aux_2"))
     with pytest.raises(MotionRejected) as caught:
-        await together(worker.work(), fail())
+        await gather_or_cancel(worker.work(), fail())
     assert any("F304" in note for note in caught.value.__notes__)
 
 
 async def cancelled(*workers: Worker) -> asyncio.Task[list[int]]:
-    task = asyncio.create_task(together(*(worker.work() for worker in workers)))
+    task = asyncio.create_task(gather_or_cancel(*(worker.work() for worker in workers)))
     for worker in workers:
         await worker.begun.wait()
     task.cancel()

@@ -65,7 +65,7 @@ def eyes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> Eyes:
 def measurer(bench: Bench) -> PartMeasurer:
     geometry = bench.calibrations.read(timedelta(0)).geometry
     heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
-    return PartMeasurer(bench.as_cell, heads, "default")
+    return PartMeasurer(bench.deck, heads, "default")
 
 
 async def measured(

@@ -1,8 +1,6 @@
 """The cell file: every error at once, with key, value and what is allowed."""
 
-import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -28,7 +26,7 @@ def test_the_template_keeps_its_data_where_the_unit_lets_the_daemon_write():
         assert Path("/var/lib/cellctl") in (Path(folder), *Path(folder).parents)
 
 
-def changed(tmp_path: Path, **replacements: str) -> Path:
+def changed(tmp_path: Path, **replacements: tuple[str, str]) -> Path:
     """The fake cell's file with some lines replaced, next to its feature files."""
     text = (CONFIG / "cell.fake.toml").read_text()
     for old, new in replacements.values():
@@ -50,12 +48,12 @@ def test_all_errors_are_reported_together(tmp_path: Path):
     found = {problem.key: problem for problem in problems(path)}
     assert set(found) == {
         "plc.port",
-        "recipes.0.compensation.threshold_mm",
+        "recipes.0.pose_correction.threshold_mm",
         "recipes.0.deck_thickness_mm",
         "recipes.0.deck_thicknes_mm",
     }
-    assert "greater than 0" in found["recipes.0.compensation.threshold_mm"].allowed
-    assert found["recipes.0.compensation.threshold_mm"].value == "-1.0"
+    assert "greater than 0" in found["recipes.0.pose_correction.threshold_mm"].allowed
+    assert found["recipes.0.pose_correction.threshold_mm"].value == "-1.0"
     assert found["recipes.0.deck_thickness_mm"].value == "(missing)"
 
 
@@ -70,7 +68,7 @@ def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path):
 def test_an_unknown_driver_lists_the_installed_ones(tmp_path: Path):
     path = changed(tmp_path, driver=('driver = "target-server"', 'driver = "laser"'))
     (problem,) = problems(path)
-    assert (problem.key, problem.number) == ("tracker.driver", 103)
+    assert (problem.key, problem.number) == ("trackers.tracker.driver", 103)
     assert "target-server" in problem.allowed
 
 
@@ -148,20 +146,19 @@ def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
         problems(path)
 
 
-def test_recipe_numbers_must_differ():
-    raw: dict[str, Any] = tomllib.loads((CONFIG / "cell.fake.toml").read_text())
-    raw["recipes"] *= 2
-    from cellctl.config import CellConfig
-
-    with pytest.raises(ValueError, match="recipe ids must differ"):
-        CellConfig.model_validate(raw)
+def test_recipe_numbers_must_differ(tmp_path: Path):
+    text = (CONFIG / "cell.fake.toml").read_text()
+    once = text[text.index("[[recipes]]") :]
+    path = changed(tmp_path, twice=("[[recipes]]", f"{once}\n[[recipes]]"))
+    (problem,) = problems(path)
+    assert "recipe ids must differ" in problem.allowed
 
 
 def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
     path = changed(tmp_path, threshold=("threshold_mm = 0.05", "threshold_mm = 7"))
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == 1
-    assert "recipes.0.compensation" in result.output
+    assert "recipes.0.pose_correction" in result.output
     assert CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")]).exit_code == 0
 
 
@@ -175,3 +172,48 @@ def test_check_tells_of_calibrations_that_this_user_may_not_write(
     assert result.exit_code == 0
     assert "may not write" in result.output
     assert not (tmp_path / "calibration").exists()
+
+
+def test_a_recipe_says_what_the_cell_lacks(tmp_path: Path):
+    path = changed(
+        tmp_path,
+        head=("[stereo_cameras.head_2]", "[stereo_cameras.second]"),
+        pose=("retracted = ", "away = "),
+    )
+    found = {problem.key: problem.allowed for problem in problems(path)}
+    assert set(found) == {"recipes.0.roles.head_2", "robots.aux_1.poses_deg.retracted"}
+    assert "the cell lacks [stereo_cameras.head_2]" in found["recipes.0.roles.head_2"]
+
+
+def test_a_role_may_be_taken_by_a_device_of_another_name(tmp_path: Path):
+    path = changed(
+        tmp_path,
+        head=("[stereo_cameras.head_2]", "[stereo_cameras.second]"),
+        roles=("id = 1\n", 'id = 1\nroles = { head_2 = "second" }\n'),
+    )
+    assert problems(path) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key"),
+    [
+        ('carried_by = "aux_2"', 'carried_by = "aux_3"', "stereo_cameras.head_2.carried_by"),
+        ('carried_by = "aux_2"\n', "", "stereo_cameras.head_2.carried_by"),
+        ('mounted_on = "main"', 'mounted_on = "aux_1"', "force_sensors.force.mounted_on"),
+        ('mounted_on = "main"', 'mounted_on = "arm"', "force_sensors.force.mounted_on"),
+        ("d1_mm = 1045.0\n", "", "robots.main.d1_mm"),
+        ('process = "deck-to-frame"', 'process = "welding"', "recipes.0.process"),
+        ('process = "deck-to-frame"\n', "", "recipes.0.process"),
+        ("id = 1\n", 'id = 1\nroles = { head_3 = "head_1" }\n', "recipes.0.roles.head_3"),
+        ("[trackers.tracker]", "[trackers.head_1]", "trackers.head_1"),
+        ('board = "9x6"', "board = 9", "processes.deck-to-frame.board"),
+        ("[processes.deck-to-frame]", "[processes.deck]", "processes.deck"),
+    ],
+)
+def test_devices_and_processes_belong_together(tmp_path: Path, old: str, new: str, key: str):
+    assert key in {problem.key for problem in problems(changed(tmp_path, one=(old, new)))}
+
+
+def test_check_says_which_recipes_the_cell_can_run():
+    result = CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")])
+    assert "(deck-to-frame): this cell can run it" in result.output

@@ -17,10 +17,10 @@ def slowed(tmp_path: Path, rate_hz: int) -> Path:
 
 
 def test_the_rate_is_the_one_in_the_settings_of_the_driver(tmp_path: Path) -> None:
-    assert sensor_rate_hz(load_cell(slowed(tmp_path, 250)).force) == 250.0
+    assert sensor_rate_hz(load_cell(slowed(tmp_path, 250)).force_sensors["force"]) == 250.0
 
 
 def test_a_sensor_may_not_be_slower_than_its_silence(tmp_path: Path) -> None:
     [problem] = problems(slowed(tmp_path, 10))
-    assert problem.key == "force.stale_ms"
+    assert problem.key == "force_sensors.force.stale_ms"
     assert problem.allowed == "at least 200, two samples at the sensor's rate"

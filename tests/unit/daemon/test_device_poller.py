@@ -2,58 +2,58 @@
 
 import asyncio
 
-from cellctl.daemon.device_poller import RollCall
+from cellctl.daemon.device_poller import DevicePoller
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from tests.unit.daemon_rig import DaemonRig
 
 
-def roll_call(rig: DaemonRig) -> RollCall:
-    return RollCall(rig.bench.as_cell, rig.unit)
+def poller(rig: DaemonRig) -> DevicePoller:
+    return DevicePoller(rig.bench.as_cell, rig.unit)
 
 
 async def test_a_head_that_is_away_refuses_a_start_until_it_is_back(rig: DaemonRig) -> None:
     await rig.idle()
-    call = roll_call(rig)
+    polled = poller(rig)
     camera = rig.bench.cell.head_2.camera
-    await call.ask()
+    await polled.ask()
     assert rig.shown().ready
     await camera.disconnect()
-    await call.ask()
-    await call.ask()
+    await polled.ask()
+    await polled.ask()
     assert rig.unit.machine.state is State.IDLE
     assert (rig.shown().alarms, rig.shown().ready) == ((209,), False)
     assert await rig.take(Command.START) is RejectCode.DEVICE_NOT_READY
     await camera.connect()
-    await call.ask()
+    await polled.ask()
     assert rig.shown().ready
 
 
 async def test_a_dead_vision_worker_aborts_and_clear_replaces_it(rig: DaemonRig) -> None:
     await rig.idle()
-    call = roll_call(rig)
+    polled = poller(rig)
     rig.bench.cell.workers.died = True
-    await call.ask()
+    await polled.ask()
     await rig.to(State.ABORTED)
-    await call.ask()
+    await polled.ask()
     assert rig.shown().first_out_alarm == 902
     await rig.idle()
-    await call.ask()
+    await polled.ask()
     assert rig.unit.machine.state is State.IDLE
 
 
 async def test_nobody_is_asked_in_a_run_or_before_all_are_connected(rig: DaemonRig) -> None:
-    call = roll_call(rig)
+    polled = poller(rig)
     rig.bench.cell.workers.died = True
     rig.bench.cell.connected = False
-    await call.ask()
+    await polled.ask()
     rig.bench.cell.connected = True
     rig.contact.may_end.clear()
     await rig.started()
     await asyncio.wait_for(rig.contact.reached.wait(), 10)
     rig.bench.cell.workers.died = True
-    await call.ask()
+    await polled.ask()
     assert rig.unit.machine.state is State.EXECUTE
     rig.contact.may_end.set()
     await rig.to(State.COMPLETED)

@@ -4,11 +4,10 @@ import asyncio
 from typing import cast
 
 import pytest
-from cellctl.runtime.step import Step
 
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.daemon.app import until_told
-from cellctl.daemon.supervision import LinkWatch, supervise
+from cellctl.daemon.supervision import LinkMonitor, supervise
 from cellctl.errors.force import GuardDied
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.line import LineTaskDied
@@ -22,8 +21,8 @@ from tests.unit.daemon_rig import DaemonRig, PaperPort
 TRIP = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
 
 
-def watch(rig: DaemonRig) -> LinkWatch:
-    return LinkWatch(rig.bench.as_cell, rig.unit)
+def watch(rig: DaemonRig) -> LinkMonitor:
+    return LinkMonitor(rig.bench.as_cell, rig.unit)
 
 
 async def alarms(rig: DaemonRig) -> list[int]:
@@ -99,18 +98,17 @@ async def test_devices_that_are_not_there_leave_the_unit_aborted_until_clear_fin
     await rig.to(State.STOPPED)
     assert rig.unit.live
     assert await alarms(rig) == [201, 206]
-    assert not any(robot.moves for robot in rig.bench.cell.robots)
+    assert not any(robot.moves for robot in rig.bench.cell.robots.values())
     await rig.idle()
 
 
-@pytest.mark.parametrize("step", [Step.MATE, Step.MEASURE_CONTACT_STIFFNESS])
-async def test_contact_deals_with_its_trips_itself(rig: DaemonRig, step: Step) -> None:
+async def test_contact_deals_with_its_trips_itself(rig: DaemonRig) -> None:
     await rig.idle()
-    rig.unit.board.update(step=step)
+    rig.unit.board.update(step=50, step_label="mate", contact=True)
     rig.bench.cell.guard.trip = TRIP
     links = watch(rig)
     await links.look()
-    rig.unit.board.update(step=Step.NONE)
+    rig.unit.board.leave_step()
     await links.look()
     assert rig.unit.machine.state is State.IDLE
     assert await alarms(rig) == []
@@ -167,7 +165,7 @@ async def test_a_defect_in_the_daemon_aborts_the_run_with_901(
     assert rig.unit.machine.state is State.ABORTED
     head = (await rig.record()).head
     assert (head.result, head.fault_number) == ("aborted", 901)
-    assert all(robot.latched for robot in rig.bench.cell.robots)
+    assert all(robot.latched for robot in rig.bench.cell.robots.values())
 
 
 async def test_a_machine_that_hangs_is_given_up(

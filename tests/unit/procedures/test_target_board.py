@@ -65,11 +65,7 @@ class Boards:
             name: c_T_board.apply(place) + self.rng.normal(0, FIELD_SIGMA_M, 3)
             for name, place in target_board_discs().items()
         }
-        cell = self.rig.bench.cell
-        cell.tracker = cell.trackers["tracker"] = field = Field(
-            "tracker", truth | {"F1": np.zeros(3)}
-        )
-        field._connected = True
+        self.field.see(truth | {"F1": np.zeros(3)})
 
     def _measure(
         self, left: Any, right: Any, model: object, discs: Sequence[Hole], *,

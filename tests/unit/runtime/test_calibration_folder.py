@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.calibration.board_transfer import BoardPlacement
 from cellctl.calibration.files import read_calibration, write_stored
 from cellctl.clock import utc_now
 from cellctl.errors.calibration import (
@@ -26,7 +25,6 @@ from cellctl.runtime.calibration_folder import (
     HEAD_JOINTS,
     PAYLOAD,
     CalibrationFolder,
-    Placement,
 )
 from tests.unit.cell.bench import Bench, renew_calibrations, spoil
 
@@ -84,7 +82,7 @@ def test_another_instrument_does_not_get_the_calibration(bench: Bench) -> None:
 
 def test_a_head_that_was_taught_another_pose_is_refused(bench: Bench) -> None:
     folder = bench.calibrations
-    taught = bench.cell.config.robots.aux_2.measuring_joints_deg
+    taught = bench.cell.config.robots["aux_2"].poses_deg["measuring"]
     found = folder.read(HOUR)
     found.require_head_pose("head_2", taught)
     with pytest.raises(HeadPoseChanged, match=r"F637 .*head_2: made at \[-3\.29612"):
@@ -99,14 +97,14 @@ def test_a_head_that_was_taught_another_pose_is_refused(bench: Bench) -> None:
 def test_a_stored_record_takes_effect_at_once(bench: Bench) -> None:
     folder = bench.calibrations
     record = read_calibration(folder.path, "head_1").record
-    placement = Placement(BoardPlacement(None, None), (0.0,) * 6)  # type: ignore[arg-type]
-    folder.placements |= {"head_1": placement, "head_2": placement}
+    told: list[str] = []
+    folder.on_stored.append(told.append)
     assert folder.validity_h()[0] > 2.0
     stored = folder.store("head_1", record, "FH-0001", HOUR, b"picture")
     assert folder.validity_h()[0] == pytest.approx(1.0, abs=0.01)
     assert folder.read(timedelta(0)).ids["head_1"] == stored.id
     assert (folder.path / "head_1.png").read_bytes() == b"picture"
-    assert set(folder.placements) == {"head_2"}, "seen through the head's old calibration"
+    assert told == ["head_1"]
     assert folder.head("head_1").image_size == (2448, 2048)
     assert folder.c_T_base().covariance.shape == (6, 6)
     assert {one.kind for one in folder.stored()} == set(ALL_KINDS)
@@ -144,15 +142,15 @@ def test_a_marker_that_cannot_be_read_counts(bench: Bench) -> None:
     assert bench.calibrations.validity_h()[3] == 0.0
 
 
-def test_stiffness_is_invalidated_for_every_recipe_and_what_waits_is_dropped(bench: Bench) -> None:
+def test_stiffness_is_invalidated_for_every_recipe_and_observers_are_told(bench: Bench) -> None:
     folder = bench.calibrations
-    board = BoardPlacement(None, None)  # type: ignore[arg-type]
-    folder.placements["head_1"] = Placement(board, (0.0,) * 6)
+    told: list[bool] = []
+    folder.on_invalidated.append(lambda: told.append(True))
     for kind in ("contact_stiffness_1", "contact_stiffness_2"):
         folder.store(kind, {"verdict": "pass"}, "", HOUR)
     found = folder.invalidate(["contact_stiffness", "stop_latency"], "F527")
     assert [one.kind for one in found] == ["contact_stiffness_1", "contact_stiffness_2"]
-    assert folder.placements == {}
+    assert told == [True]
     assert folder.fault(timedelta(0)) is None, "production does without it"
 
 

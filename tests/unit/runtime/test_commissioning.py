@@ -15,7 +15,6 @@ from cellctl.processes.deck_to_frame import contact_stiffness
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
-from cellctl.runtime.step import Step
 from tests.unit.daemon_rig import DaemonRig
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
@@ -25,7 +24,7 @@ class Touching:
 
     def __init__(self) -> None:
         self.plans: list[MatingPlan] = []
-        self.steps: list[Step] = []
+        self.steps: list[int] = []
         self.stiffness_n_m = 6e5
         self.fault: Exception | None = None
 
@@ -82,7 +81,7 @@ async def test_the_next_part_is_planned_with_it(rig: DaemonRig, touching: Touchi
     touching.stiffness_n_m = 3e5
     await commission(rig)
     await rig.to(State.COMPLETED)
-    bound = rig.bench.cell.config.recipes[0].mating.stiffness_n_per_mm
+    bound = rig.bench.recipe.mating.stiffness_n_per_mm
     planned = touching.plans[0].speed.figures.stiffness_n_m
     assert planned == pytest.approx(bound * 1e3), "it is itself planned with the bound"
     await rig.started(unit_mode=1, recipe_id=1)

@@ -2,7 +2,7 @@
 
 import asyncio
 
-from cellctl.daemon.supervision import LinkWatch
+from cellctl.daemon.supervision import LinkMonitor
 from cellctl.errors.force import LiftOffHeld
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
@@ -17,7 +17,7 @@ async def reset_while_it_is_held(rig: DaemonRig) -> None:
     main, guard = rig.bench.cell.main, rig.bench.cell.guard
     main.flange = rig.bench.flange_over_seat(0.0)
     main.road_is_free = asyncio.Event()
-    watch = LinkWatch(rig.bench.as_cell, rig.unit)
+    watch = LinkMonitor(rig.bench.as_cell, rig.unit)
     assert await rig.take(Command.RESET) is RejectCode.NONE
     await main.on_the_way.wait()
     guard.trip = HELD

@@ -16,7 +16,6 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
-from cellctl.runtime.step import Step
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
 
@@ -46,7 +45,7 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     status = rig.shown()
     assert (status.run_number, status.run_result, status.serial) == (1, Result.GOOD, "SAT-7")
     assert status.cycle_counter == 1
-    assert status.step == Step.NONE
+    assert status.step == 0
     assert not status.error
 
 
@@ -167,7 +166,7 @@ async def test_a_run_that_is_cut_short(
     await in_contact(rig)
     assert await rig.take(command) is RejectCode.NONE
     await rig.to(state)
-    assert all(robot.latched for robot in rig.bench.cell.robots)
+    assert all(robot.latched for robot in rig.bench.cell.robots.values())
     assert "disarm" in rig.bench.cell.guard.asked
     record = await rig.record()
     assert record.head.result == result
@@ -176,7 +175,7 @@ async def test_a_run_that_is_cut_short(
     assert rig.shown().run_result.name.lower() == result
     assert rig.shown().cycle_counter == 0
     await rig.idle()
-    assert not any(robot.latched for robot in rig.bench.cell.robots)
+    assert not any(robot.latched for robot in rig.bench.cell.robots.values())
 
 
 async def test_a_move_is_stopped_before_the_run_is_closed(rig: DaemonRig) -> None:
@@ -294,7 +293,7 @@ async def test_no_record_no_motion(rig: DaemonRig, monkeypatch: pytest.MonkeyPat
     await rig.idle()
     await rig.take(Command.START)
     await rig.to(State.ABORTED)
-    assert not any(robot.moves for robot in rig.bench.cell.robots)
+    assert not any(robot.moves for robot in rig.bench.cell.robots.values())
     assert await rig.runs() == []
 
 
@@ -303,7 +302,7 @@ async def test_another_head_than_the_calibrated_one_moves_nothing(rig: DaemonRig
     await rig.started()
     await rig.to(State.STOPPED)
     assert rig.shown().first_out_alarm == 631
-    assert not any(robot.moves for robot in rig.bench.cell.robots)
+    assert not any(robot.moves for robot in rig.bench.cell.robots.values())
 
 
 async def test_reset_does_not_move_a_robot_that_is_not_ready(rig: DaemonRig) -> None:
@@ -326,7 +325,7 @@ async def test_a_link_lost_in_the_middle_stops_all_robots(rig: DaemonRig) -> Non
     await in_contact(rig)
     await rig.unit.machine.fail(LinkLost("aux_1"))
     await rig.to(State.ABORTED)
-    assert all(robot.stops for robot in rig.bench.cell.robots)
+    assert all(robot.stops for robot in rig.bench.cell.robots.values())
     assert (await rig.record()).head.fault_number == 202
 
 

@@ -1,28 +1,25 @@
-"""The board tells everybody of every change."""
+"""The board of progress tells of every change."""
 
 import math
 
 from cellctl.runtime.progress import Progress, ProgressBoard
-from cellctl.runtime.step import Step
 
 
-def test_changes_reach_the_observers_and_reset_clears() -> None:
-    board, seen = ProgressBoard(), []
-    board.observers.append(seen.append)
-    board.update(step=Step.COMPENSATE, iteration=2)
-    board.update(force_limit_n=50.0)
-    assert board.current.iteration == 2
-    assert board.current.step is Step.COMPENSATE
+def test_observers_are_told_of_every_change() -> None:
+    board, told = ProgressBoard(), list[Progress]()
+    board.observers.append(told.append)
+    board.update(step=40, step_label="correct pose", iteration=2)
+    board.update(message="measuring")
+    assert board.current.step == 40
+    assert (board.current.iteration, board.current.message) == (2, "measuring")
+    board.leave_step()
+    assert (board.current.step, board.current.step_label, board.current.iteration) == (0, "", 2)
     board.reset()
-    assert [progress.iteration for progress in seen] == [2, 2, 0]
-    assert board.current.step is Step.NONE
-    assert all(math.isnan(value) for value in board.current.error_mm_deg)
-    assert math.isnan(board.current.force_limit_n)
-    assert Progress().message == ""
+    assert board.current.iteration == 0
+    assert len(told) == 4
 
 
-def test_steps_have_words() -> None:
-    assert Step.MEASURE_FRAME.label == "measure frame"
-    assert [step for step in Step if 0 < step < 100] == sorted(
-        step for step in Step if 0 < step < 100
-    )
+def test_nothing_is_known_at_first() -> None:
+    progress = Progress()
+    assert all(math.isnan(value) for value in (*progress.error_mm_deg, *progress.force_peaks))
+    assert not progress.contact

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from cellctl.config import CellConfig, load_cell
+from cellctl.config.load import cell_from_document
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.records.artefacts import ArtefactFolder
@@ -53,7 +54,7 @@ def test_a_feature_file_that_went_away_is_a_fault(config: CellConfig, folder: Pa
 
 async def recorded(bench: Bench, archive: AsyncRunStore) -> RunRecord:
     record = JobRecord(bench.as_cell, archive, start_command())
-    number = await record.open(bench.cell.config.recipes[0], "PRODUCTION", (), {})
+    number = await record.open(bench.cell.config.recipes[0], "PRODUCTION", ())
     await record.close(RunResult.GOOD, None)
     return await archive.do(RunStore.run, number)
 
@@ -72,7 +73,7 @@ async def test_cell_recipe_and_feature_files_are_in_the_record(
     }  # fmt: skip
     assert run.head.config_hash == sha256(files["cell.json"]).hexdigest()
     assert run.head.recipe_hash == sha256(files["recipe.json"]).hexdigest()
-    assert CellConfig.model_validate_json(files["cell.json"]) == bench.cell.config
+    assert cell_from_document(json.loads(files["cell.json"])) == bench.cell.config
     recipe = json.loads(files["recipe.json"])
     for name in ("frame_features.toml", "deck_features.toml"):
         assert recipe["sha256"][name] == sha256(files[name]).hexdigest()
@@ -90,7 +91,7 @@ async def test_a_run_whose_files_could_not_be_kept_is_closed_all_the_same(
     record = JobRecord(bench.as_cell, archive, start_command())
     try:
         with pytest.raises(RecordNotWritten) as error:
-            await record.open(bench.cell.config.recipes[0], "PRODUCTION", (), {})
+            await record.open(bench.cell.config.recipes[0], "PRODUCTION", ())
         await record.close(RunResult.ABORTED, error.value)
         run = await archive.do(RunStore.run, 1)
     finally:
