@@ -11,8 +11,8 @@ import numpy as np
 from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from cellctl.errors.base import CellError
-from cellctl.force.approach import series
-from cellctl.force.curve import moving_average
+from cellctl.force.contact.approach import series
+from cellctl.force.contact.curve import moving_average
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
