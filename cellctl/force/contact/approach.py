@@ -1,7 +1,9 @@
-"""How fast, from where and how far to move towards a contact: all derived, nothing guessed.
+"""How fast, from where and how far to move towards a contact, derived from what is known.
 
-Force grows with ``k·v`` once deck and frame touch. Until the arm stands, that is ``T`` later, it
-grows by ``k·v·T``; the speed follows from how much growth the limits leave.
+Once two parts touch, the force between them grows at the rate ``k·v``. Until the arm stands, a time
+``T`` later, it has grown by ``k·v·T``. So the greatest speed follows from how much growth the force
+limit leaves, and the fast travel has to end before the earliest position at which the parts can
+touch.
 """
 
 from dataclasses import dataclass
@@ -11,32 +13,33 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.force import MatingPlanInvalid
-from cellctl.force.contact.compliance import STRAIGHT, LateralOffset
+from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
 from cellctl.force.contact.cusum import Cusum
 
 
 @dataclass(frozen=True, slots=True)
 class ApproachFigures:
-    """What the speed depends on: measured at commissioning or stated by the recipe."""
+    """What the speed depends on: measured at commissioning, or stated by the recipe."""
 
     stop_latency_s: float
     """From the stop request on the wire to standstill at low speed, upper bound."""
     stiffness_n_m: float
-    """Arm and contact in series, along the approach: what force grows with when the arm moves on;
-    upper bound."""
+    """Upper bound of arm and contact in series, along the approach: the force grows by this much
+    for each metre that the arm moves on."""
     contact_stiffness_n_m: float
-    """Deck on frame alone, upper bound: what an impact meets."""
+    """Upper bound of the contact alone, without the arm: this is what an impact meets, because the
+    mass in front of the arm's compliance moves on by itself."""
     moving_mass_kg: float
-    """What hangs behind the arm's compliance and meets the contact."""
+    """The mass that hangs on the arm's compliance and meets the contact."""
     deceleration_m_s2: float
     stale_s: float
     """Age of a sample at which the guard stops: the worst delay of a reading."""
     filter_delay_s: float
-    """Delay of detector input behind the true force beyond the detector's own."""
+    """By how much the detector's input lags behind the true force."""
     sample_period_s: float
     touch: Cusum
     tare_uncertainty_n: float
-    """What tare, drift and pose may leave on the force reading."""
+    """Error of the force reading that tare, drift and pose may leave."""
     step_sigma_m: float
     """Standard deviation of the length of a single move."""
 
@@ -67,18 +70,13 @@ class ApproachSpeed:
     FORMULA = "F_peak = h(k v) + k v T + k v^2/(2 a) + v sqrt(k_c m) + F_tare"
 
 
-def series(first_n_m: float, second_n_m: float) -> float:
-    """Stiffness of two springs in series."""
-    return first_n_m * second_n_m / (first_n_m + second_n_m)
-
-
 def planned_stiffness(
     bound_n_m: float, measured_upper_n_m: float | None, part_spread_ratio: float
 ) -> float:
-    """Stiffness to plan with, arm and contact in series, as an upper bound.
+    """Stiffness of arm and contact in series to plan with, an upper bound.
 
-    What one pair of parts has shown counts for the next one ``part_spread_ratio`` times stiffer,
-    and never above the bound that holds without any measurement.
+    The next pair of parts may be ``part_spread_ratio`` times as stiff as the one that was measured,
+    but never stiffer than the bound that holds without any measurement.
     """
     if measured_upper_n_m is None:
         return bound_n_m
@@ -100,29 +98,32 @@ def peak_at(speed_m_s: float, figures: ApproachFigures) -> ApproachSpeed:
 def approach_speed(
     figures: ApproachFigures, *, allowed_peak_n: float, greatest_m_s: float = 1e-3
 ) -> ApproachSpeed:
-    """The greatest speed whose predicted peak stays below ``allowed_peak_n``.
+    """The greatest speed up to ``greatest_m_s`` whose predicted peak is within ``allowed_peak_n``.
 
     Raises ``MatingPlanInvalid`` when even the slowest approach would exceed it.
     """
-    slowest = 1e-7
-    if peak_at(slowest, figures).peak_n >= allowed_peak_n:
+    # At this speed only the terms are left that do not depend on it.
+    slowest_m_s = 1e-7
+    least_n = peak_at(slowest_m_s, figures).peak_n
+    if least_n >= allowed_peak_n:
         raise MatingPlanInvalid(
             f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
-            f"tare alone take {peak_at(slowest, figures).peak_n:.1f} N"
+            f"tare alone take {least_n:.1f} N"
         )
     if peak_at(greatest_m_s, figures).peak_n <= allowed_peak_n:
         return peak_at(greatest_m_s, figures)
     speed = brentq(
-        lambda v: peak_at(v, figures).peak_n - allowed_peak_n, slowest, greatest_m_s, rtol=1e-6
+        lambda v: peak_at(v, figures).peak_n - allowed_peak_n, slowest_m_s, greatest_m_s, rtol=1e-6
     )
     return peak_at(float(speed), figures)
 
 
 def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
-    """Longest single move (m) that cannot exceed ``limit_n`` even if no stop is ever obeyed.
+    """Longest single move (m) that keeps the force below ``limit_n`` even if no stop is obeyed.
 
-    Each move starts below the detector's drift level, so it adds no more than k times its length,
-    and the arm's own error of the move.
+    A move begins at a force below the detector's drift level, or the detector would have alarmed
+    before. It adds no more than the stiffness times its length and the arm's own error of a move.
+    Raises ``MatingPlanInvalid`` when no move can be that short.
     """
     spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
     length_m = spare_n / figures.stiffness_n_m - 3.0 * figures.step_sigma_m
@@ -144,7 +145,7 @@ class ContactWindow:
     latest_m: float
     """Also the greatest travel that may be commanded before contact."""
     clear_m: float
-    """Travel up to which contact is excluded: fast motion ends here."""
+    """Travel up to which contact is impossible: fast motion ends here."""
 
 
 def contact_window(
@@ -160,10 +161,10 @@ def contact_window(
 ) -> ContactWindow:
     """Window of ±coverage·sigma around the expected contact of the middle of the face.
 
-    ``sigma_m`` joins all sources (see ``contact_sigma``); ``tilt_m`` is how much earlier the
-    leading edge touches; ``margin_m`` is kept between fast travel and window; pins are met
-    ``engaged_m`` before the seat, and fast travel ends above them. Raises ``MatingPlanInvalid``
-    when contact is known too badly or too near.
+    ``sigma_m`` joins all sources of error (see ``contact_sigma``). ``tilt_m`` is how much earlier
+    the leading edge of a tilted part touches. ``margin_m`` is kept between the fast travel and the
+    window. Pins are met ``engaged_m`` before the seat, and the fast travel ends above them. Raises
+    ``MatingPlanInvalid`` when the contact is known too badly, or is too near.
     """
     half_m = max(coverage * sigma_m, least_half_m)
     if half_m > greatest_half_m:
@@ -182,22 +183,22 @@ def contact_window(
 
 
 def contact_sigma(*sigmas_m: float) -> float:
-    """Independent standard deviations of the contact position joined (m)."""
+    """Standard deviation (m) of the contact position from several independent sources."""
     return float(np.sqrt(sum(sigma**2 for sigma in sigmas_m)))
 
 
 def advance(
     base_T_flange: RigidTransform,
-    flange_T_deck: RigidTransform,
+    flange_T_part: RigidTransform,
     travel_m: float,
-    sideways: LateralOffset = STRAIGHT,
+    offset: LateralOffset = NO_OFFSET,
 ) -> RigidTransform:
-    """The flange after the deck has moved by ``travel_m`` along −Z_D, and sideways.
+    """The flange after the part has moved by ``travel_m`` along its −z axis, and by ``offset``.
 
-    Eq. 18 from the present pose: needs no camera in the chain, so the travel is as good as the
-    arm's relative accuracy.
+    Paper eq. 18, from the present pose. No camera takes part in it, so the travel is as good as the
+    relative accuracy of the arm, which is far better than its absolute one.
     """
     moved = RigidTransform.from_components(
-        [sideways.x_m, sideways.y_m, -travel_m], Rotation.from_rotvec([0.0, 0.0, sideways.yaw_rad])
+        [offset.x_m, offset.y_m, -travel_m], Rotation.from_rotvec([0.0, 0.0, offset.yaw_rad])
     )
-    return base_T_flange * flange_T_deck * moved * flange_T_deck.inv()
+    return base_T_flange * flange_T_part * moved * flange_T_part.inv()

@@ -1,4 +1,8 @@
-"""Stop latency and contact stiffness from what a robot did: straight-line fits with honest σ."""
+"""Stop latency and contact stiffness from measurements: straight lines and their uncertainty.
+
+Both figures go into the approach speed as upper bounds, so their standard deviations matter as much
+as the values.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +25,7 @@ class LatencyEstimate:
 
     @property
     def upper_s(self) -> float:
-        """Upper bound for planning: three standard deviations above."""
+        """Upper bound for planning: three standard deviations above the estimate."""
         return self.latency_s + 3.0 * self.sigma_s
 
 
@@ -37,16 +41,17 @@ class StiffnessEstimate:
 
     @property
     def upper_n_m(self) -> float:
-        """Upper bound for planning: three standard deviations above."""
+        """Upper bound for planning: three standard deviations above the estimate."""
         return self.stiffness_n_m + 3.0 * self.sigma_n_m
 
 
 def estimate_stop_latency(speeds_m_s: Array, overruns_m: Array) -> LatencyEstimate:
     """Latency from n ≥ 3 stops at different speeds.
 
-    ``overruns_m``: path between the moment of the stop request and standstill. The slope is the
-    latency; deceleration and reading offsets go into the intercept. Raises
-    ``CommissioningFailed`` when the speeds are too few, too alike, or the slope makes no sense.
+    ``overruns_m`` is the path between the moment of the stop request and standstill. The slope is
+    the latency; what does not depend on the speed, such as an offset of the readings, goes into
+    the intercept. Raises ``CommissioningFailed`` when the speeds are too few or too alike, or the
+    slope makes no sense.
     """
     if len(speeds_m_s) < 3 or np.ptp(speeds_m_s) < 0.3 * np.max(speeds_m_s):
         raise CommissioningFailed(
@@ -82,7 +87,10 @@ def estimate_stiffness(
 
 
 def joint_stiffness(estimates: Sequence[StiffnessEstimate]) -> StiffnessEstimate:
-    """One figure from n ≥ 2 contacts; their scatter is part of its sigma."""
+    """One figure from n ≥ 2 contacts.
+
+    No two contacts are equally stiff, so their scatter is added to the sigma of the fits.
+    """
     slopes = np.array([estimate.stiffness_n_m for estimate in estimates])
     inner = np.mean([estimate.sigma_n_m**2 for estimate in estimates])
     return StiffnessEstimate(

@@ -1,14 +1,18 @@
-"""Give way to pins: small moves across the approach under admittance, bounded.
+"""Lateral compliance: small moves across the approach that give way to the side force of pins.
 
-Law, for each of x, y and yaw of the deck: ``S dq/dt = F``, the force of the frame on the deck,
-none wanted. As in ``creep`` a move starts and ends at rest and takes effect once per period T, and
-the force of the next instant is taken into the law (``F(q + d) = F(q) − k d``, backward Euler):
+A pin that meets the chamfer of its hole pushes the part sideways. An arm that gives way in that
+direction lets the pin in; a stiff one presses the chamfer until the force limit stops it.
+
+Law, an admittance for each of x, y and yaw of the part: ``S dq/dt = F``, where F is the force of
+the counterpart on the part. As in ``creep`` a move starts and ends at rest and takes effect once
+per period T, and the force of the next instant is taken into the law (``F(q + d) = F(q) − k d``,
+backward Euler):
 
     d = T F / (S + T k) = g F / k          g = 1 / (1 + S / (T k))
 
-With k an upper bound of what deck and arm feel together it never overshoots. Nothing moves along
-the approach, nothing beyond the total travel, and nothing for a force within the dead band: there
-tare and friction speak, not the pins.
+With k an upper bound of the stiffness of arm and contact in series, a move never overshoots. There
+is no move along the approach, none beyond the total travel, and none for a force within the dead
+band: that may be what the tare has left, or friction.
 """
 
 from dataclasses import dataclass
@@ -20,7 +24,7 @@ from cellctl.geometry.pose import Array
 
 @dataclass(frozen=True, slots=True)
 class LateralOffset:
-    """The deck's displacement across the approach, in its axes at the stand-off."""
+    """Displacement of the part across the approach, in its own axes at the stand-off."""
 
     x_m: float = 0.0
     y_m: float = 0.0
@@ -28,15 +32,15 @@ class LateralOffset:
 
     @property
     def distance_m(self) -> float:
-        """Without the yaw."""
+        """Length of the displacement, without the yaw."""
         return float(np.hypot(self.x_m, self.y_m))
 
     def plus(self, step: "LateralOffset") -> "LateralOffset":
-        """Both together."""
+        """The sum; yaw angles are so small that their order does not matter."""
         return LateralOffset(self.x_m + step.x_m, self.y_m + step.y_m, self.yaw_rad + step.yaw_rad)
 
 
-STRAIGHT = LateralOffset()
+NO_OFFSET = LateralOffset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,38 +48,43 @@ class ComplianceLaw:
     """Constants of the lateral and yaw compliance."""
 
     stiffness_n_m: float
-    """Upper bound across the approach: the arm's own will do."""
+    """k: upper bound across the approach. The arm's own stiffness is one, since arm and contact act
+    in series."""
     yaw_stiffness_n_m_rad: float
     damping_n_s_m: float
-    """S across the approach; for the yaw in proportion to the stiffness."""
+    """S across the approach; that of the yaw is in proportion to its stiffness."""
     period_s: float
-    """T."""
+    """T: the time that one move takes altogether."""
     dead_band_n: float
     dead_band_n_m: float
     greatest_step_m: float
     greatest_step_rad: float
     greatest_travel_m: float
-    """Total, from the stand-off."""
+    """Bound of the total displacement from the stand-off."""
     greatest_yaw_rad: float
     smallest_step_m: float = 1e-6
     smallest_step_rad: float = 2e-6
 
     @property
     def gain(self) -> float:
-        """g."""
+        """g: the share of the distance to zero force that one move goes."""
         return 1.0 / (1.0 + self.damping_n_s_m / (self.period_s * self.stiffness_n_m))
 
 
 def pressed(law: ComplianceLaw, wrench: Array) -> bool:
-    """True when force or moment across the approach, deck frame, shape (6,), is worth a move."""
+    """True when the force or moment across the approach is beyond its dead band.
+
+    ``wrench`` is that of the counterpart on the part, in the axes of the part, shape (6,).
+    """
     across_n = float(np.hypot(wrench[0], wrench[1]))
     return across_n > law.dead_band_n or abs(float(wrench[5])) > law.dead_band_n_m
 
 
 def next_move(law: ComplianceLaw, so_far: LateralOffset, wrench: Array) -> LateralOffset | None:
-    """The next move away from the force on the deck; None when there is none to make.
+    """The next move away from the force; None when it would be too small to make.
 
-    ``wrench`` at standstill, shape (6,), of the frame on the deck in the deck's axes.
+    ``wrench`` is that of the counterpart on the part, read at standstill, in the axes of the part,
+    shape (6,); ``so_far`` the displacement of all moves before.
     """
     shift_m = _shift(law, so_far, wrench[:2])
     yaw_rad = _yaw(law, so_far.yaw_rad, float(wrench[5]))

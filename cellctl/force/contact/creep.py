@@ -1,20 +1,21 @@
-"""Creep to the target force: admittance in small moves, force read at standstill.
+"""Creep to the target force: an admittance in small moves, with the force read at standstill.
 
-Law: ``M dv/dt + S v = F_ref − F`` along the approach. A move over the line protocol takes effect
-once per period T (dead time, move, settling, reading), far longer than the arm's own dynamics, so
-each step starts and ends at rest and sees a spring: ``F(x + d) = F(x) + k d``. Taking the contact
-force of the *next* instant into the law (backward Euler, implicit in F as well as in v) gives
+Law: ``M dv/dt + S v = F_ref − F`` along the approach. A move takes effect once per period T (dead
+time, move, settling, reading), which is far longer than the arm's own dynamics. So each step starts
+and ends at rest and sees a spring: ``F(x + d) = F(x) + k d``. Taking the contact force of the
+*next* instant into the law (backward Euler, implicit in F as well as in v) gives the step
 
     d = T (F_ref − F) / (S + M/T + T k_hat)
 
-Stability: the error e = F_ref − F obeys e' = (1 − T k/(S + M/T + T k_hat)) e. It shrinks without
-changing sign when ``k ≤ k_hat + S/T + M/T²``, and is stable up to twice that; explicit Euler has
-no k_hat in the denominator and needs S > T k/2. With k_hat an upper bound of the stiffness the
-force never overshoots, whatever T is. k_hat then falls towards what the steps have shown plus a
-margin, by no more than half a step, and rises at once.
+Stability: the error e = F_ref − F becomes (1 − T k/(S + M/T + T k_hat)) e with each step. It
+shrinks without changing sign when ``k ≤ k_hat + S/T + M/T²``, and is stable up to twice that.
+(Explicit Euler has no k_hat in the denominator and needs S > T k/2.) So with k_hat an upper bound
+of the stiffness the force never overshoots, whatever T is. As the steps show how stiff the contact
+really is, k_hat follows: downwards by at most half in each step, upwards at once, because too small
+a value overshoots and too great a value only takes longer.
 
-An arm does not go exactly where it is sent: every move adds an error of its own, and contact may
-stiffen while it closes. A second bound keeps the force below ``abort_n`` in spite of both:
+An arm does not go exactly where it is sent, and contact may stiffen while it closes. A second bound
+keeps the force below ``abort_n`` in spite of both:
 ``F + min(k_max, 2 k_hat) (d + 3 sigma) <= abort``.
 """
 
@@ -36,20 +37,20 @@ class CreepLaw:
     mass_kg: float
     """M, virtual."""
     period_s: float
-    """T: the time one step takes altogether."""
+    """T: the time that one step takes altogether."""
     stiffness_n_m: float
     """Upper bound of arm and contact in series."""
     greatest_step_m: float
     smallest_step_m: float
-    """Below this a step tells less than its noise; also the controller's resolution."""
+    """A smaller step is within the noise of its reading and the resolution of the controller."""
     force_sigma_n: float
     """Standard deviation of a reading at standstill."""
     abort_n: float
-    """No step towards the frame may be able to pass this force."""
+    """No step forwards may be able to pass this force."""
     step_sigma_m: float
     """Standard deviation of the length of a step: the arm's own error of every single move."""
     stiffening_ratio: float = 2.0
-    """Contact may be so much stiffer at the end of a step than the steps before have shown."""
+    """How much stiffer the contact may be at the end of a step than the steps before have shown."""
     stiffness_margin_ratio: float = 1.25
     """k_hat stays this much above the stiffness that the steps have shown."""
 
@@ -71,7 +72,7 @@ class CreepState:
 def begin(
     law: CreepLaw, force_n: float, travel_m: float, shown_n_m: float | None = None
 ) -> CreepState:
-    """State before the first step; ``shown_n_m``: stiffness that an earlier creep has shown."""
+    """State before the first step; ``shown_n_m`` is the stiffness an earlier creep has measured."""
     stiffness = law.stiffness_n_m
     if shown_n_m is not None:
         stiffness = min(stiffness, law.stiffness_margin_ratio * shown_n_m)
@@ -84,7 +85,7 @@ def done(law: CreepLaw, state: CreepState) -> bool:
 
 
 def next_step(law: CreepLaw, state: CreepState) -> float:
-    """Length of the next move (m), positive towards the frame, bounded."""
+    """Length of the next move (m) within its bounds, positive forwards, into the contact."""
     error_n = law.reference_n - state.force_n
     resistance = law.damping_n_s_m + law.mass_kg / law.period_s
     step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
@@ -100,9 +101,10 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
 def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float) -> CreepState:
     """State after a step was driven and the force read again at standstill.
 
-    The stiffness is corrected as soon as the steps add up to a way that is long against the arm's
-    own error: downwards with the noise of force and length counted as stiffness, and by at most
-    half. After a longer way it is measured anew, because contact stiffens.
+    The stiffness is corrected as soon as the steps add up to a travel that is long compared with
+    the arm's own error. Noise of force and length is counted as stiffness, so that the estimate
+    stays an upper bound. After a longer travel the measurement starts again at the present point,
+    because contact stiffens as it closes.
     """
     after = replace(state, force_n=force_n, travel_m=travel_m, steps=state.steps + 1)
     moved_m = abs(travel_m - state.anchor_travel_m)

@@ -1,4 +1,4 @@
-"""The force curve of a mating and the figures that describe it."""
+"""The force curve of a contact and the figures that describe it."""
 
 from dataclasses import dataclass
 
@@ -14,9 +14,10 @@ class ForceCurve:
     time_s: Array
     """Shape (n,), monotonic."""
     wrench: Array
-    """Shape (n, 6): compensated and tared, about and in the axes of the deck frame."""
+    """Shape (n, 6): gravity compensated and tared, about the origin and in the axes of the guard's
+    wrench frame."""
     travel_m: Array
-    """Shape (n,): travel along the approach from the stand-off; NaN where it is not known."""
+    """Shape (n,): travel along the approach from the stand-off; NaN where nobody knows it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +29,6 @@ class CurveStatistics:
     rate_hz: float
     peak_fz_n: float
     peak_filtered_fz_n: float
-    peak_time_s: float
-    """From the start of the curve to the raw peak."""
     peak_lateral_n: float
     peak_moment_n_m: float
     final: Array
@@ -41,21 +40,19 @@ class CurveStatistics:
 def curve_statistics(
     time_s: Array, wrench: Array, *, filter_s: float = 5e-3, final_s: float = 0.5
 ) -> CurveStatistics:
-    """Statistics of n ≥ 2 samples, wrench of shape (n, 6) in the deck frame."""
+    """Statistics of n ≥ 2 samples, ``wrench`` of shape (n, 6); ``ValueError`` for other shapes."""
     if len(time_s) < 2 or wrench.shape != (len(time_s), 6):
         raise ValueError("a curve needs at least two samples and six components")
     duration_s = float(time_s[-1] - time_s[0])
     force_n = wrench[:, 2]
     filtered = moving_average(force_n, max(1, round(filter_s * (len(time_s) - 1) / duration_s)))
-    peak = int(np.argmax(force_n))
     tail = wrench[time_s >= time_s[-1] - final_s]
     return CurveStatistics(
         samples=len(time_s),
         duration_s=duration_s,
         rate_hz=(len(time_s) - 1) / duration_s,
-        peak_fz_n=float(force_n[peak]),
+        peak_fz_n=float(force_n.max()),
         peak_filtered_fz_n=float(filtered.max()),
-        peak_time_s=float(time_s[peak] - time_s[0]),
         peak_lateral_n=float(np.hypot(wrench[:, 0], wrench[:, 1]).max()),
         peak_moment_n_m=float(np.linalg.norm(wrench[:, 3:], axis=1).max()),
         final=tail.mean(axis=0),

@@ -1,4 +1,8 @@
-"""Is the deck seated? Force alone does not say: depth and side load must agree."""
+"""Is the part seated? The force alone does not tell: depth and side load must agree with it.
+
+A part that stands on the tip of a pin presses as hard as one that lies on its face. Only that it is
+some millimetres too high, or that it is pushed sideways, shows the difference.
+"""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -8,9 +12,9 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 EDGE_MARGIN_N_M = 2.75, 1.5
-"""What tare, friction and the lever of the side force may add to a moment about x and y."""
+"""What tare, friction and the lever of the side force may add to the moments about x and y."""
 REST_RATIO = 0.8
-"""Share of the side load allowed on the way that a seated deck may keep."""
+"""A seated part may keep this share of the side load that is allowed on the way."""
 
 
 class SeatFinding(Enum):
@@ -18,8 +22,8 @@ class SeatFinding(Enum):
 
     FORCE_LOW = "force below its window"
     FORCE_HIGH = "force above its window"
-    HIGH = "deck stands above its seat"
-    DEEP = "deck lies below its seat"
+    HIGH = "part stands above its seat"
+    DEEP = "part lies below its seat"
     LATERAL = "lateral force beyond its bound"
     MOMENT = "moment beyond its bound"
 
@@ -32,9 +36,9 @@ class SeatLimits:
     force_high_n: float
     lateral_n: float
     moment_n_m: tuple[float, float, float]
-    """About x, y and z of the deck."""
+    """About x, y and z of the part."""
     depth_m: float = 1e-4
-    """Greatest distance between reached and expected depth, elastic travel taken off."""
+    """Greatest distance between reached and expected depth, without elastic travel."""
 
 
 def seat_limits(
@@ -44,12 +48,12 @@ def seat_limits(
     max_lateral_n: float,
     half_size_m: tuple[float, float],
 ) -> SeatLimits:
-    """Bounds of the seat of a mating that is complete at a force and aborted at another.
+    """Bounds of a seat, from the force at which it is complete and the force at which to abort.
 
-    A deck that is tilted within its tolerance may rest on an edge: the force times half the width
-    or length (``half_size_m``: along x, along y) must be allowed, and little more. A deck at rest
-    has no reason for the whole side force that is allowed on the way, nor for the moment about z
-    that it would have at an end.
+    A part that is tilted within its tolerance may rest on an edge. So the moments may reach the
+    force times half the length or width of the face (``half_size_m``: along x, along y), and
+    little more. The side force, and the moment about z that it makes at an end of the face, are
+    bounded tighter than on the way: a part at rest is not being pushed.
     """
     half_x_m, half_y_m = half_size_m
     margin_x_n_m, margin_y_n_m = EDGE_MARGIN_N_M
@@ -72,7 +76,7 @@ class SeatVerdict:
 
     force_n: float
     gap_m: float
-    """Expected minus reached depth; positive: the deck stands above its seat."""
+    """Expected minus reached depth; positive when the part stands above its seat."""
     lateral_n: float
     moment_n_m: float
     """Greatest of the three magnitudes."""
@@ -92,11 +96,11 @@ def judge_seat(
     stiffness_n_m: float,
     limits: SeatLimits,
 ) -> SeatVerdict:
-    """Judge the seat from the mean wrench while holding, shape (6,), in the deck frame.
+    """Judge the seat from the mean wrench while holding, shape (6,), in the frame of the part.
 
     ``travel_m`` is the arm's travel from the stand-off, ``expected_m`` the travel at which contact
-    was predicted. What arm and contact give way under the force (``stiffness_n_m``, in series) is
-    travel without depth.
+    was predicted. Under the force, arm and contact give way by force over ``stiffness_n_m`` (both
+    in series); that part of the travel is not depth and is subtracted.
     """
     force_n = float(wrench[2])
     gap_m = expected_m - (travel_m - force_n / stiffness_n_m)

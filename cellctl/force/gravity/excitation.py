@@ -1,4 +1,8 @@
-"""Do these poses move gravity enough in the sensor to identify a payload? Refused if not."""
+"""Do these poses move gravity enough in the sensor to identify a payload?
+
+A least-squares fit also returns numbers when the poses cannot tell the load, and they may look
+plausible. So such poses are refused before the fit, with what to change.
+"""
 
 from dataclasses import dataclass
 
@@ -10,13 +14,14 @@ from cellctl.force.gravity.gravity_compensation import gravity_in_sensor
 from cellctl.geometry.pose import Array
 
 MIN_POSES = {"rigid12": 4, "affine24": 6}
-"""Distinct directions of gravity: one more than the unknowns of a channel, two for affine24."""
+"""Distinct directions of gravity that each model needs. A channel of affine24 has four unknowns;
+two poses more leave residuals to judge the fit by."""
 
 MIN_TILT_RAD = np.deg2rad(3.0)
-"""Root-mean-square tilt below which a direction counts as not excited."""
+"""Root-mean-square tilt of gravity below which a direction counts as not excited."""
 
 WIDE_TILT_RAD = np.deg2rad(20.0)
-"""Root-mean-square tilt above which gravity's direction is told apart from cross-talk."""
+"""Root-mean-square tilt above which the direction of gravity can be told from cross-talk."""
 
 SAME_DIRECTION_RAD = np.deg2rad(0.5)
 """Poses whose gravity directions differ by less count once."""
@@ -31,14 +36,14 @@ class Excitation:
     tilt_rad: Array
     """Shape (3,): rms spread of gravity's direction along its principal axes, greatest first."""
     axes: Array
-    """Shape (3, 3): these axes in sensor coordinates, one a row."""
+    """Shape (3, 3): these axes in sensor coordinates, one in each row."""
     condition_rigid12: float
     """Condition number of the force equation of rigid12."""
     condition_affine24: float
 
     @property
     def wide(self) -> bool:
-        """True when the poses range so wide that the direction of gravity is well determined."""
+        """True when the poses differ so much that they determine the direction of gravity well."""
         return bool(self.tilt_rad[1] > WIDE_TILT_RAD)
 
 

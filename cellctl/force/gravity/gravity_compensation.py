@@ -1,7 +1,9 @@
-"""Gravity compensation of a six-axis sensor: what the hanging load contributes, and taking it off.
+"""Gravity compensation of a six-axis sensor: subtract what the load that hangs on it weighs.
 
-A wrench reads ``y = A u + b`` where ``u`` is the unit vector of gravity in sensor axes. The affine
-form absorbs gain, cross-talk and mounting errors around the orientation it was identified at.
+At rest a sensor reads ``y = A u + b``, where ``u`` is the unit vector of gravity in sensor axes. A
+rigid load on an ideal sensor would need four numbers (mass and centre of mass) beside the offset;
+this affine form has eighteen and so absorbs gain, cross-talk and mounting errors of the sensor
+around the orientation it was identified at.
 """
 
 from dataclasses import dataclass
@@ -21,7 +23,7 @@ BASE_DOWN: tuple[float, float, float] = (0.0, 0.0, -1.0)
 
 @dataclass(frozen=True, slots=True)
 class GravityCompensation:
-    """The wrench of the unmoving load as a function of the sensor's orientation."""
+    """The wrench of the load at rest as a function of the sensor's orientation."""
 
     A: Array
     """Shape (6, 3): N and N·m for a unit vector of gravity in sensor axes."""
@@ -30,11 +32,11 @@ class GravityCompensation:
     method: str
     """``affine24``, ``rigid12`` or ``none``."""
     residual_n: float = 0.0
-    """Root mean square of the force residuals of the identification, a component."""
+    """Root mean square over the force components of the residuals of the identification."""
     residual_n_m: float = 0.0
     """The same for the torques."""
     base_down: tuple[float, float, float] = BASE_DOWN
-    """Direction of gravity in the base that the fit used, unit vector."""
+    """Unit vector of gravity in the robot base, as the fit assumed it."""
 
     def __post_init__(self) -> None:
         if self.A.shape != (6, 3) or self.b.shape != (6,):
@@ -42,7 +44,7 @@ class GravityCompensation:
 
     @classmethod
     def none(cls) -> Self:
-        """Takes nothing off: enough below a tare while the orientation does not change."""
+        """Subtract nothing: enough when a tare follows and the orientation does not change."""
         return cls(np.zeros((6, 3)), np.zeros(6), "none")
 
     def load(self, base_R_sensor: Rotation) -> Array:
@@ -50,7 +52,7 @@ class GravityCompensation:
         return gravity_in_sensor(base_R_sensor, self.base_down) @ self.A.T + self.b
 
     def apply(self, wrench: Array, base_R_sensor: Rotation) -> Array:
-        """Contact wrench in sensor axes, shape (6,) or (n, 6): reading less load."""
+        """Contact wrench in sensor axes, shape (6,) or (n, 6): the reading less the load."""
         return np.asarray(wrench - self.load(base_R_sensor))
 
 

@@ -1,18 +1,17 @@
 """From a record of poses to an accepted payload: the one function behind procedure and command."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.force.gravity.acceptance import (
-    Check,
+    PayloadCheck,
     PayloadLimits,
     drift_check,
-    hold_out_checks,
-    left_out_checks,
+    residual_checks,
     rigid_checks,
 )
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
@@ -27,11 +26,11 @@ class PayloadResult:
     """An identification with its acceptance tests."""
 
     identification: PayloadIdentification
-    checks: tuple[Check, ...]
+    checks: tuple[PayloadCheck, ...]
 
     @property
     def compensation(self) -> GravityCompensation:
-        """What the guard compensates with."""
+        """What the guard subtracts from its readings."""
         return self.identification.affine.compensation
 
     @property
@@ -46,7 +45,7 @@ def evaluate_payload(
     expected_mass_kg: float | None = None,
     limits: PayloadLimits | None = None,
 ) -> PayloadResult:
-    """Identify from the ``fit`` poses and test on the others.
+    """Identify the payload from the ``fit`` poses and test it on the others.
 
     Without ``hold-out`` poses each pose is predicted from all the others instead. A ``repeat``
     pose is compared with the first. Raises ``TooFewPoses`` or ``PosesDegenerate``.
@@ -55,12 +54,13 @@ def evaluate_payload(
     fit = record.having(PoseRole.FIT)
     identification = identify_payload(fit.base_R_sensor, fit.wrenches)
     checks = list(rigid_checks(identification, expected_mass_kg, limits))
+    affine = identification.affine
     hold_out = record.having(PoseRole.HOLD_OUT)
     if hold_out.roles:
-        compensation = identification.affine.compensation
-        checks += hold_out_checks(compensation, hold_out.base_R_sensor, hold_out.wrenches, limits)
+        left = affine.compensation.apply(hold_out.wrenches, hold_out.base_R_sensor)
+        checks += residual_checks("hold-out", left, limits)
     else:
-        checks += left_out_checks(identification, limits)
+        checks += residual_checks("left-out", affine.left_out, limits)
     repeat = record.having(PoseRole.REPEAT)
     if repeat.roles:
         checks.append(drift_check(fit.wrenches[0], repeat.wrenches[-1], limits))
@@ -103,21 +103,15 @@ def payload_document(result: PayloadResult) -> dict[str, Any]:
             "condition_rigid12": excitation.condition_rigid12,
             "condition_affine24": excitation.condition_affine24,
         },
-        "checks": [
-            {
-                "name": check.name,
-                "value": check.value,
-                "limit": check.limit,
-                "unit": check.unit,
-                "passed": check.passed,
-            }
-            for check in result.checks
-        ],
+        "checks": [{**asdict(check), "passed": check.passed} for check in result.checks],
     }
 
 
 def gravity_compensation_from_document(document: dict[str, Any]) -> GravityCompensation:
-    """The compensation in a document; raises ``KeyError`` or ``ValueError`` when it is none."""
+    """The gravity compensation of a document that ``payload_document`` made.
+
+    Raises ``KeyError``, ``TypeError`` or ``ValueError`` when it holds none.
+    """
     affine = document["affine24"]
     x, y, z = (float(value) for value in affine["gravity_direction_in_base"])
     return GravityCompensation(
@@ -131,7 +125,7 @@ def gravity_compensation_from_document(document: dict[str, Any]) -> GravityCompe
 
 
 def mass_kg(document: Mapping[str, Any]) -> float:
-    """Mass on the sensor in a document; raises ``CalibrationRecordInvalid`` when there is none."""
+    """Mass on the sensor in a document; raises ``CalibrationRecordInvalid`` when it has none."""
     try:
         return float(document["rigid12"]["mass_kg"])
     except (KeyError, TypeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""The text of a file of still poses and their wrenches (CSV), and back.
+"""Still poses and their wrenches as the text of a CSV file, and back.
 
 Columns, in any order: ``qx,qy,qz,qw`` of base_T_sensor, ``fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm`` in
 sensor axes, and optionally ``role`` (``fit``, ``hold-out`` or ``repeat``; ``fit`` if absent).
@@ -19,7 +19,8 @@ QUATERNION = ("qx", "qy", "qz", "qw")
 WRENCH = ("fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm")
 ROLE = "role"
 NORM_TOLERANCE = 1e-2
-"""Quaternions further from unit length are taken for something else."""
+"""A quaternion whose length is further from 1 is refused: its columns probably hold something else,
+such as angles."""
 
 
 @dataclass(frozen=True, slots=True)

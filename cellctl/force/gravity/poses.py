@@ -1,8 +1,9 @@
-"""Poses for payload identification: a cone around the mating orientation.
+"""Poses for payload identification: a cone around the orientation in which contact is made.
 
-Twelve poses within 10° to 15° around the orientation that matters beat a full tumble, although
-its condition number is better: the sensor's imperfections grow with the range that is used. The
-tilts are about *horizontal axes of the base*; tilts about tool axes can leave gravity unmoved.
+Twelve poses within 10° to 15° of that orientation give a better compensation there than poses in
+all directions, although those have the better condition number: the errors of a real sensor grow
+with the range that is used, and with kilonewtons on it they outweigh the noise. The arm tilts about
+*horizontal axes of the base*; tilts about tool axes can leave gravity unmoved in the sensor.
 """
 
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ class PoseRole(Enum):
     FIT = "fit"
     HOLD_OUT = "hold-out"
     REPEAT = "repeat"
-    """The first pose once more, at the end, to see drift."""
+    """The first pose once more, at the end, which shows drift."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +44,8 @@ def plan_identification(
 ) -> tuple[IdentificationPose, ...]:
     """Poses in the order to drive them: fit (the given pose first), hold-out, then a repeat.
 
-    The arm tilts about the point ``pivot_in_flange_m`` (shape (3,), for instance the middle of
-    the deck), which stays where it is, so the deck sweeps the least room.
+    The arm tilts about the point ``pivot_in_flange_m`` (shape (3,)), which stays where it is. With
+    the middle of the gripped part as the pivot, the part sweeps the least room.
     """
     tilts = [np.zeros(2), *_disc(fit_poses - 1, half_angle_rad, turn_rad=0.0)]
     held_out = _disc(hold_out_poses, 0.8 * half_angle_rad, turn_rad=1.0)

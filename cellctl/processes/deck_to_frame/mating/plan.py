@@ -16,7 +16,7 @@ from cellctl.force.contact.approach import (
     contact_window,
     segment_length,
 )
-from cellctl.force.contact.compliance import STRAIGHT, ComplianceLaw, LateralOffset
+from cellctl.force.contact.compliance import NO_OFFSET, ComplianceLaw, LateralOffset
 from cellctl.force.contact.creep import CreepLaw
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
@@ -45,7 +45,7 @@ class MatingPlan:
     compliance: ComplianceLaw | None
     """How the deck gives way to pins; None where it does not."""
 
-    def pose_at(self, travel_m: float, sideways: LateralOffset = STRAIGHT) -> RigidTransform:
+    def pose_at(self, travel_m: float, sideways: LateralOffset = NO_OFFSET) -> RigidTransform:
         """Flange after so much travel along −Z_D (eq. 18), beside it where the deck gave way."""
         return advance(self.base_T_flange, self.flange_T_deck, travel_m, sideways)
 

@@ -13,7 +13,6 @@ from cellctl.force.contact.approach import (
     contact_window,
     peak_at,
     segment_length,
-    series,
 )
 from cellctl.force.contact.cusum import Cusum
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -21,7 +20,7 @@ from cellctl.processes.deck_to_frame.pose_correction import flange_target
 
 FIGURES = ApproachFigures(
     stop_latency_s=0.25,
-    stiffness_n_m=series(1e6, 1e7),
+    stiffness_n_m=1e7 / 11.0,
     contact_stiffness_n_m=1e7,
     moving_mass_kg=200.0,
     deceleration_m_s2=0.1,

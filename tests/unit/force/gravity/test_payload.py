@@ -11,7 +11,14 @@ from cellctl.force.gravity.payload_result import (
     mass_kg,
     payload_document,
 )
-from tests.unit.force.gravity.world import LoadedSensor, cone, imperfect, record, rotations
+from tests.unit.force.gravity.world import (
+    LoadedSensor,
+    compensation_of,
+    cone,
+    imperfect,
+    record,
+    rotations,
+)
 
 
 def tumble(count: int, rng: np.random.Generator) -> Rotation:
@@ -51,7 +58,7 @@ def test_a_sensor_that_states_reactions_is_recognised() -> None:
     assert found.reads_reaction
     assert found.mass_kg == pytest.approx(200.0)
     assert found.inclination_v_rad == pytest.approx(0.0, abs=1e-9)
-    left = found.compensation().apply(-LoadedSensor(offset=np.zeros(6)).read(turned, rng), turned)
+    left = compensation_of(found).apply(-LoadedSensor(offset=np.zeros(6)).read(turned, rng), turned)
     np.testing.assert_allclose(left, 0.0, atol=1e-6)
 
 
@@ -68,7 +75,7 @@ def test_affine24_absorbs_what_rigid12_cannot_near_the_mating_orientation() -> N
         wrenches = sensor.read(near, rng)
         for model in (
             fit_affine24(turned, readings).compensation,
-            fit_rigid12(turned, readings).compensation(),
+            compensation_of(fit_rigid12(turned, readings)),
         ):
             rest = model.apply(wrenches, near)
             left[model.method] += np.linalg.norm(rest[:, :3], axis=1).tolist()

@@ -5,9 +5,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.force.gravity.payload import Rigid12
 from cellctl.force.gravity.pose_file import PoseRecord
 from cellctl.force.gravity.poses import IdentificationPose, plan_identification
 from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skew
 
 MATING = RigidTransform.from_components(
     [1.9, 0.0, 0.917], Rotation.from_euler("ZYX", [90.0, 0.0, 180.0], degrees=True)
@@ -69,3 +72,15 @@ def record(sensor: LoadedSensor, rng: np.random.Generator) -> PoseRecord:
     poses = cone()
     turned = rotations(poses)
     return PoseRecord(turned, sensor.read(turned, rng), tuple(pose.role for pose in poses))
+
+
+def compensation_of(rigid: Rigid12) -> GravityCompensation:
+    """The rigid model in the affine form, to compare both on the same readings."""
+    sign = -1.0 if rigid.reads_reaction else 1.0
+    force = sign * float(np.linalg.norm(rigid.weight_n)) * np.eye(3)
+    return GravityCompensation(
+        np.vstack([force, skew(rigid.centre_of_mass_m) @ force]),
+        np.concatenate([rigid.force_offset_n, rigid.torque_offset_n_m]),
+        "rigid12",
+        base_down=rigid.base_down,
+    )
