@@ -8,9 +8,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from benchmarks.campaign_mating_guard import WorldGuard
 from benchmarks.campaign_mating_robot import SESSION, WorldRobot
-from cellctl.force.compensation import Compensation
-from cellctl.force.payload import fit_affine24
-from cellctl.force.poses import plan_identification
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.force.gravity.payload import fit_affine24
+from cellctl.force.gravity.poses import plan_identification
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from fakes import scenario as scenarios
@@ -146,7 +146,7 @@ class MatingCell:
     def _wait(self) -> None:
         self.world.advance(self.arm.standstill_s + 0.05)
 
-    def _identify(self) -> Compensation:
+    def _identify(self) -> GravityCompensation:
         """The compensation as the payload procedure finds it: 17 poses, real sensor."""
         scenario, sensor = self.world.scenario, self.world.truth.sensor
         payload = scenario.payload

@@ -6,11 +6,12 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.force.compensation import Compensation
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import Array
+from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.monitor import Monitor
-from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
+from cellctl.guard.process.monitor import WrenchMonitor
+from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult
 from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 from cellctl.interfaces.stop_channel import FlangeState
 
@@ -26,13 +27,13 @@ class WorldGuard:
 
     def __init__(
         self,
-        compensation: Compensation,
+        compensation: GravityCompensation,
         flange_T_sensor: RigidTransform,
         request_stop: Callable[[float], None],
     ) -> None:
-        self._monitor = Monitor(_nine(flange_T_sensor), has_channel=True)
+        self._monitor = WrenchMonitor(_nine(flange_T_sensor), has_channel=True)
         self._monitor.channel_up = True
-        self._monitor.compensator.set_load(
+        self._monitor.contact.set_gravity_compensation(
             [(float(x), float(y), float(z)) for x, y, z in compensation.A],
             [float(value) for value in compensation.b],
             compensation.base_down,
@@ -88,7 +89,7 @@ class WorldGuard:
         return self._monitor.trip
 
     @property
-    def compensated(self) -> bool:
+    def gravity_compensated(self) -> bool:
         return True
 
     def health(self) -> GuardHealth:
@@ -98,15 +99,17 @@ class WorldGuard:
         assert self._last is not None
         return self._last
 
-    def samples(self, since_s: float) -> Curve:
+    def samples(self, since_s: float) -> GuardSamples:
         kept = self._kept[: self._number]
         part = kept[np.searchsorted(kept[:, 0], since_s, side="right") :]
-        return Curve(part[:, 0], part[:, 1:7], part[:, 7:], np.zeros(len(part)), overrun=False)
+        return GuardSamples(
+            part[:, 0], part[:, 1:7], part[:, 7:], np.zeros(len(part)), overrun=False
+        )
 
-    async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
         self._monitor.require_unarmed()
-        place = sensor_T_deck.translation.tolist()
-        self._monitor.compensator.set_deck_frame(_nine(sensor_T_deck), place)
+        place = sensor_T_wrench.translation.tolist()
+        self._monitor.contact.set_wrench_frame(_nine(sensor_T_wrench), place)
         self._monitor.signal_jumped()
 
     async def tare(self, duration_s: float) -> TareResult:

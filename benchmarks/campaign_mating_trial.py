@@ -11,8 +11,7 @@ import numpy as np
 from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from cellctl.errors.base import CellError
-from cellctl.force.approach import series
-from cellctl.force.curve import moving_average
+from cellctl.force.contact.curve import moving_average
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
@@ -165,7 +164,7 @@ def nominal_settings(stop_latency_s: float) -> MatingSettings:
     """As commissioning would leave them: measured latency, stiffness only bounded from above."""
     return MatingSettings(
         stop_latency_s=1.05 * stop_latency_s + 0.01,
-        stiffness_n_m=series(ARM_STIFFNESS_N_M, STIFFEST_CONTACT_N_M),
+        stiffness_n_m=1.0 / (1.0 / ARM_STIFFNESS_N_M + 1.0 / STIFFEST_CONTACT_N_M),
     )
 
 

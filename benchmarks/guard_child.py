@@ -2,8 +2,8 @@
 
 import os
 
-from cellctl.guard.loop import GuardLoop
-from cellctl.guard.process import main
+from cellctl.guard.process.loop import GuardLoop
+from cellctl.guard.process.main import main
 
 
 class RestlessLoop(GuardLoop):
@@ -11,9 +11,9 @@ class RestlessLoop(GuardLoop):
 
     def _stop(self) -> None:
         super()._stop()
-        self._told_trip = False
+        self._trip_handled = False
         self._monitor.trip = None
-        self._line.release()
+        self._supervisor.release()
 
 
 if __name__ == "__main__":

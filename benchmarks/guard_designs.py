@@ -1,4 +1,8 @@
-"""The two designs: the guard process, and the plain one with everything in a single process."""
+"""What is compared: the guard process, and a baseline with everything in one process.
+
+The baseline uses the same codec, sampler and monitor as the guard, on asyncio, with the work in
+threads: the straightforward way to write such a controller (docs/decisions/0003).
+"""
 
 import asyncio
 import multiprocessing
@@ -7,11 +11,12 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from benchmarks import guard_loads
+from cellctl import log
 from cellctl.clock import now_s
-from cellctl.guard.child import GuardChild
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import CusumTouch, GuardLimits, GuardSettings
-from cellctl.guard.messages import limits_to_json
-from cellctl.guard.monitor import Monitor
+from cellctl.guard.process.monitor import WrenchMonitor
 from cellctl.interfaces.ft_sensor import FtHealth
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.protocol import Frame, StreamDecoder, command
@@ -20,6 +25,7 @@ from drivers.robot.siasun import protocol as sjl
 from drivers.robot.siasun.records import Status
 from drivers.robot.siasun.stop_channel import flange_state
 
+GUARD_MODULE = "benchmarks.guard_child"
 RATE_HZ = 1000
 SESSION = 1
 HOUSEKEEPING_S = 0.01
@@ -44,7 +50,7 @@ def loads_of(kind: str) -> tuple[int, list[Any]]:
 
 
 def guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
-    """The daemon of the real design: its guard is a child, its vision workers are processes."""
+    """The daemon with its guard; its vision workers are processes, as in the product."""
     asyncio.run(_guard_process(pipe, sensor_port, guard_port, load))
 
 
@@ -53,68 +59,17 @@ def plain(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> Non
     asyncio.run(_plain(pipe, sensor_port, guard_port, load))
 
 
-class Daemon:
-    """The part of the daemon that holds a guard: starts it, asks it, reads its messages."""
-
-    def __init__(self) -> None:
-        settings = GuardSettings()
-        self._messages: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
-        self.child = GuardChild(
-            settings.ring_slots, self._take, lambda _: None, module="benchmarks.guard_child"
-        )
-        self._constants = {
-            "flange_R_sensor": [1, 0, 0, 0, 1, 0, 0, 0, 1],
-            "beat_s": settings.beat_s,
-            "stop_confirm_s": settings.stop_confirm_s,
-            "fifo_priority": settings.fifo_priority,
-            "cpu": settings.cpu,
-            "lock_memory": settings.lock_memory,
-        }
-
-    async def start(self, sensor_port: int, guard_port: int) -> str:
-        """Until sensor, channel and flange pose are there; what the PC did not permit."""
-        tcp = {"transport": "tcp", "host": "127.0.0.1", "port": sensor_port, "rate_hz": RATE_HZ}
-        sjl_grd = {"robot_name": "SR500A", "guard_port": guard_port}
-        sensor = {"name": "sri", "config": tcp}
-        channel = {"name": "siasun-sjl", "config": sjl_grd}
-        self.child.send({"sensor": sensor, "stop_channel": channel, **self._constants})
-        ready = await self._event("ready")
-        while not (await self._event("channel"))["up"]:
-            pass
-        async with asyncio.timeout(20):
-            while not self._has_pose():  # noqa: ASYNC110 - lies in another process
-                await asyncio.sleep(HOUSEKEEPING_S)
-        return ", ".join(ready["degraded"])
-
-    def _has_pose(self) -> bool:
-        status = self.child.reader.status()
-        return status is not None and status.flange_time_s > 0.0
-
-    async def arm(self) -> None:
-        """A load of nothing, and limits that make every sample under force a touch."""
-        zero = {"load": [[0.0] * 3] * 6, "offset": [0.0] * 6, "base_down": [0.0, 0.0, -1.0]}
-        self.child.send({"id": 1, "do": "compensation", **zero})
-        self.child.send({"id": 2, "do": "arm", "limits": limits_to_json(LIMITS)})
-        for _ in range(2):
-            answer = await asyncio.wait_for(self._messages.get(), 5)
-            if "refused" in answer:
-                raise RuntimeError(answer["refused"])
-
-    def _take(self, message: dict[str, Any]) -> None:
-        if message.get("event") != "trip":
-            self._messages.put_nowait(message)
-
-    async def _event(self, kind: str) -> dict[str, Any]:
-        async with asyncio.timeout(20):
-            while (message := await self._messages.get()).get("event") != kind:
-                if message.get("event") == "failed":
-                    raise RuntimeError(str(message))
-        return message
-
-
 async def _guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
-    daemon = Daemon()
-    degraded = await daemon.start(sensor_port, guard_port)
+    log.configure(level=log.LogLevel.ERROR)  # each of the thousand trips a second is a warning
+    tcp = {"transport": "tcp", "host": "127.0.0.1", "port": sensor_port, "rate_hz": RATE_HZ}
+    sjl_grd = {"robot_name": "SR500A", "guard_port": guard_port}
+    settings = GuardSettings()
+    client = GuardClient("sri", tcp, "siasun-sjl", sjl_grd, settings, module=GUARD_MODULE)
+    await client.start()
+    await client.set_gravity_compensation(GravityCompensation.none())
+    async with asyncio.timeout(20):
+        while client.health().flange_age_s > 1.0:  # noqa: ASYNC110 - lies in another process
+            await asyncio.sleep(HOUSEKEEPING_S)
     workers, own = loads_of(load)
     stop = threading.Event()
     threads = guard_loads.threads(own, stop)
@@ -124,16 +79,16 @@ async def _guard_process(pipe: Connection, sensor_port: int, guard_port: int, lo
     for worker in pool:
         worker.start()
     await asyncio.sleep(SETTLE_S)
-    await daemon.arm()
-    pipe.send(degraded)
+    await client.arm(LIMITS)
+    pipe.send(", ".join(client.health().degraded))
     while not pipe.poll():
         await asyncio.sleep(HOUSEKEEPING_S)
-        daemon.child.reader.latest()
+        client.newest()
     ends.set()
     stop.set()
     for worker in (*threads, *pool):
         worker.join(10)
-    await daemon.child.quit()
+    await client.stop()
 
 
 async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
@@ -145,9 +100,9 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
     reader, writer = await asyncio.wait_for(robot, 20)
     await asyncio.wait_for(reader.readline(), 5)
     writer.write(sjl.accept_hello(SESSION))
-    monitor = Monitor((1, 0, 0, 0, 1, 0, 0, 0, 1), has_channel=True)
+    monitor = WrenchMonitor((1, 0, 0, 0, 1, 0, 0, 0, 1), has_channel=True)
     monitor.channel_up = True
-    monitor.compensator.set_load([(0.0,) * 3] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))
+    monitor.contact.set_gravity_compensation([(0.0,) * 3] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))
     reporting = asyncio.create_task(_reports(reader, monitor))
     sensing = asyncio.create_task(_sense(sensor_port, monitor, writer))
     async with asyncio.timeout(20):
@@ -174,14 +129,14 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
     server.close()
 
 
-async def _reports(reader: asyncio.StreamReader, monitor: Monitor) -> None:
+async def _reports(reader: asyncio.StreamReader, monitor: WrenchMonitor) -> None:
     while line := await reader.readline():
         record = sjl.decode(line.rstrip(b"\n"))
         if isinstance(record, Status):
             monitor.flange(flange_state(record, now_s()))
 
 
-async def _sense(port: int, monitor: Monitor, robot: asyncio.StreamWriter) -> None:
+async def _sense(port: int, monitor: WrenchMonitor, robot: asyncio.StreamWriter) -> None:
     """The same codec, sampler and monitor as in the guard, on asyncio's streams."""
     config = SriConfig(transport="tcp", rate_hz=RATE_HZ)
     reader, writer = await asyncio.open_connection("127.0.0.1", port)

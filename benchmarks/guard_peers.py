@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 
 import numpy as np
 
-from cellctl.guard.realtime import settle
+from cellctl.guard.process import realtime
 from fakes.wire.sri_core import SriCore
 from fakes.wire.sri_session import SriSession
 
@@ -32,7 +32,7 @@ def box(pipe: Connection) -> None:
         pipe.send(listener.getsockname()[1])
         client, _ = listener.accept()
     client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    settle(PRIORITY, None, lock_memory=True)
+    realtime.enter(PRIORITY, None, lock_memory=True)
     with client:
         while True:
             due_s = session.due_s
@@ -60,7 +60,7 @@ def box(pipe: Connection) -> None:
 def robot(pipe: Connection, port: int) -> None:
     """Connect as the job program on GRD; the stamps of the stop requests."""
     link = _greeted(port)
-    settle(PRIORITY, None, lock_memory=True)
+    realtime.enter(PRIORITY, None, lock_memory=True)
     stamps: list[float] = []
     tail, count, report_s = b"", 0, time.monotonic()
     with link:

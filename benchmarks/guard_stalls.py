@@ -1,16 +1,12 @@
 """Does the machine itself stand still? One highest-priority thread a processor, ticking at 1 kHz.
 
 On a virtual machine the host takes processors away for tens of milliseconds. A tick that comes more
-than 300 µs late is such a stall: no program could have answered then. Compiled with the system's C
-compiler; without one the same thing runs in Python, with a coarser threshold.
+than 300 µs late is such a stall: no program could have answered then. The monitor is C, because the
+interpreter itself could be that late; it is compiled with the system's compiler ``cc``.
 """
 
-import os
-import shutil
 import signal
 import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +14,6 @@ from numpy.typing import NDArray
 
 Stalls = NDArray[np.float64]
 """Shape (n, 2): begin and end, monotonic seconds."""
-
-C_LATE_S = 300e-6
-PYTHON_LATE_S = 600e-6
 
 _SOURCE = r"""
 #define _GNU_SOURCE
@@ -95,18 +88,16 @@ class StallMonitor:
     """Runs beside a measurement; ``stop`` gives the stalls."""
 
     def __init__(self, folder: Path) -> None:
-        program = _compiled(folder)
-        self.kind = "C" if program else "Python"
-        commands = [[str(program)]] if program else _python_commands()
-        self._processes = [subprocess.Popen(c, stdout=subprocess.PIPE) for c in commands]
+        source, program = folder / "stalls.c", folder / "stalls"
+        source.write_text(_SOURCE)
+        subprocess.run(["cc", "-O2", "-pthread", "-o", str(program), str(source)], check=True)
+        self._process = subprocess.Popen([str(program)], stdout=subprocess.PIPE)
 
     def stop(self) -> Stalls:
         """End the monitor."""
-        rows: list[list[float]] = []
-        for process in self._processes:
-            process.send_signal(signal.SIGTERM)
-            text, _ = process.communicate(timeout=10)
-            rows += [[float(value) for value in line.split()] for line in text.splitlines()]
+        self._process.send_signal(signal.SIGTERM)
+        text, _ = self._process.communicate(timeout=10)
+        rows = [[float(value) for value in line.split()] for line in text.splitlines()]
         return np.array(sorted(rows)).reshape(-1, 2)
 
 
@@ -117,46 +108,3 @@ def touched(begin_s: NDArray[np.float64], end_s: NDArray[np.float64], stalls: St
     reach_s = np.maximum.accumulate(stalls[:, 1])
     before = np.searchsorted(stalls[:, 0], end_s, side="right") - 1
     return (before >= 0) & (reach_s[np.maximum(before, 0)] >= begin_s)
-
-
-def _compiled(folder: Path) -> Path | None:
-    compiler = shutil.which("cc")
-    if compiler is None:
-        return None
-    source, program = folder / "stalls.c", folder / "stalls"
-    source.write_text(_SOURCE)
-    command = [compiler, "-O2", "-pthread", "-o", str(program), str(source)]
-    built = subprocess.run(command, capture_output=True, check=False)
-    return program if built.returncode == 0 else None
-
-
-def _python_commands() -> list[list[str]]:
-    return [[sys.executable, "-m", __name__, str(cpu)] for cpu in sorted(os.sched_getaffinity(0))]
-
-
-def _watch(cpu: int) -> None:
-    """The Python form of the monitor, for one processor."""
-    ended = False
-
-    def end(*_: object) -> None:
-        nonlocal ended
-        ended = True
-
-    signal.signal(signal.SIGTERM, end)
-    os.sched_setaffinity(0, {cpu})
-    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(97))
-    due_s = time.monotonic()
-    found: list[tuple[float, float]] = []
-    while not ended:
-        due_s += 1e-3
-        time.sleep(max(0.0, due_s - time.monotonic()))
-        now_s = time.monotonic()
-        if now_s - due_s > PYTHON_LATE_S:
-            found.append((due_s, now_s))
-            due_s = now_s
-    for begin_s, end_s in found:
-        print(f"{begin_s:.9f} {end_s:.9f}")
-
-
-if __name__ == "__main__":
-    _watch(int(sys.argv[1]))

@@ -4,8 +4,9 @@ from typing import Protocol
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
+from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult
 
 
 class GuardPort(Protocol):
@@ -20,7 +21,7 @@ class GuardPort(Protocol):
         """The newest sample."""
         ...
 
-    def samples(self, since_s: float) -> Curve:
+    def samples(self, since_s: float) -> GuardSamples:
         """All samples after a time."""
         ...
 
@@ -28,7 +29,7 @@ class GuardPort(Protocol):
         """How the guard is doing; never raises."""
         ...
 
-    async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
         """From now on give wrenches in this frame."""
         ...
 

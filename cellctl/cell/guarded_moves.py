@@ -54,7 +54,7 @@ async def guarded_moves(
             raise trip.fault()
 
     await guard.disarm()
-    await guard.set_deck_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
+    await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
     await guard.tare(TARE_S)
     force_n, moment_n_m = tolerance.force_n, tolerance.moment_n_m

@@ -11,8 +11,8 @@ from rich.table import Table
 
 from cellctl.cli.output import write_file
 from cellctl.errors.force import PayloadFileInvalid
-from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
-from cellctl.force.pose_file import parse_pose_file
+from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
+from cellctl.force.gravity.pose_file import parse_pose_file
 from cellctl.geometry.pose import MM
 from cellctl.procedures.payload_picture import residual_picture
 

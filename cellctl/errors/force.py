@@ -9,7 +9,7 @@ class ForceError(CellError):
     def __init__(self, detail: str = "", curve: object | None = None) -> None:
         super().__init__(detail)
         self.curve = curve
-        """``cellctl.force.curve.ForceCurve`` of the attempt, or None when none was recorded."""
+        """``cellctl.force.contact.curve.ForceCurve`` of the attempt; None when there is none."""
 
 
 class SensorSilent(ForceError):

@@ -1,4 +1,9 @@
-"""The force guard: a process of its own that watches the wrench and stops the robot.
+"""The force guard: a process that watches one force sensor and stops one robot.
 
-It protects parts. ``client`` is the daemon's side, ``process`` the guard's; docs/guard.md explains.
+A cell has as many guards as it has force sensors that must be able to stop a robot; they share
+nothing. A guard protects parts, not people. docs/guard.md describes it.
+
+This folder is the daemon's side, with ``client`` as the way in, and what both sides share:
+``limits``, ``report``, ``messages`` and the memory layout in ``ring``. ``process`` is what runs
+inside the guard process. Whatever ``process`` imports must not load numpy, scipy or asyncio.
 """

@@ -1,4 +1,4 @@
-"""The daemon's side of the guard. Used from the event loop only."""
+"""The daemon's side of a guard: start it, ask it, read what it has seen, notice its death."""
 
 import asyncio
 from typing import Any
@@ -10,23 +10,27 @@ from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.force import GuardDied, SensorSilent
-from cellctl.force.compensation import Compensation
-from cellctl.guard import vitals
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.child import GuardChild
+from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import Message, fault_from_json, limits_to_json, trip_from_json
-from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult, TripReason
-from cellctl.guard.requests import Requests
+from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult, TripReason
 
 _log = log.get(__name__)
 
 
 class GuardClient:
-    """Starts, supervises and asks the guard process.
+    """One force sensor, and the channel over which it stops one robot.
 
-    Requests raise ``GuardRefused`` with the guard's reason or ``GuardDied``. When the guard dies,
-    ``trip`` becomes ``GUARD_DIED`` and stays until ``acknowledge``. That starts a new guard in the
-    place of one that is of no use, and gives it the last compensation and deck frame, but no tare.
+    A cell has one client for each sensor that must be able to stop a robot. Used from the event
+    loop only. The guard itself is a process, so that nothing in the daemon can delay a stop.
+
+    Requests raise ``GuardRefused`` with the guard's reason, or ``GuardDied``. When the guard dies,
+    ``trip`` becomes ``GUARD_DIED`` and stays until ``acknowledge``, which starts a new guard.
+
+    ``stop_plugin`` None makes a guard that only measures, for instance for a test. ``module`` is
+    what the process runs; a benchmark brings its own.
     """
 
     def __init__(
@@ -36,29 +40,31 @@ class GuardClient:
         stop_plugin: str | None,
         stop_config: dict[str, Any] | None,
         settings: GuardSettings,
+        *,
+        module: str = "cellctl.guard.process.main",
     ) -> None:
         self._sensor = {"name": sensor_plugin, "config": sensor_config}
         self._stop = None
         if stop_plugin is not None:
             self._stop = {"name": stop_plugin, "config": stop_config or {}}
         self._settings = settings
+        self._module = module
         self._child: GuardChild | None = None
         self._started: asyncio.Future[None] | None = None
         self._stopping = self._ready = False
-        self._requests = Requests(settings.reply_timeout_s)
         self._trip: GuardTrip | None = None
         self._fault: CellError | None = None
         """Why the guard could not start, or gave up its sensor."""
         self._serial = ""
         self._degraded: tuple[str, ...] = ()
-        self._channel_up = False
-        self._load: Message | None = None
-        self._deck_frame: Message | None = None
+        # What a new guard is given again after the old one has died.
+        self._gravity_compensation: Message | None = None
+        self._wrench_frame: Message | None = None
 
-    # --- life
+    # --- start and end
 
     async def start(self) -> None:
-        """Start the guard and wait until sensor and stop channel stand. Idempotent.
+        """Start the guard and wait until its sensor and its stop channel are open. Idempotent.
 
         Raises what the drivers raise in the guard, or ``GuardDied``.
         """
@@ -68,7 +74,14 @@ class GuardClient:
         self._stopping = self._ready = False
         self._fault = None
         self._started = asyncio.get_running_loop().create_future()
-        self._child = GuardChild(self._settings.ring_slots, self._take, self._died)
+        settings = self._settings
+        self._child = GuardChild(
+            settings.ring_slots,
+            settings.reply_timeout_s,
+            self._take_event,
+            self._died,
+            module=self._module,
+        )
         try:
             self._child.send(self._set_up())
             await self._until_started(self._started)
@@ -77,16 +90,16 @@ class GuardClient:
             self._fault = error if isinstance(error, CellError) else None
             raise
         for measure in self._degraded:
-            _log.warning("guard runs degraded", measure=measure)
+            _log.warning("guard runs degraded", measure=measure, sensor=self._serial)
         _log.info("guard runs", pid=self._child.pid, sensor=self._serial)
 
     async def stop(self) -> None:
-        """End the guard; the robot is stopped by that. Idempotent."""
+        """End the guard, which stops the robot. Idempotent."""
         self._stopping = True
         if self._child is not None:
             child, self._child = self._child, None
             await child.quit()
-        self._fail(GuardDied("the guard was stopped"))
+        self._settle_start(GuardDied("the guard was stopped"))
 
     @property
     def running(self) -> bool:
@@ -100,34 +113,44 @@ class GuardClient:
 
     # --- requests
 
-    async def set_compensation(self, compensation: Compensation) -> None:
-        """Subtract this load from now on; drops the tare."""
+    async def set_gravity_compensation(self, compensation: GravityCompensation) -> None:
+        """Subtract what hangs on the sensor from now on; drops the tare."""
         load = {
             "load": compensation.A.tolist(),
             "offset": compensation.b.tolist(),
             "base_down": list(compensation.base_down),
         }
-        await self._request("compensation", **load)
-        self._load = load
+        await self._request("gravity_compensation", **load)
+        self._gravity_compensation = load
 
-    async def set_deck_frame(self, sensor_T_deck: RigidTransform) -> None:
-        """Give wrenches in this frame from now on; drops the tare."""
+    @property
+    def gravity_compensated(self) -> bool:
+        """True once a gravity compensation was set; without one nothing can be armed."""
+        return self._gravity_compensation is not None
+
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
+        """Give wrenches in this frame from now on; drops the tare.
+
+        Forces and moments, and with them limits and touch, are then about the origin and in the
+        axes of this frame, for instance the mating face of a part. Until the first call it is the
+        sensor frame itself.
+        """
         frame = {
-            "rotation": sensor_T_deck.rotation.as_matrix().ravel().tolist(),
-            "translation_m": sensor_T_deck.translation.tolist(),
+            "rotation": sensor_T_wrench.rotation.as_matrix().ravel().tolist(),
+            "translation_m": sensor_T_wrench.translation.tolist(),
         }
-        await self._request("deck_frame", **frame)
-        self._deck_frame = frame
+        await self._request("wrench_frame", **frame)
+        self._wrench_frame = frame
 
     async def tare(self, duration_s: float) -> TareResult:
-        """Average over the next ``duration_s`` and subtract that from then on."""
+        """Average the wrench over the next ``duration_s`` and subtract that from then on."""
         result = await self._request("tare", duration_s, duration_s=duration_s)
         return TareResult(
             np.array(result["mean"]), np.array(result["sigma"]), int(result["samples"])
         )
 
     async def arm(self, limits: GuardLimits) -> None:
-        """Watch these limits from now on; replaces those watched before."""
+        """Watch these limits from now on; they replace those watched before."""
         await self._request("arm", limits=limits_to_json(limits))
 
     async def disarm(self) -> None:
@@ -137,8 +160,9 @@ class GuardClient:
     async def acknowledge(self) -> None:
         """Release the latch; disarms.
 
-        Starts a new guard when the old one has died, hangs or has given up its sensor; raises as
-        ``start`` does when that fails.
+        A guard that has died, hangs or has given up its sensor is replaced by a new one, which
+        gets the last gravity compensation and wrench frame. It gets no tare: a zero must be taken
+        at a moment that somebody has chosen. Raises as ``start`` does when the new one fails.
         """
         health = self.health()
         if health.alive and health.sensor_open:
@@ -146,16 +170,11 @@ class GuardClient:
         else:
             await self.stop()
             await self.start()
-            if self._load is not None:
-                await self._request("compensation", **self._load)
-            if self._deck_frame is not None:
-                await self._request("deck_frame", **self._deck_frame)
+            if self._gravity_compensation is not None:
+                await self._request("gravity_compensation", **self._gravity_compensation)
+            if self._wrench_frame is not None:
+                await self._request("wrench_frame", **self._wrench_frame)
         self._trip = None
-
-    @property
-    def compensated(self) -> bool:
-        """True once a compensation was set; without one nothing can be armed."""
-        return self._load is not None
 
     # --- what the guard has seen
 
@@ -169,26 +188,27 @@ class GuardClient:
         return None if self._child is None else self._child.reader.latest()
 
     def latest(self) -> GuardSample:
-        """The newest sample; ``GuardDied`` or ``SensorSilent`` when there is none."""
+        """The newest sample; raises ``GuardDied`` or ``SensorSilent`` when there is none."""
         sample = self._require_child().reader.latest()
         if sample is None:
             raise SensorSilent("no sample since the guard's start")
         return sample
 
-    def samples(self, since_s: float) -> Curve:
-        """All samples with a later time that the ring still holds."""
+    def samples(self, since_s: float) -> GuardSamples:
+        """All samples later than ``since_s`` that the ring still holds; may raise ``GuardDied``."""
         return self._require_child().reader.since(since_s)
 
     def health(self) -> GuardHealth:
         """How the guard is doing; never raises."""
         child = self._child
         status = child.reader.status() if child is not None and child.alive else None
-        return vitals.health(status, self._serial, self._degraded)
+        return GuardHealth.from_status(status, now_s(), self._serial, self._degraded)
 
     def check(self) -> None:
         """Raise the fault of a guard that is dead or hangs, or has lost sensor or robot."""
         health = self.health()
-        fault = vitals.fault(health) if self.running else GuardDied("no guard process")
+        fault = health.fault() if self.running else GuardDied("no guard process")
+        # Why it did not start, or gave up its sensor, says more than that it is not there.
         given_up = not self.running or (health.alive and not health.sensor_open)
         if given_up and self._fault is not None:
             fault = self._fault.with_traceback(None)  # or it would grow each time it is raised
@@ -220,39 +240,38 @@ class GuardClient:
         }
 
     async def _request(self, do: str, wait_s: float = 0.0, **fields: Any) -> Any:
-        return await self._requests.ask(self._require_child().send, {"do": do, **fields}, wait_s)
+        return await self._require_child().ask({"do": do, **fields}, wait_s)
 
     def _require_child(self) -> GuardChild:
         if self._child is None or not self._child.alive:
             raise GuardDied("no guard process")
         return self._child
 
-    def _take(self, message: Message) -> None:
-        event = message.get("event")
-        if event is None:
-            self._requests.take(message)
-        elif event == "trip":
+    def _take_event(self, message: Message) -> None:
+        event = message["event"]
+        if event == "trip":
             self._latch(trip_from_json(message["trip"]))
         elif event == "ready":
             self._serial, self._degraded = message["serial"], tuple(message["degraded"])
-            if message["channel"]:
-                self._channel(up=True, fault=None)
+            if message["channel"]:  # there is none to wait for
+                self._settle_start(None)
         elif event == "channel":
-            fault = message["fault"]
-            self._channel(up=message["up"], fault=fault and fault_from_json(fault))
+            self._take_channel(up=message["up"], fault=message["fault"])
         else:
             self._fault = fault_from_json(message)
-            _log.error("guard reports a fault", fault=str(self._fault))
+            _log.error("guard reports a fault", fault=str(self._fault), sensor=self._serial)
             self._settle_start(self._fault)
 
-    def _channel(self, *, up: bool, fault: CellError | None) -> None:
+    def _take_channel(self, *, up: bool, fault: Message | None) -> None:
         if up:
             self._settle_start(None)
         elif fault is not None:
-            _log.warning("stop channel is down", fault=str(fault))
-            self._settle_start(fault)
+            reason = fault_from_json(fault)
+            _log.warning("stop channel is down", fault=str(reason), sensor=self._serial)
+            self._settle_start(reason)
 
     def _settle_start(self, fault: CellError | None) -> None:
+        """End the wait of ``start``, if it still waits: with success, or with this fault."""
         if self._started is None or self._started.done():
             return
         if fault is None:
@@ -262,17 +281,14 @@ class GuardClient:
             self._started.set_exception(fault)
 
     def _latch(self, trip: GuardTrip) -> None:
+        # The death stays until it is acknowledged: it is the reason why there is no guard.
         if self._trip is None or self._trip.reason is not TripReason.GUARD_DIED:
             self._trip = trip
-        _log.warning("guard has stopped the robot", trip=str(trip))
+        _log.warning("guard has stopped the robot", trip=str(trip), sensor=self._serial)
 
     def _died(self, how: str) -> None:
-        self._fail(GuardDied(how))
+        self._settle_start(GuardDied(how))
+        # A death during the start is the failure of that start, and one that was asked for is none.
         if self._ready and not self._stopping:
             self._fault = None
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))
-
-    def _fail(self, fault: GuardDied) -> None:
-        """Whoever waits for the guard hears that it will not answer."""
-        self._settle_start(fault)
-        self._requests.fail(fault)

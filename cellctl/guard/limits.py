@@ -1,10 +1,12 @@
-"""What the guard is told to watch, and how it is set up. Plain floats: no arrays in the guard."""
+"""What a guard is told to watch, and how it is set up. Plain floats: no arrays in the guard."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from cellctl.force.contact.cusum import Cusum
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RigidTransform
@@ -15,48 +17,50 @@ Six = tuple[float, float, float, float, float, float]
 UNLIMITED: Six = (math.inf,) * 6
 
 DEFAULT_FILTER_S = 5e-3
-"""A slower one lets hard contacts grow past the force limit before it notices them."""
+"""A slower filter lets the force of a hard contact grow past its limit before the limit acts."""
 
 DEFAULT_RATE_WINDOW_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class CusumTouch:
-    """Touch: the sum of ``max(0, f − drift)`` over the samples exceeds a threshold."""
+class CusumTouch(Cusum):
+    """A touch detector on one component of the wrench."""
 
-    drift_n: float = 4.0
-    threshold_n: float = 120.0
-    """Sum over samples, chosen for 1 kHz; another rate has another one."""
     axis: int = 2
-    """Component of the deck-frame wrench, 0 … 5."""
+    """Component of the wrench in the wrench frame, 0 … 5."""
     sign: float = 1.0
-    """+1 when contact pushes along the positive axis; a deck is pushed up along z."""
+    """+1 when the contact pushes along the positive axis, −1 when against it."""
 
 
 @dataclass(frozen=True, slots=True)
 class GuardLimits:
-    """Everything that trips while the guard is armed. Magnitudes in the deck frame, N and N·m."""
+    """Everything that trips while the guard is armed.
+
+    ``raw`` and ``filtered`` are magnitudes in the wrench frame, N and N·m.
+    """
 
     raw: Six = UNLIMITED
-    """A single sample beyond it trips."""
+    """A single sample beyond it trips. It has to leave room for the noise of the sensor."""
     filtered: Six = UNLIMITED
-    """The same after a first-order low-pass of ``filter_s``."""
+    """The same after a first-order low-pass of ``filter_s``: noise averages out, so it can be
+    tighter."""
     touch: CusumTouch | None = None
     filter_s: float = DEFAULT_FILTER_S
     stale_s: float = 0.01
     """No sample for this long trips."""
     flange_age_s: float = 0.1
-    """A flange pose older than this trips."""
+    """A flange pose older than this trips: the gravity compensation would use a wrong direction."""
     frozen_samples: int = 10
-    """So many samples in a row with six equal values trip."""
+    """This many samples in a row with six equal values trip."""
     bad_frames: int = 3
-    """So many damaged or unusable frames within ``bad_frames_window_s`` trip."""
+    """This many damaged or unusable frames within ``bad_frames_window_s`` trip."""
     bad_frames_window_s: float = 0.1
     rate_hz: tuple[float, float] = (0.0, math.inf)
     """Allowed sample rate, averaged over ``rate_window_s``."""
     rate_window_s: float = DEFAULT_RATE_WINDOW_S
 
     def __post_init__(self) -> None:
+        # Written so that NaN is refused as well: a limit of NaN would never be compared as passed.
         thresholds = (*self.raw, *self.filtered)
         durations = (self.filter_s, self.stale_s, self.flange_age_s, self.rate_window_s)
         counts = (self.frozen_samples - 1, self.bad_frames)
@@ -65,7 +69,7 @@ class GuardLimits:
 
 
 def _identity() -> RigidTransform:
-    """Imported here, so that the guard, which reads this module too, stays free of arrays."""
+    """Imported here: the guard process reads this module too and must not load arrays."""
     from scipy.spatial.transform import RigidTransform
 
     return RigidTransform.identity()
@@ -77,9 +81,10 @@ class GuardSettings:
 
     flange_T_sensor: RigidTransform = field(default_factory=_identity)
     beat_s: float = 0.02
-    """Interval of the heartbeat to the robot; at most a third of its dead man."""
+    """Interval of the heartbeat to the robot; at most a third of its dead man's time, so that one
+    lost beat does not stop it."""
     stop_confirm_s: float = 0.1
-    """A stop that the robot has not latched by then makes the guard withhold its heartbeat."""
+    """When the robot has not latched a stop after this time, the guard withholds its heartbeat."""
     fifo_priority: int = 60
     """SCHED_FIFO priority; 0 leaves the scheduler alone."""
     lock_memory: bool = True

@@ -1,8 +1,9 @@
-"""The words between daemon and guard: JSON objects, one a packet, over a pair of local sockets.
+"""The messages between daemon and guard: JSON objects, one in each packet of a local socket pair.
 
 Requests have an ``id`` and a ``do``; answers repeat the id with ``result`` or ``refused``; events
-have an ``event``. The guard never waits for room: an event that does not fit is dropped, and the
-shared status tells the same story.
+have an ``event``. The socket keeps the packets apart, so there is no framing to get out of step.
+The guard never waits for room: an event that does not fit is dropped, and the shared status tells
+the same facts.
 """
 
 import json
@@ -18,6 +19,7 @@ from cellctl.guard.report import GuardTrip, TripReason
 Message = dict[str, Any]
 
 _LONGEST_BYTES = 65_536
+"""Far above the longest message. A packet that is longer would be cut off."""
 
 
 def encode(message: Message) -> bytes:

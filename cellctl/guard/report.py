@@ -1,8 +1,12 @@
-"""What the guard reports: samples, tare, trip, health."""
+"""What the guard reports: samples, the result of a tare, trips.
+
+The guard process imports this module for its trips, so it imports no arrays; they are named in
+annotations only.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -18,7 +22,6 @@ from cellctl.errors.force import (
     SensorSilent,
 )
 from cellctl.errors.link import LinkLost
-from cellctl.interfaces.ft_sensor import FtHealth
 
 if TYPE_CHECKING:
     from cellctl.geometry.pose import Array
@@ -28,7 +31,7 @@ class TripReason(Enum):
     """Why the guard stopped the robot."""
 
     TOUCH = "touch"
-    """The touch that mating looks for."""
+    """The contact that a guarded move was made to find: the one trip that may be a success."""
     RAW_LIMIT = "raw limit"
     FILTERED_LIMIT = "filtered limit"
     SENSOR_SILENT = "sensor silent"
@@ -39,7 +42,7 @@ class TripReason(Enum):
     FLANGE_STALE = "flange pose stale"
     STOP_CHANNEL_LOST = "stop channel lost"
     GUARD_DIED = "guard died"
-    """Seen by the daemon; the robot is stopped by its dead man."""
+    """Found by the daemon; the robot is stopped by its own dead man."""
 
 
 _FAULTS: dict[TripReason, type[CellError]] = {
@@ -67,13 +70,13 @@ class GuardTrip:
     detail: str
     """The facts in words, with units."""
     component: int | None = None
-    """0 … 5 for Fx … Mz, None where it is no matter of one component."""
+    """0 … 5 for Fx … Mz; None when the reason does not concern one component."""
     value: float = 0.0
-    """In N, N·m, seconds, hertz or counts, as the reason has it."""
+    """What was compared: N, N·m, seconds, hertz or a count, depending on the reason."""
 
     @property
     def touch(self) -> bool:
-        """True for the touch that mating looks for."""
+        """True when the touch detector found the contact."""
         return self.reason is TripReason.TOUCH
 
     @property
@@ -82,7 +85,7 @@ class GuardTrip:
         return self.reason in (TripReason.RAW_LIMIT, TripReason.FILTERED_LIMIT)
 
     def fault(self) -> CellError:
-        """The numbered fault of this trip, for whoever did not expect it."""
+        """The numbered fault of this trip, for a caller to whom it is one."""
         return _FAULTS[self.reason](self.detail)
 
     def __str__(self) -> str:
@@ -98,15 +101,16 @@ class GuardSample:
     receive_time_s: float
     number: int
     wrench: Array
-    """Shape (6,): compensated and tared, about and in the axes of the deck frame."""
+    """Shape (6,): gravity compensated and tared, about the origin and in the axes of the wrench
+    frame."""
     raw: Array
     """Shape (6,): sensor frame, as received."""
     flange_age_s: float
-    """Age of the flange pose that the compensation used; infinite when there is none."""
+    """Age of the flange pose that the gravity compensation used; infinite when there is none."""
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
+class GuardSamples:
     """A stretch of samples, oldest first."""
 
     time_s: Array
@@ -123,36 +127,10 @@ class Curve:
 
 @dataclass(frozen=True, slots=True)
 class TareResult:
-    """What the compensation had left, in the deck frame; zero from now on."""
+    """What was left of the wrench at rest, in the wrench frame; it counts as zero from now on."""
 
     mean: Array
     """Shape (6,)."""
     sigma: Array
     """Shape (6,): standard deviation of the samples."""
     samples: int
-
-
-@dataclass(frozen=True, slots=True)
-class GuardHealth:
-    """How the guard is doing."""
-
-    alive: bool
-    armed: bool = False
-    latched: bool = False
-    stop_channel_up: bool = False
-    """Also True when the guard runs without a stop channel."""
-    sensor_open: bool = False
-    """False after a fault of the sensor that only a new guard ends, such as another set-up."""
-    degraded: tuple[str, ...] = ()
-    """Real-time measures that this PC did not permit."""
-    sensor_serial: str = ""
-    sensor: FtHealth = field(default_factory=FtHealth)
-    sample_age_s: float = float("inf")
-    flange_age_s: float = float("inf")
-    late_wakeups: int = 0
-    """Times the guard woke more than a millisecond late: the machine stood still."""
-    peak_raw: tuple[float, ...] = (0.0,) * 6
-    """Greatest magnitudes of the deck-frame wrench since arming, N and N·m."""
-    peak_filtered: tuple[float, ...] = (0.0,) * 6
-    resident_peak_bytes: int = 0
-    """Greatest resident memory of the process."""

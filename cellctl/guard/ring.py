@@ -1,12 +1,16 @@
 """Shared memory between guard and daemon: a ring of samples and a block of status.
 
-One process writes, any number read; nobody waits. The memory is an anonymous file handed to the
-guard at its start, so nothing is left behind whoever is killed.
+Why shared memory: a socket would fill up while the daemon is busy, and then the guard would have to
+wait or to drop samples. Here one process writes, any number read, and nobody ever waits.
 
-A sample is complete before the head counts it. A reader copies, then looks at the head again:
-what the writer may have reached meanwhile is an overrun. The status is bracketed by a number that
-is odd while it changes. Both rely on stores becoming visible in program order, as on x86-64; the
-index inside each slot catches what a processor with weaker rules would get wrong.
+The memory is an anonymous file whose descriptor the guard inherits. It has no name, so nothing is
+left behind whoever is killed.
+
+Consistency without locks: a sample is written completely before the head counts it. A reader
+copies, then looks at the head again: slots that the writer may have reached meanwhile are an
+overrun. The status is bracketed by a number that is odd while the status changes. Both rely on
+stores becoming visible in program order, as on x86-64; the index inside each slot catches what a
+processor with weaker rules would get wrong.
 """
 
 import mmap
@@ -28,8 +32,8 @@ SLOT = struct.Struct("=Q3dQ12d")
 _STATUS = struct.Struct("=d6Q2d8Qd12d")
 
 
-class Status(NamedTuple):
-    """What the guard says about itself at every beat."""
+class GuardStatus(NamedTuple):
+    """What the guard publishes about itself at every beat. Times are monotonic, in seconds."""
 
     time_s: float = 0.0
     armed: int = 0
@@ -59,7 +63,7 @@ class Status(NamedTuple):
         )
 
     @classmethod
-    def unpack_from(cls, memory: mmap.mmap) -> "Status":
+    def unpack_from(cls, memory: mmap.mmap) -> "GuardStatus":
         """Read all fields; may be torn unless the status number says otherwise."""
         values = _STATUS.unpack_from(memory, STATUS_OFFSET)
         numbers, sensor, peaks = values[:9], values[9:18], values[18:]
@@ -87,7 +91,7 @@ def attach(descriptor: int) -> tuple[mmap.mmap, int]:
 
 
 class RingWriter:
-    """The guard's end."""
+    """The guard's end of the shared memory; uses no arrays."""
 
     def __init__(self, descriptor: int) -> None:
         self._memory, slots = attach(descriptor)
@@ -97,7 +101,7 @@ class RingWriter:
         self._status_number = 0
 
     def publish(self, sample: WrenchSample, wrench: Six, flange_age_s: float) -> None:
-        """Write one sample with its deck-frame wrench, then count it."""
+        """Write one sample with its contact wrench in the wrench frame, then count it."""
         head = self._head
         offset = HEADER_BYTES + (head & self._mask) * SLOT.size
         receive_s, time_s, number, *raw, _ = sample
@@ -107,7 +111,7 @@ class RingWriter:
         self._head = head + 1
         self._words[HEAD] = head + 1
 
-    def publish_status(self, status: Status) -> None:
+    def publish_status(self, status: GuardStatus) -> None:
         """Replace the status."""
         self._words[STATUS_NUMBER] = self._status_number + 1
         status.pack_into(self._memory)

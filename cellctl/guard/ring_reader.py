@@ -1,9 +1,9 @@
-"""The daemon's end of the ring."""
+"""The daemon's end of the shared memory: the newest sample, stretches of samples, the status."""
 
 import numpy as np
 
 from cellctl.guard import ring
-from cellctl.guard.report import Curve, GuardSample
+from cellctl.guard.report import GuardSample, GuardSamples
 
 _SLOT = np.dtype(
     [
@@ -17,6 +17,7 @@ _SLOT = np.dtype(
     ]
 )
 _STATUS_TRIES = 1000
+"""Reading a status takes longer than writing one, so a live writer lets far fewer tries fail."""
 
 
 class RingReader:
@@ -36,6 +37,7 @@ class RingReader:
         """The newest sample; None before the first."""
         while (head := self._head()) > 0:
             slot = self._ring[(head - 1) % self._slots].copy()
+            # The writer may have gone round the ring while this was copied: then try again.
             if self._head() - head < self._slots - 1 and slot["index"] == head - 1:
                 return GuardSample(
                     time_s=float(slot["time_s"]),
@@ -47,7 +49,7 @@ class RingReader:
                 )
         return None
 
-    def since(self, since_s: float) -> Curve:
+    def since(self, since_s: float) -> GuardSamples:
         """All samples with a time after ``since_s``."""
         head = self._head()
         oldest = max(0, head - self._slots + 1)
@@ -59,11 +61,12 @@ class RingReader:
             found = self._ring[begin:end].copy()
         else:
             found = np.concatenate([self._ring[begin:], self._ring[:end]])
+        # Whatever the writer has reached since the head was read may be half old, half new.
         intact = found["index"] == np.arange(first, head, dtype="u8")
         intact &= found["index"] >= max(0, self._head() - self._slots + 1)
         kept = found[intact]
         overrun = len(kept) < len(found) or (first == oldest and oldest > 0)
-        return Curve(
+        return GuardSamples(
             time_s=kept["time_s"].copy(),
             wrench=kept["wrench"].copy(),
             raw=kept["raw"].copy(),
@@ -71,13 +74,13 @@ class RingReader:
             overrun=overrun,
         )
 
-    def status(self) -> ring.Status | None:
+    def status(self) -> ring.GuardStatus | None:
         """The status of the last beat; None when its writer stopped in the middle of one."""
         for _ in range(_STATUS_TRIES):
             before = int(self._words[ring.STATUS_NUMBER])
-            status = ring.Status.unpack_from(self._memory)
+            status = ring.GuardStatus.unpack_from(self._memory)
             if before % 2 == 0 and int(self._words[ring.STATUS_NUMBER]) == before:
-                return status if before else ring.Status()
+                return status if before else ring.GuardStatus()
         return None
 
     def _head(self) -> int:

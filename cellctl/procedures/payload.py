@@ -8,11 +8,11 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import NotSettled, SensorSilent
-from cellctl.force.payload_result import PayloadResult, evaluate_payload, payload_document
-from cellctl.force.pose_file import PoseRecord
-from cellctl.force.poses import PoseRole, plan_identification
+from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
+from cellctl.force.gravity.pose_file import PoseRecord
+from cellctl.force.gravity.poses import PoseRole, plan_identification
 from cellctl.geometry.pose import MM, Array
-from cellctl.guard.report import Curve, GuardSample
+from cellctl.guard.report import GuardSample, GuardSamples
 from cellctl.interfaces import Robot
 from cellctl.procedures.payload_picture import residual_picture
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
@@ -35,7 +35,7 @@ class SampleSource(Protocol):
         """The newest sample."""
         ...
 
-    def samples(self, since_s: float) -> Curve:
+    def samples(self, since_s: float) -> GuardSamples:
         """All samples after a time."""
         ...
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, new_figure
-from cellctl.force.payload_result import PayloadResult
+from cellctl.force.gravity.payload_result import PayloadResult
 from cellctl.geometry.pose import Array
 
 

@@ -12,7 +12,7 @@ from cellctl.calibration.checks import Check, Checks, all_passed, evidence_to_re
 from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
-from cellctl.force.commissioning import LatencyEstimate, estimate_stop_latency
+from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
 from cellctl.procedures.stop_latency_picture import latency_picture

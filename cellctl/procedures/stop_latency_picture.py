@@ -4,7 +4,7 @@ import numpy as np
 
 from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
-from cellctl.force.commissioning import LatencyEstimate
+from cellctl.force.contact.commissioning import LatencyEstimate
 from cellctl.geometry.pose import MM, Array
 
 

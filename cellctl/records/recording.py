@@ -23,7 +23,7 @@ from mcap.writer import CompressionType, Writer
 from zstandard import ZstdError
 
 from cellctl.errors.records import RecordingUnreadable, RecordNotWritten
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 
 MEDIA_TYPE = "application/x-mcap"

@@ -33,8 +33,8 @@ from cellctl.errors.calibration import (
     CalibrationRecordInvalid,
     HeadPoseChanged,
 )
-from cellctl.force.compensation import Compensation
-from cellctl.force.payload_result import compensation_from_document
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.force.gravity.payload_result import gravity_compensation_from_document
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.runtime.commissioned import CONTACT_STIFFNESS, Commissioned, read_commissioned
 from cellctl.version import software
@@ -58,7 +58,7 @@ class Calibrations:
     """Everything production needs, valid at the moment it was read."""
 
     geometry: CalibrationSet
-    compensation: Compensation
+    gravity_compensation: GravityCompensation
     ids: Mapping[str, str]
     """Identity of every record by kind."""
     serial_numbers: Mapping[str, str]
@@ -109,7 +109,7 @@ class CalibrationFolder:
         if payload.valid_until <= until:
             raise CalibrationExpired(f"{PAYLOAD} ({payload.valid_until:%Y-%m-%d})")
         try:
-            compensation = compensation_from_document(dict(payload.record))
+            compensation = gravity_compensation_from_document(dict(payload.record))
         except (KeyError, TypeError, ValueError) as error:
             raise CalibrationRecordInvalid(f"{PAYLOAD}: {error!r}") from error
         stored = self.stored()

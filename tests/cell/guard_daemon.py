@@ -17,7 +17,7 @@ async def main(sensor_port: int, guard_port: int) -> None:
         SETTINGS,
     )
     await client.start()
-    await client.set_compensation(NOTHING)
+    await client.set_gravity_compensation(NOTHING)
     while client.health().flange_age_s > 1.0:  # noqa: ASYNC110 - lies in another process
         await asyncio.sleep(0.01)
     await client.arm(PATIENT)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.force.compensation import Compensation
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.report import GuardTrip
@@ -19,7 +19,7 @@ from fakes.wire.sri_box import SriBox
 from tests.ports import free_ports
 from tests.wire.siasun_peer import Peer
 
-NOTHING = Compensation(np.zeros((6, 3)), np.zeros(6), "affine24")
+NOTHING = GravityCompensation(np.zeros((6, 3)), np.zeros(6), "affine24")
 PATIENT = GuardLimits(raw=(20.0,) * 6, stale_s=0.3, flange_age_s=0.5)
 """Long enough for a test machine that is busy; each test shortens what it is about."""
 SETTINGS = GuardSettings(ring_slots=16_384)
@@ -122,7 +122,7 @@ async def rig(settings: GuardSettings = SETTINGS, **sensor: Any) -> AsyncIterato
     running = asyncio.create_task(robot.run())
     try:
         await starting
-        await client.set_compensation(NOTHING)
+        await client.set_gravity_compensation(NOTHING)
         await until(lambda: client.health().flange_age_s < 1.0)
         yield Rig(box, client, robot, force)
     finally:

@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.force import GuardDied, GuardRefused, SensorSetupWrong, SensorSilent
 from cellctl.errors.link import ConnectTimeout, LinkLost
-from cellctl.force.compensation import Compensation
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
@@ -151,7 +151,9 @@ async def test_an_ignored_stop_is_repeated_and_then_the_beats_end() -> None:
 async def test_the_death_of_the_guard_is_told_and_the_beats_end() -> None:
     async with rig() as cell:
         taring = asyncio.create_task(cell.client.tare(5.0))
-        await cell.client.set_compensation(NOTHING)  # its answer says that the tare was heard
+        await cell.client.set_gravity_compensation(
+            NOTHING
+        )  # its answer says that the tare was heard
         os.kill(cell.client.pid, signal.SIGKILL)
         trip = await tripped(cell.client)
         with pytest.raises(GuardDied):
@@ -201,10 +203,12 @@ async def test_an_ordinary_end_stops_the_robot_too() -> None:
 async def test_tare_and_deck_frame() -> None:
     async with rig() as cell:
         cell.force[2] = -100.0
-        load = Compensation(np.vstack([np.diag([100.0] * 3), np.zeros((3, 3))]), np.zeros(6), "x")
-        await cell.client.set_compensation(load)
+        load = GravityCompensation(
+            np.vstack([np.diag([100.0] * 3), np.zeros((3, 3))]), np.zeros(6), "x"
+        )
+        await cell.client.set_gravity_compensation(load)
         turned = RigidTransform.from_translation([0.1, 0.0, 0.0])
-        await cell.client.set_deck_frame(turned)
+        await cell.client.set_wrench_frame(turned)
         tare = await cell.client.tare(0.1)
         # The scripted robot's flange looks down (C = 180°): gravity is +z of the sensor.
         assert tare.mean[2] == pytest.approx(-200.0, abs=0.5)
@@ -229,8 +233,8 @@ async def test_a_new_guard_after_death_or_hang_knows_load_and_frame_but_is_not_a
     sensor = {"transport": "tcp", "host": "127.0.0.1", "port": await box.start_tcp()}
     client = GuardClient("sri", sensor, None, None, SETTINGS)
     await client.start()
-    offset = Compensation(np.zeros((6, 3)), np.full(6, 2.0), "affine24")
-    await client.set_compensation(offset)
+    offset = GravityCompensation(np.zeros((6, 3)), np.full(6, 2.0), "affine24")
+    await client.set_gravity_compensation(offset)
     for end, noticed in (
         (signal.SIGKILL, lambda: client.trip is not None),
         (signal.SIGSTOP, lambda: not client.health().alive),
@@ -257,8 +261,10 @@ async def test_a_load_that_hangs_needs_a_stop_channel() -> None:
     with pytest.raises(GuardRefused, match="compensation"):
         await client.arm(PATIENT)
     with pytest.raises(GuardRefused, match="stop channel"):
-        await client.set_compensation(Compensation(np.ones((6, 3)), np.zeros(6), "affine24"))
-    await client.set_compensation(NOTHING)
+        await client.set_gravity_compensation(
+            GravityCompensation(np.ones((6, 3)), np.zeros(6), "affine24")
+        )
+    await client.set_gravity_compensation(NOTHING)
     await client.stop()
     await box.stop()
 
@@ -301,7 +307,7 @@ async def test_a_box_that_comes_back_with_another_set_up_is_named_until_it_is_pu
     sensor = {"transport": "tcp", "host": "127.0.0.1", "port": port, "reconnect_s": 0.1}
     client = GuardClient("sri", sensor, None, None, SETTINGS)
     await client.start()
-    await client.set_compensation(NOTHING)
+    await client.set_gravity_compensation(NOTHING)
     box.settings.raw_unit = "MV"
     box.drop_clients()
     await until(lambda: not client.health().sensor_open)

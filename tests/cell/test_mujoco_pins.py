@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.force.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
+from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
 from fakes.scenario import Pins
 from fakes.world.payload import STEP_S
 from tests.cell.mujoco_rig import DT_S, MASS_KG, RADIUS_M, Oracle, Rig, carry, mujoco, rig

@@ -81,7 +81,7 @@ def test_heads_are_where_they_say(calibrations: Calibrations, world: World):
 def test_the_payload_weighs_what_it_weighs(calibrations: Calibrations):
     scenario = scenarios.load(CONFIG / "fake-cell.toml")
     weight_n = 9.80665 * (scenario.payload.gripper_kg + scenario.payload.deck_kg)
-    down = calibrations.compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
+    down = calibrations.gravity_compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
     assert np.linalg.norm(down) == pytest.approx(weight_n, rel=0.02)
 
 

@@ -9,7 +9,7 @@ from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_pose
 async def to_the_beginning(opened: OpenRun) -> Ready:
     """Go to the beginning; nothing is measured yet. Raises the faults of guard and robots."""
     facts, cell = opened.facts, opened.facts.cell
-    await cell.guard.set_compensation(facts.calibrations.compensation)
+    await cell.guard.set_gravity_compensation(facts.calibrations.gravity_compensation)
     opened.board.update(step=0, step_label="", iteration=0, message="to the beginning")
     await main_to_home(cell)
     await heads_to_measuring_poses(cell)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from cellctl.calibration.files import StoredCalibration
 from cellctl.cell.readiness import require_full_speed
-from cellctl.force.payload_result import mass_kg
+from cellctl.force.gravity.payload_result import mass_kg
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.clock import utc_now
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.units import in_mm_deg

@@ -6,7 +6,7 @@ from cellctl import log
 from cellctl.cell.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
-from cellctl.force.compensation import Compensation
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
 from cellctl.processes.deck_to_frame.pose_limits import is_near
@@ -39,8 +39,9 @@ async def lift_off(cell: DeckCell) -> None:
     if recipe is None:
         return
     _log.info("lifting off the station")
-    if not cell.guard.compensated:
-        await cell.guard.set_compensation(Compensation.none())  # it goes straight: a tare will do
+    if not cell.guard.gravity_compensated:
+        # The arm moves straight without turning, so the tare alone takes the weight off.
+        await cell.guard.set_gravity_compensation(GravityCompensation.none())
     mating = recipe.mating
     # What a mating has left may go without a fault: never more than its own limits.
     tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)

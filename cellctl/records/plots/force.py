@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 from cellctl.records.plots.style import ACCENT, GOOD, INK, LIMIT, SECOND, label_line, style, to_svg
 

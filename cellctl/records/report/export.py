@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.records import RecordingUnreadable, RecordNotWritten, ValueRefused
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.records.entries import RunRecord
 from cellctl.records.recording import MEDIA_TYPE, read_recording
 from cellctl.records.report.render import render

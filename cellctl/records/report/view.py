@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from cellctl.force.curve import ForceCurve, curve_statistics
+from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.records.entries import Calibration, Iteration, RunRecord, RunResult
 from cellctl.records.plots import (
     errors_by_iteration,

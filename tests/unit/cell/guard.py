@@ -6,8 +6,9 @@ import numpy as np
 
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
+from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.report import Curve, GuardHealth, GuardSample, GuardTrip, TareResult
+from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult
 
 SENSOR = "M4347K-1"
 
@@ -18,7 +19,7 @@ class TinyGuard:
 
     serial: str = SENSOR
     trip: GuardTrip | None = None
-    compensated: bool = True
+    gravity_compensated: bool = True
     limits: list[GuardLimits] = field(default_factory=list)
     """Of every arming."""
     asked: list[str] = field(default_factory=list)
@@ -33,12 +34,12 @@ class TinyGuard:
     async def stop(self) -> None:
         self._do("stop")
 
-    async def set_compensation(self, compensation: object) -> None:
-        self._do("set_compensation")
-        self.compensated = True
+    async def set_gravity_compensation(self, compensation: object) -> None:
+        self._do("set_gravity_compensation")
+        self.gravity_compensated = True
 
-    async def set_deck_frame(self, sensor_T_deck: object) -> None:
-        self._do("set_deck_frame")
+    async def set_wrench_frame(self, sensor_T_wrench: object) -> None:
+        self._do("set_wrench_frame")
 
     async def tare(self, duration_s: float) -> TareResult:
         self._do("tare")
@@ -55,9 +56,11 @@ class TinyGuard:
         self._do("acknowledge")
         self.trip = None
 
-    def samples(self, since_s: float) -> Curve:
+    def samples(self, since_s: float) -> GuardSamples:
         count = len(self.raw)
-        return Curve(np.full(count, now_s()), self.raw, self.raw, np.zeros(count), overrun=False)
+        return GuardSamples(
+            np.full(count, now_s()), self.raw, self.raw, np.zeros(count), overrun=False
+        )
 
     def newest(self) -> GuardSample | None:
         if not len(self.raw):

@@ -9,7 +9,7 @@ from benchmarks.campaign_mating_loop import run_simulated
 from cellctl.cell.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
 from cellctl.errors.force import GuardDied, NotSettled, SensorFrozen
 from cellctl.guard.client import GuardClient
-from cellctl.guard.report import Curve
+from cellctl.guard.report import GuardSamples
 
 PERIOD_S = 1e-3
 
@@ -23,13 +23,13 @@ class Swinging:
         self._swing = amplitude_n, decay_s
         self._noise = np.random.default_rng(0).normal(0.0, noise_n, (20_000, 6))
 
-    def samples(self, since_s: float) -> Curve:
+    def samples(self, since_s: float) -> GuardSamples:
         self.asked_since.append(since_s)
         amplitude_n, decay_s = self._swing
         time_s = np.arange(since_s, self.now_s, PERIOD_S)
         swing = amplitude_n * np.exp(-time_s / decay_s) * np.sin(2 * np.pi * 4.0 * time_s)
         raw = self._noise[: len(time_s)] + swing[:, None]
-        return Curve(time_s, raw, raw, np.zeros(len(time_s)), overrun=False)
+        return GuardSamples(time_s, raw, raw, np.zeros(len(time_s)), overrun=False)
 
 
 def settled_after(guard: Swinging) -> float:
@@ -64,7 +64,7 @@ def test_a_frozen_sensor_is_not_still() -> None:
 
 def test_missing_samples_are_not_stillness() -> None:
     guard = Swinging(0.0, 1.0)
-    guard.samples = lambda _since_s: Curve(  # type: ignore[method-assign]
+    guard.samples = lambda _since_s: GuardSamples(  # type: ignore[method-assign]
         np.zeros(0), np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0), overrun=False
     )
     with pytest.raises(NotSettled, match="inf"):
@@ -73,7 +73,7 @@ def test_missing_samples_are_not_stillness() -> None:
 
 def test_the_death_of_the_guard_is_raised() -> None:
     class Dead(Swinging):
-        def samples(self, since_s: float) -> Curve:
+        def samples(self, since_s: float) -> GuardSamples:
             raise GuardDied("killed")
 
     with pytest.raises(GuardDied):

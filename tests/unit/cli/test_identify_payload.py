@@ -8,8 +8,8 @@ from typer.testing import CliRunner
 
 from cellctl.cli.identify_payload import identify_payload
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
-from cellctl.force.pose_file import format_pose_file
-from tests.unit.force.world import LoadedSensor, imperfect, record
+from cellctl.force.gravity.pose_file import format_pose_file
+from tests.unit.force.gravity.world import LoadedSensor, imperfect, record
 
 app = typer.Typer()
 app.command()(identify_payload)

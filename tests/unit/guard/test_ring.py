@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cellctl.guard import ring
-from cellctl.guard.ring import RingWriter, Status
+from cellctl.guard.ring import GuardStatus, RingWriter
 from cellctl.guard.ring_reader import RingReader
 from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 
@@ -83,8 +83,8 @@ def test_what_is_handed_out_is_a_copy(ends: tuple[RingWriter, RingReader]) -> No
 
 def test_status(ends: tuple[RingWriter, RingReader]) -> None:
     writer, reader = ends
-    assert reader.status() == Status()
-    status = Status(
+    assert reader.status() == GuardStatus()
+    status = GuardStatus(
         time_s=1.5,
         armed=1,
         latched=0,
@@ -104,7 +104,7 @@ def test_status(ends: tuple[RingWriter, RingReader]) -> None:
 
 def test_a_status_left_half_written_is_not_believed(ends: tuple[RingWriter, RingReader]) -> None:
     writer, reader = ends
-    writer.publish_status(Status(time_s=1.0))
+    writer.publish_status(GuardStatus(time_s=1.0))
     reader._words.flags.writeable = True
     reader._words[ring.STATUS_NUMBER] += 1
     assert reader.status() is None

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cellctl.errors.records import RecordingUnreadable
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.records.recording import CurveWriter, encode_curve, read_recording
 
 STARTED = datetime(2026, 11, 21, 12, 0, tzinfo=UTC)

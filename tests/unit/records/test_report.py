@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.runs import app
 from cellctl.errors.records import ArtefactDamaged, RunUnknown, StoreUnavailable, ValueRefused
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
 from cellctl.records.plots import errors_by_iteration, force_by_time, force_by_travel, plug_gauges
 from cellctl.records.plots.force import envelope

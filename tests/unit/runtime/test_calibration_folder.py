@@ -35,7 +35,7 @@ def test_all_of_them_are_read_with_their_identities(bench: Bench) -> None:
     found = bench.calibrations.read(HOUR)
     assert set(found.ids) == set(ALL_KINDS)
     assert found.serial_numbers["head_2"] == "FH-0002"
-    assert found.compensation.A.shape == (6, 3)
+    assert found.gravity_compensation.A.shape == (6, 3)
     assert bench.calibrations.fault(HOUR) is None
     assert bench.calibrations.all_valid(HOUR)
     assert all(23 < hours < 24.01 for hours in bench.calibrations.validity_h())

@@ -4,10 +4,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from cellctl.runtime.step import Step
 
 from cellctl.calibration.files import read_calibration
 from cellctl.errors.force import FalseSeat
-from cellctl.force.commissioning import StiffnessEstimate
+from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.result import Result
 from cellctl.packml.state import State

@@ -4,6 +4,7 @@ import asyncio
 from pathlib import Path
 
 import pytest
+from cellctl.runtime.step import Step
 
 from cellctl.errors.calibration import CalibrationNotStored
 from cellctl.errors.force import ContactEarly, GuardDied
@@ -41,7 +42,7 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     assert record.mating is not None
     assert record.mating["outcome"] == "seated"
     assert max(record.mating["pin_offsets_mm"].values()) < 0.05
-    assert rig.bench.cell.guard.asked[:2] == ["acknowledge", "set_compensation"]
+    assert rig.bench.cell.guard.asked[:2] == ["acknowledge", "set_gravity_compensation"]
     status = rig.shown()
     assert (status.run_number, status.run_result, status.serial) == (1, Result.GOOD, "SAT-7")
     assert status.cycle_counter == 1

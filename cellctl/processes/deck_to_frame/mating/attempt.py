@@ -14,7 +14,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.guard_port import GuardPort
 from cellctl.cell.guarded_moves import Motion, guarded
 from cellctl.errors.force import SensorFrozen, SensorSilent
-from cellctl.force.compliance import STRAIGHT, Sideways
+from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
 from cellctl.geometry.pose import Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
@@ -43,7 +43,7 @@ class Attempt:
     plan: MatingPlan
     recorder: Recorder
     report: Report
-    sideways: Sideways = STRAIGHT
+    sideways: LateralOffset = NO_OFFSET
     """How far the deck has given way to pins."""
     gave_way: list[GivingWay] = field(default_factory=list)
     touches_above: int = 0

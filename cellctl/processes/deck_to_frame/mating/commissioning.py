@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.force import CommissioningFailed, FalseSeat
-from cellctl.force.commissioning import StiffnessEstimate, joint_stiffness
+from cellctl.force.contact.commissioning import StiffnessEstimate, joint_stiffness
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.attempt import Report
 from cellctl.processes.deck_to_frame.mating.mate import mate

@@ -6,8 +6,8 @@ from cellctl.cell.readiness import require_full_speed
 from cellctl.cell.standstill import require_unmoved
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.sensor import sensor_rate_hz
-from cellctl.force.approach import planned_stiffness
-from cellctl.force.detectors import Cusum, touch_threshold_n
+from cellctl.force.contact.approach import planned_stiffness
+from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings

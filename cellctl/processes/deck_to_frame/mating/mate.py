@@ -6,9 +6,9 @@ from cellctl import log
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.base import CellError
 from cellctl.errors.force import FalseSeat
-from cellctl.force.commissioning import StiffnessEstimate
-from cellctl.force.curve import curve_statistics
-from cellctl.force.seat import SeatVerdict
+from cellctl.force.contact.commissioning import StiffnessEstimate
+from cellctl.force.contact.curve import curve_statistics
+from cellctl.force.contact.seat import SeatVerdict
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report, loop_time_s
 from cellctl.processes.deck_to_frame.mating.phases import (

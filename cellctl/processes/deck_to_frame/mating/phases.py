@@ -48,7 +48,7 @@ async def settle_and_tare(attempt: Attempt) -> Tare:
     attempt.tell(MatingPhase.TARE)
     sensor_T_deck = plan.flange_T_sensor.inv() * plan.flange_T_deck
     await attempt.guard.disarm()
-    await attempt.guard.set_deck_frame(sensor_T_deck)
+    await attempt.guard.set_wrench_frame(sensor_T_deck)
     await _steady(attempt)
     tare = await attempt.guard.tare(settings.tare_s)
     mean, sigma = np.asarray(tare.mean), np.asarray(tare.sigma)

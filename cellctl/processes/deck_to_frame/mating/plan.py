@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.force import MatingPlanInvalid
-from cellctl.force.approach import (
+from cellctl.force.contact.approach import (
     ApproachFigures,
     ApproachSpeed,
     ContactWindow,
@@ -16,8 +16,8 @@ from cellctl.force.approach import (
     contact_window,
     segment_length,
 )
-from cellctl.force.compliance import STRAIGHT, ComplianceLaw, Sideways
-from cellctl.force.creep import CreepLaw
+from cellctl.force.contact.compliance import NO_OFFSET, ComplianceLaw, LateralOffset
+from cellctl.force.contact.creep import CreepLaw
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 
@@ -45,7 +45,7 @@ class MatingPlan:
     compliance: ComplianceLaw | None
     """How the deck gives way to pins; None where it does not."""
 
-    def pose_at(self, travel_m: float, sideways: Sideways = STRAIGHT) -> RigidTransform:
+    def pose_at(self, travel_m: float, sideways: LateralOffset = NO_OFFSET) -> RigidTransform:
         """Flange after so much travel along −Z_D (eq. 18), beside it where the deck gave way."""
         return advance(self.base_T_flange, self.flange_T_deck, travel_m, sideways)
 

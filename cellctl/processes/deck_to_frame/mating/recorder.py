@@ -8,7 +8,7 @@ import numpy as np
 
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.base import CellError
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from cellctl.force.approach import ApproachSpeed, ContactWindow
-from cellctl.force.commissioning import StiffnessEstimate
-from cellctl.force.compliance import Sideways
-from cellctl.force.curve import CurveStatistics, ForceCurve
-from cellctl.force.seat import SeatVerdict
+from cellctl.force.contact.approach import ApproachSpeed, ContactWindow
+from cellctl.force.contact.commissioning import StiffnessEstimate
+from cellctl.force.contact.compliance import LateralOffset
+from cellctl.force.contact.curve import CurveStatistics, ForceCurve
+from cellctl.force.contact.seat import SeatVerdict
 from cellctl.geometry.pose import Array
 
 
@@ -61,8 +61,8 @@ class GivingWay:
 
     reading: Reading
     """Before it."""
-    move: Sideways
-    total: Sideways
+    move: LateralOffset
+    total: LateralOffset
     """After it, from the stand-off."""
 
 

@@ -3,10 +3,10 @@
 import numpy as np
 
 from cellctl.errors.force import CommissioningFailed, CreepNotConverged, LateralLoad
-from cellctl.force.approach import advance
-from cellctl.force.commissioning import StiffnessEstimate, estimate_stiffness
-from cellctl.force.creep import CreepLaw, after_step, begin, done, next_step
-from cellctl.force.seat import SeatFinding, SeatVerdict, judge_seat
+from cellctl.force.contact.approach import advance
+from cellctl.force.contact.commissioning import StiffnessEstimate, estimate_stiffness
+from cellctl.force.contact.creep import CreepLaw, after_step, begin, done, next_step
+from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.comply import give_way

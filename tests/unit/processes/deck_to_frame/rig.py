@@ -7,8 +7,8 @@ from typing import Any, cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.force.curve import ForceCurve, curve_statistics
-from cellctl.force.seat import SeatVerdict
+from cellctl.force.contact.curve import ForceCurve, curve_statistics
+from cellctl.force.contact.seat import SeatVerdict
 from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare

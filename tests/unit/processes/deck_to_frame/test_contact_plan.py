@@ -9,7 +9,7 @@ import pytest
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
-from cellctl.force.detectors import Cusum, touch_threshold_n
+from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.processes.deck_to_frame.facts import read_facts
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan, mating_settings
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.journal import draw, rms_um

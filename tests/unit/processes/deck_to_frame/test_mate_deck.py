@@ -10,7 +10,7 @@ import pytest
 from cellctl.errors.force import MatingOverforce
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.robot import HeadMoved
-from cellctl.force.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult

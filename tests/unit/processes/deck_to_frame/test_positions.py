@@ -85,17 +85,17 @@ async def test_the_lift_is_watched_from_a_zero_taken_at_standstill(bench: Bench)
     bench.cell.main.flange = bench.flange_over_seat(0.0)
     await lift_off(bench.deck)
     guard = bench.cell.guard
-    assert guard.asked == ["disarm", "set_deck_frame", "tare", "arm", "disarm"]
+    assert guard.asked == ["disarm", "set_wrench_frame", "tare", "arm", "disarm"]
     mating = bench.recipe.mating
     assert guard.limits[0].filtered[:3] == (mating.limit_force_n,) * 3
     assert guard.limits[0].stale_s == bench.deck.force_config.stale_ms / 1e3
 
 
 async def test_without_a_compensation_the_zero_alone_will_do(bench: Bench) -> None:
-    bench.cell.guard.compensated = False
+    bench.cell.guard.gravity_compensated = False
     bench.cell.main.flange = bench.flange_over_seat(0.0)
     await lift_off(bench.deck)
-    assert bench.cell.guard.asked[0] == "set_compensation"
+    assert bench.cell.guard.asked[0] == "set_gravity_compensation"
 
 
 @pytest.mark.parametrize(

@@ -19,8 +19,8 @@ from cellctl.errors.force import (
 )
 from cellctl.errors.link import LinkLost
 from cellctl.errors.robot import MotionAborted, RobotNotReady, StopFailed
-from cellctl.force.curve import ForceCurve
-from cellctl.guard.report import GuardHealth
+from cellctl.force.contact.curve import ForceCurve
+from cellctl.guard.health import GuardHealth
 from cellctl.interfaces import RobotMode
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.recorder import Recorder

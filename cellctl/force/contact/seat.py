@@ -1,0 +1,118 @@
+"""Is the part seated? The force alone does not tell: depth and side load must agree with it.
+
+A part that stands on the tip of a pin presses as hard as one that lies on its face. Only that it is
+some millimetres too high, or that it is pushed sideways, shows the difference.
+"""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+
+EDGE_MARGIN_N_M = 2.75, 1.5
+"""What tare, friction and the lever of the side force may add to the moments about x and y."""
+REST_RATIO = 0.8
+"""A seated part may keep this share of the side load that is allowed on the way."""
+
+
+class SeatFinding(Enum):
+    """One way in which a seat can be wrong."""
+
+    FORCE_LOW = "force below its window"
+    FORCE_HIGH = "force above its window"
+    HIGH = "part stands above its seat"
+    DEEP = "part lies below its seat"
+    LATERAL = "lateral force beyond its bound"
+    MOMENT = "moment beyond its bound"
+
+
+@dataclass(frozen=True, slots=True)
+class SeatLimits:
+    """Bounds of a good seat."""
+
+    force_low_n: float
+    force_high_n: float
+    lateral_n: float
+    moment_n_m: tuple[float, float, float]
+    """About x, y and z of the part."""
+    depth_m: float = 1e-4
+    """Greatest distance between reached and expected depth, without elastic travel."""
+
+
+def seat_limits(
+    *,
+    target_force_n: float,
+    abort_force_n: float,
+    max_lateral_n: float,
+    half_size_m: tuple[float, float],
+) -> SeatLimits:
+    """Bounds of a seat, from the force at which it is complete and the force at which to abort.
+
+    A part that is tilted within its tolerance may rest on an edge. So the moments may reach the
+    force times half the length or width of the face (``half_size_m``: along x, along y), and
+    little more. The side force, and the moment about z that it makes at an end of the face, are
+    bounded tighter than on the way: a part at rest is not being pushed.
+    """
+    half_x_m, half_y_m = half_size_m
+    margin_x_n_m, margin_y_n_m = EDGE_MARGIN_N_M
+    lateral_n = REST_RATIO * max_lateral_n
+    return SeatLimits(
+        force_low_n=target_force_n,
+        force_high_n=abort_force_n,
+        lateral_n=lateral_n,
+        moment_n_m=(
+            abort_force_n * half_y_m + margin_x_n_m,
+            abort_force_n * half_x_m + margin_y_n_m,
+            REST_RATIO * lateral_n * half_x_m,
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class SeatVerdict:
+    """The seat as measured against its limits."""
+
+    force_n: float
+    gap_m: float
+    """Expected minus reached depth; positive when the part stands above its seat."""
+    lateral_n: float
+    moment_n_m: float
+    """Greatest of the three magnitudes."""
+    findings: tuple[SeatFinding, ...]
+
+    @property
+    def seated(self) -> bool:
+        """True when nothing was found wrong."""
+        return not self.findings
+
+
+def judge_seat(
+    wrench: Array,
+    *,
+    travel_m: float,
+    expected_m: float,
+    stiffness_n_m: float,
+    limits: SeatLimits,
+) -> SeatVerdict:
+    """Judge the seat from the mean wrench while holding, shape (6,), in the frame of the part.
+
+    ``travel_m`` is the arm's travel from the stand-off, ``expected_m`` the travel at which contact
+    was predicted. Under the force, arm and contact give way by force over ``stiffness_n_m`` (both
+    in series); that part of the travel is not depth and is subtracted.
+    """
+    force_n = float(wrench[2])
+    gap_m = expected_m - (travel_m - force_n / stiffness_n_m)
+    lateral_n = float(np.hypot(wrench[0], wrench[1]))
+    moments = np.abs(wrench[3:])
+    tests = (
+        (SeatFinding.FORCE_LOW, force_n < limits.force_low_n),
+        (SeatFinding.FORCE_HIGH, force_n > limits.force_high_n),
+        (SeatFinding.HIGH, gap_m > limits.depth_m),
+        (SeatFinding.DEEP, gap_m < -limits.depth_m),
+        (SeatFinding.LATERAL, lateral_n > limits.lateral_n),
+        (SeatFinding.MOMENT, bool((moments > limits.moment_n_m).any())),
+    )
+    findings = tuple(finding for finding, found in tests if found)
+    return SeatVerdict(force_n, gap_m, lateral_n, float(moments.max()), findings)

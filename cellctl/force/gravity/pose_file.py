@@ -1,0 +1,120 @@
+"""Still poses and their wrenches as the text of a CSV file, and back.
+
+Columns, in any order: ``qx,qy,qz,qw`` of base_T_sensor, ``fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm`` in
+sensor axes, and optionally ``role`` (``fit``, ``hold-out`` or ``repeat``; ``fit`` if absent).
+"""
+
+import csv
+import io
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from cellctl.errors.force import PayloadFileInvalid
+from cellctl.force.gravity.poses import PoseRole
+from cellctl.geometry.pose import Array
+
+QUATERNION = ("qx", "qy", "qz", "qw")
+WRENCH = ("fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm")
+ROLE = "role"
+NORM_TOLERANCE = 1e-2
+"""A quaternion whose length is further from 1 is refused: its columns probably hold something else,
+such as angles."""
+
+
+@dataclass(frozen=True, slots=True)
+class PoseRecord:
+    """n still poses and the mean wrench at each."""
+
+    base_R_sensor: Rotation
+    """Stacked, length n."""
+    wrenches: Array
+    """Shape (n, 6), N and N·m, sensor axes."""
+    roles: tuple[PoseRole, ...]
+
+    def having(self, role: PoseRole) -> "PoseRecord":
+        """The poses of one role, possibly none."""
+        index = np.array([i for i, own in enumerate(self.roles) if own is role], dtype=int)
+        rotations = Rotation.from_quat(self.base_R_sensor.as_quat()[index].reshape(-1, 4))
+        return PoseRecord(rotations, self.wrenches[index], (role,) * len(index))
+
+
+def parse_pose_file(text: str) -> PoseRecord:
+    """Read the text of a file; raises ``PayloadFileInvalid`` naming line and column."""
+    lines = [line for line in text.lstrip("\ufeff").splitlines() if not line.startswith("#")]
+    reader = csv.DictReader(io.StringIO("\n".join(lines)), strict=True, skipinitialspace=True)
+    try:
+        _require_columns(reader.fieldnames)
+        rows = [(reader.line_num, row) for row in reader]
+    except csv.Error as error:
+        raise PayloadFileInvalid(f"not a CSV file: {error}") from error
+    if not rows:
+        raise PayloadFileInvalid("no line of data below the header")
+    quaternions = np.array([_numbers(row, QUATERNION, number) for number, row in rows])
+    wrenches = np.array([_numbers(row, WRENCH, number) for number, row in rows])
+    _require_unit(quaternions, [number for number, _ in rows])
+    roles = tuple(_role(row, number) for number, row in rows)
+    return PoseRecord(Rotation.from_quat(quaternions), wrenches, roles)
+
+
+def format_pose_file(record: PoseRecord) -> str:
+    """The text that ``parse_pose_file`` reads back to the same record."""
+    lines = [",".join((*QUATERNION, *WRENCH, ROLE))]
+    for quaternion, wrench, role in zip(
+        record.base_R_sensor.as_quat(), record.wrenches, record.roles, strict=True
+    ):
+        numbers = [f"{value:.9f}" for value in quaternion] + [f"{value:.4f}" for value in wrench]
+        lines.append(",".join((*numbers, role.value)))
+    return "\n".join(lines) + "\n"
+
+
+def _require_columns(found: object) -> None:
+    names = [str(name).strip() for name in found] if isinstance(found, (list, tuple)) else []
+    if not names:
+        raise PayloadFileInvalid("the file is empty")
+    missing = [name for name in (*QUATERNION, *WRENCH) if name not in names]
+    if missing:
+        raise PayloadFileInvalid(f"missing column {', '.join(missing)}; found {', '.join(names)}")
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise PayloadFileInvalid(f"column {', '.join(twice)} appears more than once")
+
+
+def _numbers(row: dict[str, str], columns: tuple[str, ...], line: int) -> list[float]:
+    if None in row:
+        raise PayloadFileInvalid(f"line {line}: more fields than columns")
+    values = []
+    for column in columns:
+        text = row[column]
+        try:
+            value = float(text)
+        except (TypeError, ValueError) as error:
+            shown = "nothing" if text is None or not text.strip() else repr(text)
+            raise PayloadFileInvalid(
+                f"line {line}, column {column}: a number belongs here, found {shown}"
+            ) from error
+        if not np.isfinite(value):
+            raise PayloadFileInvalid(f"line {line}, column {column}: {text} is not finite")
+        values.append(value)
+    return values
+
+
+def _require_unit(quaternions: Array, lines: list[int]) -> None:
+    norms = np.linalg.norm(quaternions, axis=1)
+    for line, norm in zip(lines, norms, strict=True):
+        if abs(norm - 1.0) > NORM_TOLERANCE:
+            raise PayloadFileInvalid(
+                f"line {line}: qx,qy,qz,qw has length {norm:.4f}, an orientation has length 1"
+            )
+
+
+def _role(row: dict[str, str], line: int) -> PoseRole:
+    text = (row.get(ROLE) or PoseRole.FIT.value).strip().lower()
+    try:
+        return PoseRole(text)
+    except ValueError as error:
+        known = ", ".join(role.value for role in PoseRole)
+        raise PayloadFileInvalid(
+            f"line {line}, column {ROLE}: {text!r} is none of {known}"
+        ) from error

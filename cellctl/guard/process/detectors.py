@@ -1,0 +1,158 @@
+"""Detectors that take one sample at a time: plain floats, no memory beyond a few numbers.
+
+Wherever a NaN could arrive, the comparison is written so that NaN counts as beyond the limit:
+``not -limit <= value <= limit`` instead of ``abs(value) > limit``.
+"""
+
+import math
+from collections import deque
+
+from cellctl.force.contact.cusum import CusumDetector
+from cellctl.guard.limits import GuardLimits, Six
+
+
+class ArmedDetectors:
+    """The detectors of one arming: made when the guard is armed, dropped when it is disarmed.
+
+    New ones for each arming, so that no count or sum of an earlier one can trip it.
+    """
+
+    def __init__(self, limits: GuardLimits, bad_frames: int, now_s: float) -> None:
+        self.limits = limits
+        self.frozen = FrozenDetector(limits.frozen_samples)
+        self.rate = RateDetector(limits.rate_hz, limits.rate_window_s, now_s)
+        self.touch_axis = limits.touch.axis if limits.touch is not None else 0
+        self._touch_sign = limits.touch.sign if limits.touch is not None else 1.0
+        self._touch = CusumDetector(limits.touch) if limits.touch is not None else None
+        self._bad_frames = BurstDetector(limits.bad_frames, limits.bad_frames_window_s, bad_frames)
+
+    def touched(self, wrench: Six) -> bool:
+        """True when this sample completes a touch."""
+        if self._touch is None:
+            return False
+        return self._touch.update(self._touch_sign * wrench[self.touch_axis])
+
+    def bad_frames(self, total: int, now_s: float) -> bool:
+        """True when too many frames were damaged lately; ``total`` counts since the start."""
+        return self._bad_frames.update(total, now_s)
+
+
+class LowPass:
+    """First-order low-pass of six components for samples that come at uneven times."""
+
+    def __init__(self, time_constant_s: float) -> None:
+        self.time_constant_s = time_constant_s
+        self._state: Six | None = None
+        self._time_s = 0.0
+
+    def update(self, wrench: Six, time_s: float) -> Six:
+        """The filtered wrench after this sample; the first sample starts the filter."""
+        state = self._state
+        if state is None:
+            self._state, self._time_s = wrench, time_s
+            return wrench
+        # A sample time that stands still or goes back has no weight and does not upset the filter.
+        gain = -math.expm1(-max(0.0, time_s - self._time_s) / self.time_constant_s)
+        self._time_s = time_s
+        a, b, c, d, e, f = wrench
+        p, q, r, s, t, u = state
+        self._state = (
+            p + gain * (a - p),
+            q + gain * (b - q),
+            r + gain * (c - r),
+            s + gain * (d - s),
+            t + gain * (e - t),
+            u + gain * (f - u),
+        )
+        return self._state
+
+    def reset(self) -> None:
+        """Start again at the next sample, because the zero of the signal has changed."""
+        self._state = None
+
+
+class FrozenDetector:
+    """Counts samples in a row that are equal in all six channels.
+
+    A live sensor has noise in every channel. A converter that hangs, or a box that repeats its last
+    values while its sensor is unplugged, sends good frames that never change.
+    """
+
+    def __init__(self, samples: int) -> None:
+        self.count = 1
+        self._samples = samples
+        self._last: Six | None = None
+
+    def update(self, raw: Six) -> bool:
+        """True when this sample makes it too many in a row."""
+        self.count = self.count + 1 if raw == self._last else 1
+        self._last = raw
+        return self.count >= self._samples
+
+
+class BurstDetector:
+    """Counts the increments of a growing counter within a sliding window.
+
+    One damaged frame now and then is normal on a serial line; several at once are not.
+    """
+
+    def __init__(self, events: int, window_s: float, start: int) -> None:
+        self._events, self._window_s = events, window_s
+        self._total = start
+        self._times: deque[float] = deque(maxlen=events)
+
+    def update(self, total: int, now_s: float) -> bool:
+        """True when enough events fell into the window that ends now."""
+        self._times.extend([now_s] * min(total - self._total, self._events))
+        self._total = total
+        full = len(self._times) == self._events
+        return full and now_s - self._times[0] <= self._window_s
+
+
+class RateDetector:
+    """Compares the number of samples a second, in consecutive windows, with an allowed band."""
+
+    def __init__(self, band_hz: tuple[float, float], window_s: float, now_s: float) -> None:
+        self.rate_hz = 0.0
+        """Of the window that ended last."""
+        self._lowest_hz, self._highest_hz = band_hz
+        self._window_s = window_s
+        self._since_s = now_s
+        self._count = 0
+
+    def add(self) -> None:
+        """Count one sample."""
+        self._count += 1
+
+    def check(self, now_s: float) -> bool:
+        """True when a window has ended and its rate was outside the band."""
+        elapsed_s = now_s - self._since_s
+        if elapsed_s < self._window_s:
+            return False
+        self.rate_hz = self._count / elapsed_s
+        self._since_s, self._count = now_s, 0
+        return not self._lowest_hz <= self.rate_hz <= self._highest_hz
+
+    def excuse(self, seconds: float) -> None:
+        """Leave out time in which the whole machine stood still and nobody could count."""
+        self._since_s += seconds
+
+
+def beyond(wrench: Six, limits: Six) -> int | None:
+    """The first component whose magnitude is beyond its limit; None when all are within.
+
+    The common case, all within, is one chain of comparisons: this runs twice for every sample.
+    """
+    a, b, c, d, e, f = wrench
+    p, q, r, s, t, u = limits
+    if (
+        -p <= a <= p
+        and -q <= b <= q
+        and -r <= c <= r
+        and -s <= d <= s
+        and -t <= e <= t
+        and -u <= f <= u
+    ):
+        return None
+    outside = (not -limit <= value <= limit for value, limit in zip(wrench, limits, strict=True))
+    return next(index for index, is_outside in enumerate(outside) if is_outside)

@@ -1,0 +1,86 @@
+"""What Linux offers a process that must not be late.
+
+Each measure may be refused, by missing rights or by a container. That is reported and not fatal: a
+guard that is late now and then protects more than a guard that does not start.
+"""
+
+import ctypes
+import gc
+import os
+import resource
+import signal
+from collections.abc import Callable
+
+_PR_SET_PDEATHSIG = 1
+_MCL_CURRENT_AND_FUTURE = 3
+_FALLBACK_NICE = -15
+"""Taken when SCHED_FIFO is refused. Under load the slowest answers then took two to three times as
+long, measured at the 99.9th percentile."""
+
+
+def enter(fifo_priority: int, cpu: int | None, *, lock_memory: bool) -> list[str]:
+    """Take all measures; returns those that were not permitted, in words.
+
+    Call it last, with everything allocated. The garbage collector is switched off for good: a
+    collection would stop the loop for milliseconds, and what the loop allocates is freed by
+    reference counts. ``fifo_priority`` 0 and ``cpu`` None leave scheduler and placement alone.
+    """
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    degraded: list[str] = []
+    if lock_memory:
+        # A page that was swapped out costs a disk access at the worst moment.
+        degraded += _attempt("memory is not locked", _lock_memory)
+    if cpu is not None:
+        degraded += _attempt(
+            f"not pinned to processor {cpu}", lambda: os.sched_setaffinity(0, {cpu})
+        )
+    if fifo_priority > 0:
+        refused = _attempt("no SCHED_FIFO", lambda: _fifo(fifo_priority))
+        if refused:
+            refused += _attempt(f"no nice {_FALLBACK_NICE}", _nice)
+        degraded += refused
+    return degraded
+
+
+def die_with_parent() -> None:
+    """Let the kernel send SIGTERM when the daemon ends, in case the end of the link is missed.
+
+    Linux ties this to the thread that started the process, in the daemon the one of its event loop.
+    """
+    if _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "prctl")
+
+
+def resident_peak_bytes() -> int:
+    """Greatest resident memory of this process."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+
+
+def _attempt(words: str, action: Callable[[], None]) -> list[str]:
+    try:
+        action()
+    except OSError as error:
+        return [f"{words}: {error.strerror or error}"]
+    return []
+
+
+def _fifo(priority: int) -> None:
+    """Run before all ordinary processes. The threads that connect do not inherit it."""
+    policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
+    os.sched_setscheduler(0, policy, os.sched_param(priority))
+
+
+def _nice() -> None:
+    os.setpriority(os.PRIO_PROCESS, 0, _FALLBACK_NICE)
+
+
+def _lock_memory() -> None:
+    if _libc().mlockall(_MCL_CURRENT_AND_FUTURE) != 0:
+        code = ctypes.get_errno()
+        raise OSError(code, os.strerror(code))
+
+
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)

@@ -1,0 +1,19 @@
+"""The guard process stays small: no arrays, no event loop, no log machinery."""
+
+import subprocess
+import sys
+
+HEAVY = ("numpy", "scipy", "cv2", "asyncio", "structlog", "multiprocessing")
+
+
+def test_the_guard_and_its_drivers_stay_light() -> None:
+    code = (
+        "import sys, cellctl.guard.process.main, drivers.ftsensor.sri.driver, "
+        "drivers.robot.siasun.stop_channel, drivers.ftsensor.sri.tcp\n"
+        f"print(*[name for name in {HEAVY!r} if name in sys.modules])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], check=False, capture_output=True, text=True, timeout=30
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.split() == []
