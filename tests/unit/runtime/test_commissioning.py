@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from cellctl.runtime.step import Step
 
 from cellctl.calibration.files import read_calibration
 from cellctl.errors.force import FalseSeat

@@ -4,7 +4,6 @@ import asyncio
 from pathlib import Path
 
 import pytest
-from cellctl.runtime.step import Step
 
 from cellctl.errors.calibration import CalibrationNotStored
 from cellctl.errors.force import ContactEarly, GuardDied
