@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
     from cellctl.interfaces.robot import Robot, RobotMode, RobotState
     from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
@@ -15,9 +16,12 @@ if TYPE_CHECKING:
     from cellctl.interfaces.target_tracker import Target, TargetTracker
 
 __all__ = [
+    "Camera",
+    "CameraImage",
     "FlangeState",
     "FtHealth",
     "FtSensor",
+    "PixelFormat",
     "Robot",
     "RobotMode",
     "RobotState",
@@ -30,6 +34,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "camera": ("Camera", "CameraImage", "PixelFormat"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
     "robot": ("Robot", "RobotMode", "RobotState"),
     "stereo_camera": ("StereoCamera", "StereoPair"),

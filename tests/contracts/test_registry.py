@@ -7,8 +7,15 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from cellctl.interfaces import FtSensor, Robot, StereoCamera, StopChannel, TargetTracker
-from tests.contracts import test_ft_sensors, test_heads, test_robots, test_stop_channels
+from cellctl.interfaces import Camera, FtSensor, Robot, StereoCamera, StopChannel, TargetTracker
+from tests.contracts import (
+    test_cameras,
+    test_ft_sensors,
+    test_heads,
+    test_robots,
+    test_stop_channels,
+)
+from tests.contracts.camera import CameraContract
 from tests.contracts.ft_sensor import FtSensorContract
 from tests.contracts.robot import RobotContract
 from tests.contracts.stereo_camera import StereoCameraContract
@@ -19,10 +26,11 @@ KINDS: dict[str, tuple[type, type]] = {
     "cellctl.robot": (Robot, RobotContract),
     "cellctl.stop_channel": (StopChannel, StopChannelContract),
     "cellctl.stereo_camera": (StereoCamera, StereoCameraContract),
+    "cellctl.camera": (Camera, CameraContract),
     "cellctl.target_tracker": (TargetTracker, TargetTrackerContract),
     "cellctl.ft_sensor": (FtSensor, FtSensorContract),
 }
-MODULES = (test_ft_sensors, test_heads, test_robots, test_stop_channels)
+MODULES = (test_cameras, test_ft_sensors, test_heads, test_robots, test_stop_channels)
 POINTS = [point for group in KINDS for point in entry_points(group=group)]
 FILES = ("README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py")
 WITHOUT_IO = ("asyncio", "socket", "serial", "can")
