@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
+    from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
+    from cellctl.interfaces.gripper import Gripper, GripperState
     from cellctl.interfaces.robot import Robot, RobotMode, RobotState
     from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
     from cellctl.interfaces.stop_channel import FlangeState, StopChannel
@@ -18,9 +20,13 @@ if TYPE_CHECKING:
 __all__ = [
     "Camera",
     "CameraImage",
+    "DigitalIo",
+    "DigitalIoState",
     "FlangeState",
     "FtHealth",
     "FtSensor",
+    "Gripper",
+    "GripperState",
     "PixelFormat",
     "Robot",
     "RobotMode",
@@ -35,7 +41,9 @@ __all__ = [
 
 _MODULES = {
     "camera": ("Camera", "CameraImage", "PixelFormat"),
+    "digital_io": ("DigitalIo", "DigitalIoState"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
+    "gripper": ("Gripper", "GripperState"),
     "robot": ("Robot", "RobotMode", "RobotState"),
     "stereo_camera": ("StereoCamera", "StereoPair"),
     "stop_channel": ("FlangeState", "StopChannel"),
