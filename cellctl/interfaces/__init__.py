@@ -15,6 +15,13 @@ if TYPE_CHECKING:
     from cellctl.interfaces.robot import Robot, RobotMode, RobotState
     from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
     from cellctl.interfaces.stop_channel import FlangeState, StopChannel
+    from cellctl.interfaces.streaming_robot import (
+        PoseStream,
+        StreamingRobot,
+        StreamLimits,
+        StreamOffer,
+        StreamReport,
+    )
     from cellctl.interfaces.target_tracker import Target, TargetTracker
 
 __all__ = [
@@ -28,12 +35,17 @@ __all__ = [
     "Gripper",
     "GripperState",
     "PixelFormat",
+    "PoseStream",
     "Robot",
     "RobotMode",
     "RobotState",
     "StereoCamera",
     "StereoPair",
     "StopChannel",
+    "StreamLimits",
+    "StreamOffer",
+    "StreamReport",
+    "StreamingRobot",
     "Target",
     "TargetTracker",
     "WrenchSample",
@@ -47,6 +59,13 @@ _MODULES = {
     "robot": ("Robot", "RobotMode", "RobotState"),
     "stereo_camera": ("StereoCamera", "StereoPair"),
     "stop_channel": ("FlangeState", "StopChannel"),
+    "streaming_robot": (
+        "PoseStream",
+        "StreamLimits",
+        "StreamOffer",
+        "StreamReport",
+        "StreamingRobot",
+    ),
     "target_tracker": ("Target", "TargetTracker"),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}

@@ -1,6 +1,5 @@
 """What a controller's job programs decide, without I/O: records and times in, records out."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,13 +7,14 @@ import numpy as np
 from fakes.faults import FaultBoard
 from fakes.scenario import Channel
 from fakes.wire.sjl_controller_records import RecordError, integer, number, pose_fields
+from fakes.wire.sjl_controller_stream import Stream, StreamLimits, StreamOffer
 from fakes.world.frames import MM, from_written
 from fakes.world.robot import RefusedMotionError, RobotArm
 
 Record = list[str]
 Outbox = list[tuple[Channel, Record]]
 
-_FIELDS = {"MOVJ": 10, "MOVL": 11, "STEP": 10, "REARM": 3}
+_FIELDS = {"MOVJ": 10, "MOVL": 11, "STEP": 10, "REARM": 3, "STREAM": 8, "SET": 9, "FINISH": 3}
 _EMERGENCY_LATENCY_S = 0.02
 
 
@@ -33,6 +33,14 @@ class _Motion:
     begun_s: float
     reason: str | None = None
     """Why it is being stopped."""
+    stream: Stream | None = None
+    finished: bool = False
+    """FINISH has come for the stream."""
+
+    @property
+    def streaming(self) -> bool:
+        """A stream goes on: the arm may stand, and yet this motion has not ended."""
+        return self.stream is not None and self.reason is None and not self.finished
 
 
 @dataclass(slots=True)
@@ -41,12 +49,17 @@ class Controller:
 
     arm: RobotArm
     faults: FaultBoard
+    offer: StreamOffer | None = None
+    """What is offered for streamed motion; None for a job program that cannot."""
+    booted_s: float = 0.0
     links: dict[Channel, Link] = field(default_factory=dict)
     lost: set[Channel] = field(default_factory=set)
     """Channels that were open and have not come back."""
     latched: bool = False
     _motion: _Motion | None = None
     _stops: list[tuple[Channel, int]] = field(default_factory=list)
+    _held_set: Record | None = None
+    """A setpoint that the fault ``set_late`` keeps back."""
 
     # -- panel --------------------------------------------------------------------------------
     @property
@@ -94,23 +107,20 @@ class Controller:
             raise RecordError(f"not a command: {fields}")
         session, seq = integer(fields[1]), integer(fields[2])
         values = [number(text) for text in fields[3:]]
-        link = self.links["CMD"]
-        if session != link.session:
-            return [("CMD", ["REJ", str(seq), "SESSION"])]
-        if seq <= link.last_seq:
-            return [("CMD", ["DUP", str(seq)])]
-        if seq != link.last_seq + 1:
-            return [("CMD", ["REJ", str(seq), "SEQ"])]
-        link.last_seq = seq
+        if word in {"SET", "FINISH"}:
+            self._streamed(fields, session, time_s)
+            return []
+        if refusal := self._out_of_order(session, seq):
+            return [("CMD", refusal)]
         if self.faults.use("never_ack"):
             return []
-        act: Callable[[int, float], Outbox] = (
-            self._rearm if word == "REARM" else lambda s, t: self._move(word, s, values, t)
-        )
         try:
-            return act(seq, time_s)
-        except RefusedMotionError as refusal:
-            return [("CMD", ["REJ", str(seq), refusal.reason])]
+            if word == "REARM":
+                return self._rearm(seq, time_s)
+            self._move(word, seq, values, time_s)
+        except RefusedMotionError as refused:
+            return [("CMD", ["REJ", str(seq), refused.reason])]
+        return [("CMD", ["ACK", str(seq)])]
 
     def supervise(self, channel: Channel, fields: Record, time_s: float) -> Outbox:
         """A record on STA or GRD; raises ``RecordError``."""
@@ -132,20 +142,34 @@ class Controller:
         """What has become due: dead man, panel, end of a motion, end of a stop."""
         self._supervise_links(time_s)
         self._supervise_panel(time_s)
-        if self.arm.moving(time_s) or not (self._motion or self._stops):
-            return []
+        out = self._advance_stream(time_s)
+        streaming = self._motion is not None and self._motion.streaming
+        if self.arm.moving(time_s) or streaming or not (self._motion or self._stops):
+            return out
         pose = pose_fields(self.arm.encoder_matrix(time_s))
-        out: Outbox = []
         motion, self._motion = self._motion, None
         if motion is not None and not self.faults.use("never_done"):
             seq, reason = str(motion.seq), motion.reason or "ERROR"
-            ended = ["ABRT", seq, reason] if self.arm.cut_short else ["DONE", seq]
+            cut_short = motion.reason is not None if motion.stream else self.arm.cut_short
+            ended = ["ABRT", seq, reason] if cut_short else ["DONE", seq]
             out.append(("CMD", [*ended, *pose]))
         out += [(channel, ["STOPD", str(number), *pose]) for channel, number in self._stops]
         self._stops = []
         return [(channel, record) for channel, record in out if channel in self.links]
 
     # -- inside -------------------------------------------------------------------------------
+    def _out_of_order(self, session: int, seq: int) -> Record | None:
+        """The answer to a command of another session or with a number that is not the next one."""
+        link = self.links["CMD"]
+        if session != link.session:
+            return ["REJ", str(seq), "SESSION"]
+        if seq <= link.last_seq:
+            return ["DUP", str(seq)]
+        if seq != link.last_seq + 1:
+            return ["REJ", str(seq), "SEQ"]
+        link.last_seq = seq
+        return None
+
     def _rearm(self, seq: int, time_s: float) -> Outbox:
         if self.emergency_stop:
             raise RefusedMotionError("ESTOP")
@@ -157,13 +181,17 @@ class Controller:
         pose = pose_fields(self.arm.encoder_matrix(time_s))
         return [("CMD", ["ACK", str(seq)]), ("CMD", ["DONE", str(seq), *pose])]
 
-    def _move(self, word: str, seq: int, values: list[float], time_s: float) -> Outbox:
+    def _move(self, word: str, seq: int, values: list[float], time_s: float) -> None:
+        """Begin a motion or a stream; raises ``RefusedMotionError``."""
         self._check_ready()
         rejected = self.faults.use("reject")
         if rejected:
             raise RefusedMotionError(rejected.text("reason", "LIMIT"))
         self.arm.override_percent = 0 if self.faults.active("override_zero") else 100
-        if word == "MOVJ":
+        stream = None
+        if word == "STREAM":
+            stream = self._stream(StreamLimits(*values), time_s)
+        elif word == "MOVJ":
             self.arm.start_joint(time_s, np.deg2rad(values[:6]), values[6])
         else:
             target = from_written(values[:6])
@@ -171,8 +199,50 @@ class Controller:
                 self.arm.check_step(time_s, target)
             acceleration = values[7] if word == "MOVL" else 10 * values[6]
             self.arm.start_linear(time_s, target, values[6] * MM, acceleration * MM)
-        self._motion = _Motion(seq, time_s)
-        return [("CMD", ["ACK", str(seq)])]
+        self._motion = _Motion(seq, time_s, stream=stream)
+
+    def _stream(self, limits: StreamLimits, time_s: float) -> Stream:
+        if self.offer is None or not limits.within(self.offer.limits):
+            raise RefusedMotionError("STREAM")
+        return Stream(self.arm, self.offer, limits, time_s)
+
+    def _streamed(self, fields: Record, session: int, time_s: float) -> None:
+        """SET or FINISH; of another session, or without a stream that goes on, they are passed
+        over."""
+        motion = self._motion
+        if motion is None or motion.stream is None or not motion.streaming:
+            return
+        if session != self.links["CMD"].session:
+            return
+        if fields[0] == "FINISH":
+            motion.finished = integer(fields[2]) == motion.seq
+            return
+        if self.faults.use("set_lost"):
+            return
+        held, self._held_set = self._held_set, None
+        if self.faults.use("set_late"):
+            self._held_set = fields
+        heard = [] if self._held_set else [fields]
+        repeated = heard if self.faults.use("set_repeated") else []
+        try:
+            for record in [*([held] if held else []), *heard, *repeated]:
+                motion.stream.take(integer(record[2]), [number(text) for text in record[3:]])
+        except RefusedMotionError as refusal:
+            self._halt(time_s, refusal.reason)
+
+    def _advance_stream(self, time_s: float) -> Outbox:
+        """The tick of a stream that has become due."""
+        motion = self._motion
+        if motion is None or motion.stream is None or not motion.streaming:
+            return []
+        try:
+            if not motion.stream.tick(time_s) or self.faults.active("ticks_silent"):
+                return []
+        except RefusedMotionError as refusal:
+            self._halt(time_s, refusal.reason)
+            return []
+        robot_ms = 1000 * (time_s - self.booted_s)
+        return [("CMD", motion.stream.record(time_s, robot_ms))]
 
     def _check_ready(self) -> None:
         refusals = {

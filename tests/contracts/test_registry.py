@@ -20,6 +20,7 @@ from cellctl.interfaces import (
     Robot,
     StereoCamera,
     StopChannel,
+    StreamingRobot,
     TargetTracker,
 )
 from tests.contracts.camera import CameraContract
@@ -29,6 +30,7 @@ from tests.contracts.gripper import GripperContract
 from tests.contracts.robot import RobotContract
 from tests.contracts.stereo_camera import StereoCameraContract
 from tests.contracts.stop_channel import StopChannelContract
+from tests.contracts.streaming_robot import StreamingRobotContract
 from tests.contracts.target_tracker import TargetTrackerContract
 
 KINDS: dict[str, tuple[type, type]] = {
@@ -83,6 +85,13 @@ def test_has_a_contract_class(point: EntryPoint) -> None:
     assert tested, f"no class with driver = {driver.__name__} derives from {contract.__name__}"
     clauses = {name for name in vars(contract) if name.startswith("test_")}
     assert not clauses & set(vars(tested[0])), "a contract clause is overridden"
+
+
+def test_robots_that_can_stream_keep_that_contract_too() -> None:
+    drivers = [point.load() for point in OURS if point.group == "cellctl.robot"]
+    tested = {getattr(cls, "driver", None) for cls in contract_classes(StreamingRobotContract)}
+    streaming = {driver for driver in drivers if issubclass(driver, StreamingRobot)}
+    assert streaming <= tested
 
 
 @pytest.mark.parametrize("kind", KINDS)

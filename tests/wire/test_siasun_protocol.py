@@ -1,11 +1,11 @@
-"""SJL/1 codec of the driver: golden records of docs/protocols/sjl-1.md section 7, and noise."""
+"""SJL/1 codec of the driver: golden records of docs/protocols/sjl-1.md section 8, and noise."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.errors.link import ProtocolViolation
-from drivers.robot.siasun import protocol
+from drivers.robot.siasun import decoder, protocol
 from drivers.robot.siasun.records import (
     Aborted,
     Ack,
@@ -42,8 +42,8 @@ def with_sum(body: bytes) -> bytes:
 
 @pytest.mark.parametrize("line", GOLDEN_FROM_ROBOT)
 def test_golden_records_from_the_robot(line: bytes) -> None:
-    assert protocol.decode(line) == GOLDEN_FROM_ROBOT[line]
-    assert protocol.decode(line + b"\r") == GOLDEN_FROM_ROBOT[line]
+    assert decoder.decode(line) == GOLDEN_FROM_ROBOT[line]
+    assert decoder.decode(line + b"\r") == GOLDEN_FROM_ROBOT[line]
 
 
 def test_golden_records_to_the_robot() -> None:
@@ -81,7 +81,7 @@ def test_other_records_to_the_robot() -> None:
     ],
 )
 def test_other_records_from_the_robot(body: bytes, record: Record) -> None:
-    assert protocol.decode(with_sum(body)) == record
+    assert decoder.decode(with_sum(body)) == record
 
 
 @pytest.mark.parametrize(
@@ -108,7 +108,7 @@ def test_other_records_from_the_robot(body: bytes, record: Record) -> None:
 )
 def test_invalid_lines(line: bytes) -> None:
     with pytest.raises(ProtocolViolation):
-        protocol.decode(line)
+        decoder.decode(line)
 
 
 def test_a_changed_digit_never_passes() -> None:
@@ -117,10 +117,10 @@ def test_a_changed_digit_never_passes() -> None:
         for byte in b"0123456789":
             if good[at] != byte:
                 with pytest.raises(ProtocolViolation):
-                    protocol.decode(good[:at] + bytes([byte]) + good[at + 1 :])
+                    decoder.decode(good[:at] + bytes([byte]) + good[at + 1 :])
 
 
-def drain(reader: protocol.RecordReader) -> list[Record | None]:
+def drain(reader: decoder.RecordReader) -> list[Record | None]:
     """All records that wait; None stands for each violation."""
     found: list[Record | None] = []
     while True:
@@ -137,7 +137,7 @@ def drain(reader: protocol.RecordReader) -> list[Record | None]:
 @given(st.lists(st.integers(1, 60), max_size=20))
 def test_cuts_do_not_matter(cuts: list[int]) -> None:
     stream = b"".join(line + b"\n" for line in GOLDEN_FROM_ROBOT)
-    reader, found, start = protocol.RecordReader(), [], 0
+    reader, found, start = decoder.RecordReader(), [], 0
     for cut in [*cuts, len(stream)]:
         reader.feed(stream[start : start + cut])
         found += drain(reader)
@@ -147,7 +147,7 @@ def test_cuts_do_not_matter(cuts: list[int]) -> None:
 
 @given(st.lists(st.binary(max_size=400), max_size=5))
 def test_noise_costs_no_following_record(chunks: list[bytes]) -> None:
-    reader = protocol.RecordReader()
+    reader = decoder.RecordReader()
     for chunk in chunks:
         reader.feed(chunk)
         drain(reader)
@@ -160,13 +160,13 @@ def test_noise_costs_no_following_record(chunks: list[bytes]) -> None:
 @given(st.text("ACKDONEHLSTP,.*=-0123456789", max_size=120))
 def test_plausible_text_raises_only_protocol_violations(text: str) -> None:
     try:
-        protocol.decode(with_sum(text.encode()))
+        decoder.decode(with_sum(text.encode()))
     except ProtocolViolation:
         return
 
 
 def test_longest_record() -> None:
-    reader = protocol.RecordReader()
+    reader = decoder.RecordReader()
     reader.feed(b"x" * 254 + b"\n" + b"x" * 255 + b"\n" + b"x" * 1000)
     assert drain(reader) == [None, None, None]
     reader.feed(b"yyy\nACK,1*2C\n")
