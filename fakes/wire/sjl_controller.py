@@ -194,17 +194,17 @@ class SjlController:
             await asyncio.sleep(max(due_s - self._clock(), 0.001))
 
     def _stat(self, count: int) -> list[str]:
-        now_s, logic = self._clock(), self.logic
+        now_s, logic, panel = self._clock(), self.logic, self.logic.panel
         jump = self.faults.active("clock_jump")
         uptime_ms = 1000 * (now_s - logic.booted_s) + (jump.number("jump_ms", 1e6) if jump else 0)
-        flags = [logic.emergency_stop, logic.drives, self._arm.moving(now_s), logic.latched]
+        flags = [panel.emergency_stop, panel.drives, logic.moving(now_s), logic.latched]
         return [
             "STAT",
             str(count),
             str(round(uptime_ms)),
-            logic.mode,
+            panel.mode,
             *("1" if flag else "0" for flag in flags),
-            str(logic.error_code),
+            str(panel.error_code),
             "0" if self.faults.active("override_zero") else "100",
             *pose_fields(self._arm.encoder_matrix(now_s)),
             *joint_fields(self._arm.joints(now_s).tolist()),

@@ -6,6 +6,7 @@ import numpy as np
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Channel
+from fakes.wire.sjl_controller_panel import Panel
 from fakes.wire.sjl_controller_records import RecordError, integer, number, pose_fields
 from fakes.wire.sjl_controller_stream import Stream, StreamLimits, StreamOffer
 from fakes.world.frames import MM, from_written
@@ -61,29 +62,15 @@ class Controller:
     _held_set: Record | None = None
     """A setpoint that the fault ``set_late`` keeps back."""
 
-    # -- panel --------------------------------------------------------------------------------
     @property
-    def emergency_stop(self) -> bool:
-        """The button is pressed."""
-        return self.faults.active("emergency_stop") is not None
+    def panel(self) -> Panel:
+        """Key, button, drives and error number."""
+        return Panel(self.faults)
 
-    @property
-    def mode(self) -> str:
-        """MAN, AUT or REM."""
-        if self.faults.active("manual_mode"):
-            return "MAN"
-        return "AUT" if self.faults.active("automatic_mode") else "REM"
-
-    @property
-    def drives(self) -> bool:
-        """The drives have power."""
-        return not (self.emergency_stop or self.faults.active("drives_off"))
-
-    @property
-    def error_code(self) -> int:
-        """The vendor's error number."""
-        fault = self.faults.active("vendor_error")
-        return int(fault.number("code", 4001)) if fault else 0
+    def moving(self, time_s: float) -> bool:
+        """The arm moves, or follows a stream, in which it may stand between two steps."""
+        streaming = self._motion is not None and self._motion.streaming
+        return streaming or self.arm.moving(time_s)
 
     # -- links --------------------------------------------------------------------------------
     def opened(self, channel: Channel, session: int, time_s: float) -> None:
@@ -108,7 +95,7 @@ class Controller:
         session, seq = integer(fields[1]), integer(fields[2])
         values = [number(text) for text in fields[3:]]
         if word in {"SET", "FINISH"}:
-            self._streamed(fields, session, time_s)
+            self._streamed(fields, session)
             return []
         if refusal := self._out_of_order(session, seq):
             return [("CMD", refusal)]
@@ -143,8 +130,7 @@ class Controller:
         self._supervise_links(time_s)
         self._supervise_panel(time_s)
         out = self._advance_stream(time_s)
-        streaming = self._motion is not None and self._motion.streaming
-        if self.arm.moving(time_s) or streaming or not (self._motion or self._stops):
+        if self.moving(time_s) or not (self._motion or self._stops):
             return out
         pose = pose_fields(self.arm.encoder_matrix(time_s))
         motion, self._motion = self._motion, None
@@ -171,7 +157,7 @@ class Controller:
         return None
 
     def _rearm(self, seq: int, time_s: float) -> Outbox:
-        if self.emergency_stop:
+        if self.panel.emergency_stop:
             raise RefusedMotionError("ESTOP")
         if self.lost or self._stops or (self.latched and self.arm.moving(time_s)):
             raise RefusedMotionError("LATCHED")
@@ -206,7 +192,7 @@ class Controller:
             raise RefusedMotionError("STREAM")
         return Stream(self.arm, self.offer, limits, time_s)
 
-    def _streamed(self, fields: Record, session: int, time_s: float) -> None:
+    def _streamed(self, fields: Record, session: int) -> None:
         """SET or FINISH; of another session, or without a stream that goes on, they are passed
         over."""
         motion = self._motion
@@ -228,7 +214,7 @@ class Controller:
             for record in [*([held] if held else []), *heard, *repeated]:
                 motion.stream.take(integer(record[2]), [number(text) for text in record[3:]])
         except RefusedMotionError as refusal:
-            self._halt(time_s, refusal.reason)
+            self._hold(motion, refusal.reason)
 
     def _advance_stream(self, time_s: float) -> Outbox:
         """The tick of a stream that has become due."""
@@ -239,7 +225,7 @@ class Controller:
             if not motion.stream.tick(time_s) or self.faults.active("ticks_silent"):
                 return []
         except RefusedMotionError as refusal:
-            self._halt(time_s, refusal.reason)
+            self._hold(motion, refusal.reason)
             return []
         robot_ms = 1000 * (time_s - self.booted_s)
         return [("CMD", motion.stream.record(time_s, robot_ms))]
@@ -247,15 +233,21 @@ class Controller:
     def _check_ready(self) -> None:
         refusals = {
             "BUSY": self._motion is not None,
-            "ESTOP": self.emergency_stop,
-            "MODE": self.mode != "REM",
-            "DRIVES": not self.drives,
-            "ERROR": self.error_code != 0,
+            "ESTOP": self.panel.emergency_stop,
+            "MODE": self.panel.mode != "REM",
+            "DRIVES": not self.panel.drives,
+            "ERROR": self.panel.error_code != 0,
             "LATCHED": self.latched or bool(self.lost) or "STA" not in self.links,
         }
         for reason, applies in refusals.items():
             if applies:
                 raise RefusedMotionError(reason)
+
+    def _hold(self, motion: _Motion, reason: str) -> None:
+        """End a stream at the last setpoint that was taken. The arm is on its way there and no
+        further, so nothing has to be braked."""
+        self.latched = True
+        motion.reason = reason
 
     def _halt(self, time_s: float, reason: str, *, latency_s: float | None = None) -> None:
         self.latched = True
@@ -275,20 +267,20 @@ class Controller:
 
     def _supervise_panel(self, time_s: float) -> None:
         if self._motion is None:
-            self.latched = self.latched or self.emergency_stop
+            self.latched = self.latched or self.panel.emergency_stop
             return
         elapsed_s = time_s - self._motion.begun_s
         pressed = self.faults.active("emergency_stop_mid_move")
         if pressed and elapsed_s >= pressed.number("after_s", 0.2):
             self.faults.clear("emergency_stop_mid_move")
             self.faults.inject("emergency_stop")
-        if self.emergency_stop:
+        if self.panel.emergency_stop:
             self._halt(time_s, "ESTOP", latency_s=_EMERGENCY_LATENCY_S)
-        elif self.mode != "REM":
+        elif self.panel.mode != "REM":
             self._halt(time_s, "MODE")
-        elif not self.drives:
+        elif not self.panel.drives:
             self._halt(time_s, "DRIVES", latency_s=_EMERGENCY_LATENCY_S)
-        elif self.error_code:
+        elif self.panel.error_code:
             self._halt(time_s, "ERROR")
         abort = self.faults.active("abort")
         if abort and elapsed_s >= abort.number("after_s", 0.2):

@@ -115,7 +115,8 @@ class RobotArm:
         braking = 1 / self.settings.ramp_s
         if isinstance(self._path, LinearPath | StreamSegment):
             braking = self.settings.stop_deceleration_mm_s2 * MM
-        if isinstance(self._path, StreamSegment) and self.moving(time_s):
+        stopping = np.isfinite(self._profile.stop_s)
+        if isinstance(self._path, StreamSegment) and self.moving(time_s) and not stopping:
             self._run_on(time_s, self._path, latency_s, braking)
         self._profile = self._profile.stopped_from(time_s + latency_s, braking)
 

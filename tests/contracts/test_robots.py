@@ -66,7 +66,7 @@ class SiasunBench(RobotBench):
         return self.rig.arm.encoder_pose(self.rig.controller._clock())
 
     def moving(self) -> bool:
-        return self.rig.arm.moving(self.rig.controller._clock())
+        return self.rig.controller.logic.moving(self.rig.controller._clock())
 
     def freeze(self) -> None:
         self.rig.controller.faults.inject("frozen_stat")

@@ -16,6 +16,9 @@ from drivers.robot.siasun.records import (
     Rejected,
     Status,
     StopDone,
+    StreamFigures,
+    StreamOption,
+    Tick,
 )
 
 POSE = (1900.0, -0.125, 927.0, 90.0, 0.0, 180.0)
@@ -32,6 +35,18 @@ GOLDEN_FROM_ROBOT: dict[bytes, Record] = {
     ),
     b"STOPD,1,1900.0000,-0.1250,926.5000,90.0000,0.0000,180.0000*8A": StopDone(
         1, (1900.0, -0.125, 926.5, 90.0, 0.0, 180.0)
+    ),
+}
+
+
+OFFER = StreamOption(8, StreamFigures(0.1, 0.05, 30.0, 5.0, 200))
+GOLDEN_FROM_ROBOT |= {
+    b"HELLO,SJL,1,CMD,SR500A,1.1,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300,"
+    b"STREAM=8/0.1000/0.0500/30.0000/5.0000/200*EA": Hello(
+        "1", "CMD", "SR500A", "1.1", "ZYX", "MMDEG", 0.5, 300, OFFER
+    ),
+    b"TICK,3,1024,2,0,1,1900.0000,-0.1250,926.9500,90.0000,0.0000,180.0000*40": Tick(
+        3, 1024, 2, 0, 1, (1900.0, -0.125, 926.95, 90.0, 0.0, 180.0)
     ),
 }
 
@@ -53,6 +68,39 @@ def test_golden_records_to_the_robot() -> None:
     assert protocol.move_linear(4711, 1, POSE, 50.0, 200.0) == (
         b"MOVL,4711,1,1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000,50.0000,200.0000*5E\n"
     )
+
+
+def test_golden_records_of_a_stream_to_the_robot() -> None:
+    figures = StreamFigures(0.05, 0.02, 10.0, 2.0, 100)
+    assert protocol.begin_stream(4711, 2, figures) == (
+        b"STREAM,4711,2,0.0500,0.0200,10.0000,2.0000,100*42\n"
+    )
+    assert protocol.set_point(4711, 4, (1900.0, -0.125, 926.9, 90.0, 0.0, 180.0)) == (
+        b"SET,4711,4,1900.0000,-0.1250,926.9000,90.0000,0.0000,180.0000*EC\n"
+    )
+    assert protocol.finish_stream(4711, 2) == b"FINISH,4711,2*18\n"
+
+
+HELLO = b"HELLO,SJL,1,CMD,SR500A,1.0,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"
+
+
+def test_options_of_the_hello() -> None:
+    known = b",STREAM=8/0.1000/0.0500/30.0000/5.0000/200"
+    for options, offered in ((b"", None), (b",COLOUR=RED", None), (b",COLOUR=RED" + known, OFFER)):
+        hello = decoder.decode(with_sum(HELLO + options))
+        assert isinstance(hello, Hello)
+        assert hello.stream == offered
+
+
+@pytest.mark.parametrize(
+    "option",
+    [b"STREAM=", b"STREAM=8", b"STREAM=8/0.1/0.0500/30.0000/5.0000/200",
+     b"STREAM=0/0.1000/0.0500/30.0000/5.0000/200", b"STREAM=8/0.1000/0.0500/30.0000/5.0000",
+     b"STREAM=8/0.1000/0.0500/30.0000/5.0000/200,STREAM=8/0.1000/0.0500/30.0000/5.0000/200"],
+)  # fmt: skip
+def test_bad_options(option: bytes) -> None:
+    with pytest.raises(ProtocolViolation):
+        decoder.decode(with_sum(HELLO + b"," + option))
 
 
 def test_other_records_to_the_robot() -> None:
