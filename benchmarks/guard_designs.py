@@ -21,6 +21,7 @@ from cellctl.interfaces.ft_sensor import FtHealth
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.protocol import Frame, StreamDecoder, command
 from drivers.ftsensor.sri.sampler import Sampler
+from drivers.robot.siasun import decoder
 from drivers.robot.siasun import protocol as sjl
 from drivers.robot.siasun.records import Status
 from drivers.robot.siasun.stop_channel import flange_state
@@ -131,7 +132,7 @@ async def _plain(pipe: Connection, sensor_port: int, guard_port: int, load: str)
 
 async def _reports(reader: asyncio.StreamReader, monitor: WrenchMonitor) -> None:
     while line := await reader.readline():
-        record = sjl.decode(line.rstrip(b"\n"))
+        record = decoder.decode(line.rstrip(b"\n"))
         if isinstance(record, Status):
             monitor.flange(flange_state(record, now_s()))
 

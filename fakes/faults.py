@@ -33,6 +33,10 @@ ROBOT_FAULTS = {
     "vendor_error": "the controller shows error `code` until the fault is cleared",
     "override_zero": "the speed override is 0 % until the fault is cleared",
     "reboot": "all connections drop and the job programs start again",
+    "set_lost": "a setpoint of a stream is overheard",
+    "set_late": "a setpoint of a stream is heard together with the next one",
+    "set_repeated": "a setpoint of a stream is heard twice",
+    "ticks_silent": "the ticks of a stream are not reported, the stream goes on",
 }
 TRACKER_FAULTS = {
     "silent": "requests are not answered",

@@ -12,7 +12,17 @@ from cellctl.errors import CellError, catalogue
 ROOT = Path(__file__).parent.parent
 PACKAGES = ("cellctl", "drivers", "fakes")
 SOURCES = sorted(path for name in PACKAGES for path in (ROOT / name).rglob("*.py"))
-BLOCKS = {"config": 1, "link": 2, "robot": 3, "vision": 4, "force": 5, "calibration": 6, "line": 7}
+BLOCKS = {
+    "config": 1,
+    "link": 2,
+    "robot": 3,
+    "gripper": 3,
+    "digital_io": 3,
+    "vision": 4,
+    "force": 5,
+    "calibration": 6,
+    "line": 7,
+}
 DRIVER_FILES = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
 
 

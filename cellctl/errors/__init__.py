@@ -4,6 +4,8 @@ CellError
 ├── ConfigError       1xx   errors.config       configuration, files, arguments
 ├── LinkError         2xx   errors.link         connections to devices
 ├── RobotError        3xx   errors.robot        controllers and motion
+├── GripperError      34x   errors.gripper      grippers
+├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
 ├── VisionError       4xx   errors.vision       images, holes, part poses
 ├── ForceError        5xx   errors.force        sensor, guard, mating
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
@@ -16,7 +18,9 @@ CellError
 from cellctl.errors import (
     calibration,
     config,
+    digital_io,
     force,
+    gripper,
     internal,
     line,
     link,
@@ -33,7 +37,9 @@ __all__ = [
     "calibration",
     "catalogue",
     "config",
+    "digital_io",
     "force",
+    "gripper",
     "internal",
     "line",
     "link",

@@ -88,3 +88,40 @@ class SpeedOverridden(RobotError):
     cause = "Somebody turned it on the panel; measured stops and planned contacts count on it."
     remedy = "Set the override on the robot's panel to 100 %, then start again."
     reaction = Reaction.STOP
+
+
+class StreamNotOffered(RobotError):
+    """Streamed motion was asked of a robot that cannot do it."""
+
+    number = 310
+    text = "Robot does not offer streamed motion"
+    cause = "The job program on the controller is an older one or was loaded without this option."
+    remedy = "Load a job program with streamed motion, or choose a process that needs none."
+    reaction = Reaction.STOP
+
+
+class StreamStale(RobotError):
+    """The robot heard no setpoint for longer than the stream allows, and stopped."""
+
+    number = 311
+    text = "Streamed setpoints stayed away and the robot stopped"
+    cause = "This PC was too busy, or the network between PC and robot was interrupted."
+    remedy = "Look at load and network; then Clear and Reset. Nothing resumes by itself."
+
+
+class StreamSilent(RobotError):
+    """The robot no longer reports its ticks."""
+
+    number = 312
+    text = "Robot's stream of positions went silent"
+    cause = "The job program on the controller hangs, or the link is half open."
+    remedy = "Check the job program; then Clear and Reset."
+
+
+class SetpointRefused(RobotError):
+    """The controller refused a streamed setpoint, and stopped."""
+
+    number = 313
+    text = "Robot refused a streamed setpoint and stopped"
+    cause = "The setpoint lay further away than the stream allows, or out of the robot's reach."
+    remedy = "See the controller's reason in the detail; check the limits of the stream."

@@ -8,32 +8,64 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
+    from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
+    from cellctl.interfaces.gripper import Gripper, GripperState
     from cellctl.interfaces.robot import Robot, RobotMode, RobotState
     from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
     from cellctl.interfaces.stop_channel import FlangeState, StopChannel
+    from cellctl.interfaces.streaming_robot import (
+        PoseStream,
+        StreamingRobot,
+        StreamLimits,
+        StreamOffer,
+        StreamReport,
+    )
     from cellctl.interfaces.target_tracker import Target, TargetTracker
 
 __all__ = [
+    "Camera",
+    "CameraImage",
+    "DigitalIo",
+    "DigitalIoState",
     "FlangeState",
     "FtHealth",
     "FtSensor",
+    "Gripper",
+    "GripperState",
+    "PixelFormat",
+    "PoseStream",
     "Robot",
     "RobotMode",
     "RobotState",
     "StereoCamera",
     "StereoPair",
     "StopChannel",
+    "StreamLimits",
+    "StreamOffer",
+    "StreamReport",
+    "StreamingRobot",
     "Target",
     "TargetTracker",
     "WrenchSample",
 ]
 
 _MODULES = {
+    "camera": ("Camera", "CameraImage", "PixelFormat"),
+    "digital_io": ("DigitalIo", "DigitalIoState"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
+    "gripper": ("Gripper", "GripperState"),
     "robot": ("Robot", "RobotMode", "RobotState"),
     "stereo_camera": ("StereoCamera", "StereoPair"),
     "stop_channel": ("FlangeState", "StopChannel"),
+    "streaming_robot": (
+        "PoseStream",
+        "StreamLimits",
+        "StreamOffer",
+        "StreamReport",
+        "StreamingRobot",
+    ),
     "target_tracker": ("Target", "TargetTracker"),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}

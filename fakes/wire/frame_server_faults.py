@@ -3,6 +3,7 @@
 from typing import Final
 
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
+from fakes.wire.named_faults import NamedFaults
 
 WIRE_FAULTS: Final[dict[str, str]] = {
     "silent": "the request is read and never answered",
@@ -21,36 +22,10 @@ WIRE_FAULTS: Final[dict[str, str]] = {
 }
 
 
-class FrameFaults:
-    """Faults of one head, injected by name; a name that does not exist is a ``ValueError``."""
+class FrameFaults(NamedFaults):
+    """Faults of one head or camera; a reply is the answer to a grab."""
 
     NAMES: Final = (*WIRE_FAULTS, *SCENE_FAULTS, *PICTURE_FAULTS)
 
     def __init__(self) -> None:
-        self._values: dict[str, float] = {}
-        self._replies_left: dict[str, int] = {}
-
-    def inject(self, name: str, value: float = 1.0, *, replies: int | None = None) -> None:
-        """Switch a fault on, until ``clear`` or for the next ``replies`` grabs."""
-        if name not in self.NAMES:
-            raise ValueError(f"no such fault: {name}; there are {', '.join(self.NAMES)}")
-        self._values[name] = value
-        self._replies_left.pop(name, None)
-        if replies is not None:
-            self._replies_left[name] = replies
-
-    def clear(self, name: str | None = None) -> None:
-        """Switch one fault, or all of them, off."""
-        for key in [name] if name is not None else list(self._values):
-            self._values.pop(key, None)
-            self._replies_left.pop(key, None)
-
-    def take(self) -> dict[str, float]:
-        """Faults of the reply that is due now, with their values."""
-        active = dict(self._values)
-        for name in active:
-            if name in self._replies_left:
-                self._replies_left[name] -= 1
-                if self._replies_left[name] <= 0:
-                    self.clear(name)
-        return active
+        super().__init__(self.NAMES)

@@ -23,6 +23,7 @@ from fakes.wire.sjl_controller_records import (
     pose_fields,
 )
 from fakes.wire.sjl_controller_sender import Sender
+from fakes.wire.sjl_controller_stream import StreamOffer
 from fakes.world.robot import RobotArm
 
 JOB_VERSION = "1.0"
@@ -43,14 +44,15 @@ class SjlController:
         *,
         host: str = "127.0.0.1",
         faults: FaultBoard | None = None,
+        offer: StreamOffer | None = None,
     ) -> None:
+        """``offer`` is what the job program offers for streamed motion, if anything."""
         self.faults = faults or FaultBoard("main")
-        self.logic = Controller(arm, self.faults)
+        self.logic = Controller(arm, self.faults, offer, clock())
         self._arm, self._clock = arm, clock
         self._host, self._ports = host, ports
         self._tasks: list[asyncio.Task[None]] = []
         self._senders: dict[Channel, Sender] = {}
-        self._booted_s = clock()
 
     def start(self) -> None:
         """Begin to connect all channels and to run the controller."""
@@ -69,8 +71,7 @@ class SjlController:
         """Switch off and on: channels drop, the latch is forgotten, joints stay."""
         self._arm.stop(self._clock(), latency_s=0.0)
         await self.stop()
-        self.logic = Controller(self._arm, self.faults)
-        self._booted_s = self._clock()
+        self.logic = Controller(self._arm, self.faults, self.logic.offer, self._clock())
         self.start()
 
     @property
@@ -116,22 +117,21 @@ class SjlController:
         self, channel: Channel, reader: asyncio.StreamReader, writer: asyncio.StreamWriter
     ) -> int:
         settings, wrong = self._arm.settings, self.faults.active
-        writer.write(
-            encode(
-                [
-                    "HELLO",
-                    "SJL",
-                    "2" if wrong("wrong_version") else "1",
-                    channel,
-                    "NOBODY" if wrong("wrong_name") else settings.name,
-                    JOB_VERSION,
-                    "EUL=XYZ" if wrong("wrong_euler") else "EUL=ZYX",
-                    "UNIT=MRAD" if wrong("wrong_unit") else "UNIT=MMDEG",
-                    f"STEPMAX={fixed(settings.step_max_mm, 4)}",
-                    f"DEADMAN={settings.deadman_ms}",
-                ]
-            )
-        )
+        hello = [
+            "HELLO",
+            "SJL",
+            "2" if wrong("wrong_version") else "1",
+            channel,
+            "NOBODY" if wrong("wrong_name") else settings.name,
+            JOB_VERSION,
+            "EUL=XYZ" if wrong("wrong_euler") else "EUL=ZYX",
+            "UNIT=MRAD" if wrong("wrong_unit") else "UNIT=MMDEG",
+            f"STEPMAX={fixed(settings.step_max_mm, 4)}",
+            f"DEADMAN={settings.deadman_ms}",
+        ]
+        if channel == "CMD" and self.logic.offer is not None:
+            hello.append(self.logic.offer.option())
+        writer.write(encode(hello))
         async with asyncio.timeout(_HELLO_TIMEOUT_S):
             answer = decode(await _line(reader))
         if len(answer) != 4 or answer[:3] != ["OK", "HELLO", "1"]:
@@ -194,17 +194,17 @@ class SjlController:
             await asyncio.sleep(max(due_s - self._clock(), 0.001))
 
     def _stat(self, count: int) -> list[str]:
-        now_s, logic = self._clock(), self.logic
+        now_s, logic, panel = self._clock(), self.logic, self.logic.panel
         jump = self.faults.active("clock_jump")
-        uptime_ms = 1000 * (now_s - self._booted_s) + (jump.number("jump_ms", 1e6) if jump else 0)
-        flags = [logic.emergency_stop, logic.drives, self._arm.moving(now_s), logic.latched]
+        uptime_ms = 1000 * (now_s - logic.booted_s) + (jump.number("jump_ms", 1e6) if jump else 0)
+        flags = [panel.emergency_stop, panel.drives, logic.moving(now_s), logic.latched]
         return [
             "STAT",
             str(count),
             str(round(uptime_ms)),
-            logic.mode,
+            panel.mode,
             *("1" if flag else "0" for flag in flags),
-            str(logic.error_code),
+            str(panel.error_code),
             "0" if self.faults.active("override_zero") else "100",
             *pose_fields(self._arm.encoder_matrix(now_s)),
             *joint_fields(self._arm.joints(now_s).tolist()),

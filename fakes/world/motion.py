@@ -119,8 +119,7 @@ class LinearPath:
     """The flange in a straight line; the length is metres. Raises ``OutOfReachError``."""
 
     def __init__(self, chain: Chain, start: RigidTransform, target: RigidTransform, near: Array):
-        distance_m, angle_rad = distance(start, target)
-        self.length = max(distance_m, angle_rad * _M_PER_RAD)
+        self.length = way_m(start, target)
         self.travel_m = self.length
         ratios = np.linspace(0, 1, max(4, int(np.ceil(self.length / _KNOT_M)) + 1))
         ends = Rotation.concatenate([start.rotation, target.rotation])
@@ -136,3 +135,30 @@ class LinearPath:
         """Joint angles at a distance along the path."""
         ratio = along / self.length if self.length > 0 else 1.0
         return np.asarray(self._spline(ratio), dtype=float)
+
+
+class StreamSegment:
+    """From one streamed setpoint to the next, straight in joint space; the length is metres.
+
+    It may be followed beyond its end, as an arm does that is told to stop while it moves.
+    """
+
+    def __init__(self, start_rad: Array, target_rad: Array, length_m: float) -> None:
+        self._start, self._rate = start_rad, (target_rad - start_rad) / length_m
+        self.length = length_m
+        self.travel_m = length_m
+
+    def joints(self, along: float) -> Array:
+        """Joint angles at a distance along the path."""
+        return self._start + self._rate * along
+
+    def lengthened(self, start_along: float, length_m: float) -> "StreamSegment":
+        """The same direction from a point of this segment on, over another length."""
+        start_rad = self.joints(start_along)
+        return StreamSegment(start_rad, start_rad + self._rate * length_m, length_m)
+
+
+def way_m(start: RigidTransform, target: RigidTransform) -> float:
+    """Distance between two poses, or their angle as a distance, whichever is longer."""
+    distance_m, angle_rad = distance(start, target)
+    return max(distance_m, angle_rad * _M_PER_RAD)

@@ -4,13 +4,22 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario import Robot
-from fakes.world.arm import OutOfReachError, forward, forward_matrix, nominal_links, singular
+from fakes.world.arm import (
+    OutOfReachError,
+    forward,
+    forward_matrix,
+    inverse,
+    nominal_links,
+    singular,
+)
 from fakes.world.frames import MM, Array, distance, stream
-from fakes.world.motion import JointPath, LinearPath, Path, Profile
+from fakes.world.motion import JointPath, LinearPath, Path, Profile, StreamSegment, way_m
 from fakes.world.truth import RobotTruth
 from fakes.world.wander import Wander, small_displacement
 
 STEP_ANGLE_MAX_RAD = np.deg2rad(0.5)
+_STILL_M = 1e-9
+"""A setpoint that is no farther away is the present pose; the metres of a step divide by it."""
 _JUMP_RAD = np.deg2rad(45.0)
 """Between two knots of a linear path: more than this is a passage near a singularity."""
 
@@ -83,13 +92,32 @@ class RobotArm:
         if distance_m > limit_m + 1e-9 or angle_rad > STEP_ANGLE_MAX_RAD:
             raise RefusedMotionError("STEP")
 
+    def follow(self, time_s: float, target: RigidTransform, period_s: float) -> None:
+        """Go to a streamed setpoint within one period, without ramps; raises
+        ``RefusedMotionError``."""
+        length_m = way_m(self.encoder_pose(time_s), target)
+        if length_m < _STILL_M:
+            return
+        near = self.joints(time_s)
+        try:
+            joints = inverse(self.settings.chain_mm, target, near)
+        except OutOfReachError as error:
+            raise RefusedMotionError("REACH") from error
+        if singular(joints) or np.abs(joints - near).max() > _JUMP_RAD:
+            raise RefusedMotionError("SINGULAR")
+        self._check_limits(joints[np.newaxis])
+        self._continue(time_s, StreamSegment(near, joints, length_m), length_m / period_s)
+
     def stop(self, time_s: float, *, latency_s: float | None = None) -> None:
         """Brake on the path after the controller's latency; the motion goes on until then."""
         if latency_s is None:
             latency_s = self.settings.stop_latency_ms / 1000
         braking = 1 / self.settings.ramp_s
-        if isinstance(self._path, LinearPath):
+        if isinstance(self._path, LinearPath | StreamSegment):
             braking = self.settings.stop_deceleration_mm_s2 * MM
+        stopping = np.isfinite(self._profile.stop_s)
+        if isinstance(self._path, StreamSegment) and self.moving(time_s) and not stopping:
+            self._run_on(time_s, self._path, latency_s, braking)
         self._profile = self._profile.stopped_from(time_s + latency_s, braking)
 
     # -- state --------------------------------------------------------------------------------
@@ -139,6 +167,25 @@ class RobotArm:
         start_s = time_s + self.settings.start_latency_ms / 1000
         speed *= self.override_percent / 100
         self._path, self._profile = path, Profile(start_s, path.length, speed, acceleration)
+
+    def _continue(self, time_s: float, path: Path, speed_m_s: float) -> None:
+        """Go on without a ramp. The error of the last motion's end stays: a stream is one motion,
+        and must not draw a new one in every tick."""
+        along = self._profile.at(time_s)
+        self._travelled_m, self._rest_error = self._travel(along), self._settled(along)
+        self._next_error = self._rest_error
+        self._path = path
+        self._profile = Profile(time_s, path.length, speed_m_s, np.inf)
+
+    def _run_on(
+        self, time_s: float, segment: StreamSegment, latency_s: float, braking: float
+    ) -> None:
+        """Keep the speed of a streamed step long enough for a stop that has its own latency: the
+        controller's dead time is the same whoever says where to go."""
+        speed = self._profile.speed
+        length_m = speed * latency_s + speed**2 / braking + segment.length
+        further = segment.lengthened(self._profile.at(time_s), length_m)
+        self._continue(time_s, further, speed)
 
     def _travel(self, along: float) -> float:
         if self._path.length == 0:

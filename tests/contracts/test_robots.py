@@ -6,20 +6,22 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
-from cellctl.interfaces.robot import Robot
 from drivers.robot.siasun.driver import SiasunRobot
 from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
+from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
 from tests.contracts.robot import RobotBench, RobotContract
+from tests.contracts.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.wire.sjl_rig import Rig, sjl_rig
 
 
 class InProcessBench(RobotBench):
+    robot: InProcessRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
     max_speed_m_s = MAX_SPEED_M_S
 
-    def __init__(self) -> None:
-        self.memory = InProcessRobot("memory")
-        self.robot: Robot = self.memory
+    def __init__(self, memory: InProcessRobot) -> None:
+        self.memory = memory
+        self.robot = memory
 
     def commands(self) -> int:
         return self.memory.commands
@@ -38,11 +40,12 @@ class InProcessBench(RobotBench):
 
 
 class SiasunBench(RobotBench):
+    robot: SiasunRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
 
     def __init__(self, rig: Rig) -> None:
         self.rig = rig
-        self.robot: Robot = rig.robot
+        self.robot = rig.robot
         self.max_speed_m_s = rig.settings.max_speed_mm_s / 1000
         self._started = 0
         begin = rig.arm._begin
@@ -63,7 +66,7 @@ class SiasunBench(RobotBench):
         return self.rig.arm.encoder_pose(self.rig.controller._clock())
 
     def moving(self) -> bool:
-        return self.rig.arm.moving(self.rig.controller._clock())
+        return self.rig.controller.logic.moving(self.rig.controller._clock())
 
     def freeze(self) -> None:
         self.rig.controller.faults.inject("frozen_stat")
@@ -73,10 +76,48 @@ class SiasunBench(RobotBench):
             wire.reset()
 
 
+class InProcessStreamingBench(InProcessBench, StreamingBench):
+    robot: InProcessStreamingRobot
+
+    def __init__(self) -> None:
+        super().__init__(InProcessStreamingRobot("memory"))
+
+    def lose_setpoints(self, count: int) -> None:
+        self.robot.losses = count
+
+    def repeat_setpoint(self) -> None:
+        self.robot.late += 1
+
+    def delay_setpoint(self) -> None:
+        self.robot.late += 1
+
+    def silence_ticks(self) -> None:
+        self.robot.silent = True
+
+
+class SiasunStreamingBench(SiasunBench, StreamingBench):
+    robot: SiasunRobot
+
+    def lose_setpoints(self, count: int) -> None:
+        if count:
+            self.rig.controller.faults.inject("set_lost", count=count)
+        else:
+            self.rig.controller.faults.clear("set_lost")
+
+    def repeat_setpoint(self) -> None:
+        self.rig.controller.faults.inject("set_repeated", count=1)
+
+    def delay_setpoint(self) -> None:
+        self.rig.controller.faults.inject("set_late", count=1)
+
+    def silence_ticks(self) -> None:
+        self.rig.controller.faults.inject("ticks_silent")
+
+
 class TestInProcessRobot(RobotContract):
     @pytest.fixture
     async def bench(self) -> AsyncIterator[RobotBench]:
-        bench = InProcessBench()
+        bench = InProcessBench(InProcessRobot("memory"))
         yield bench
         await bench.robot.disconnect()
 
@@ -88,3 +129,20 @@ class TestSiasunRobot(RobotContract):
     async def bench(self) -> AsyncIterator[RobotBench]:
         async with sjl_rig() as rig:
             yield SiasunBench(rig)
+
+
+class TestInProcessStreamingRobot(StreamingRobotContract):
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[StreamingBench]:
+        bench = InProcessStreamingBench()
+        yield bench
+        await bench.robot.disconnect()
+
+
+class TestSiasunStream(StreamingRobotContract):
+    driver = SiasunRobot
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[StreamingBench]:
+        async with sjl_rig() as rig:
+            yield SiasunStreamingBench(rig)

@@ -74,11 +74,12 @@ class Cell:
 
 
 @asynccontextmanager
-async def running(**changes: object) -> AsyncIterator[Cell]:
+async def running(*, option: str = "", **changes: object) -> AsyncIterator[Cell]:
+    """``option`` is one that the controller's CMD channel offers in its hello."""
     settings = config(**changes)
     robot = SiasunRobot("main", settings)
     connecting = asyncio.create_task(robot.connect())
-    cmd = await Peer.greeted(settings.command_port, "CMD")
+    cmd = await Peer.greeted(settings.command_port, "CMD", option)
     sta = await Peer.greeted(settings.state_port, "STA")
     sta.stat()
     await connecting

@@ -31,18 +31,21 @@ class Peer:
                     await asyncio.sleep(0.01)
 
     @classmethod
-    async def greeted(cls, port: int, channel: str) -> Self:
+    async def greeted(cls, port: int, channel: str, option: str = "") -> Self:
         """Connected and accepted."""
         peer = await cls.connect(port)
-        await peer.hello(channel)
+        await peer.hello(channel, option=option)
         return peer
 
-    async def hello(self, channel: str, robot: str = "SR500A", **changes: str) -> str:
+    async def hello(
+        self, channel: str, robot: str = "SR500A", option: str = "", **changes: str
+    ) -> str:
         """Say hello and return the answer without its sum."""
         words = {"version": "1", "eul": "ZYX", "unit": "MMDEG", "deadman": "300"} | changes
         self.send(
             f"HELLO,SJL,{words['version']},{channel},{robot},1.0,EUL={words['eul']},"
             f"UNIT={words['unit']},STEPMAX=0.5000,DEADMAN={words['deadman']}"
+            f"{',' if option else ''}{option}"
         )
         answer = await self.expect()
         self.session = answer.rpartition(",")[2]

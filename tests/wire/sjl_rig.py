@@ -14,6 +14,7 @@ from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from fakes.scenario import Channel, Scenario
 from fakes.wire.sjl_controller import SjlController
+from fakes.wire.sjl_controller_stream import StreamOffer
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.ports import free_ports
@@ -21,6 +22,7 @@ from tests.wire.proxy import ChaosProxy
 from tests.wire.scenarios import as_on_a_real_cell
 
 SCENARIO = Path(__file__).parents[2] / "config" / "fake-cell.toml"
+OFFER = StreamOffer()
 READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
 """Deck above the station, away from limits and singularities."""
 
@@ -48,9 +50,13 @@ class Rig:
 
 @asynccontextmanager
 async def sjl_rig(
-    *, channels: tuple[Channel, ...] = ("CMD", "STA"), **changes: object
+    *,
+    channels: tuple[Channel, ...] = ("CMD", "STA"),
+    offer: StreamOffer | None = OFFER,
+    **changes: object,
 ) -> AsyncIterator[Rig]:
-    """Wired up but neither end started; both are stopped at the end."""
+    """Wired up but neither end started; both are stopped at the end. ``offer`` is what the job
+    program offers for streamed motion."""
     scenario = as_on_a_real_cell(Scenario.model_validate(tomllib.loads(SCENARIO.read_text())))
     command_port, state_port, guard_port = free_ports(3)
     settings = SiasunConfig.model_validate(
@@ -82,6 +88,7 @@ async def sjl_rig(
             arm,
             lambda: time.monotonic() - started_s,
             {channel: wire.port for channel, wire in wires.items()},
+            offer=offer,
         )
         robot = SiasunRobot("main", settings)
         stack.push_async_callback(controller.stop)

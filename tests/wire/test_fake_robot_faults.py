@@ -37,7 +37,7 @@ def test_emergency_stop_mid_move(bench: Bench):
     bench.faults.inject("emergency_stop_mid_move", after_s=0.3)
     bench.send("MOVL", f"{bench.pose(-100)},20,200")
     assert words(bench.run(1.0))[0] == ("CMD", "ABRT", "2", "ESTOP")
-    assert bench.controller.emergency_stop
+    assert bench.controller.panel.emergency_stop
     assert bench.send("REARM") == [["REJ", "3", "ESTOP"]]
 
 

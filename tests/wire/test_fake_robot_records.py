@@ -1,4 +1,4 @@
-"""SJL/1 records of the fake controller: golden records of the protocol document, section 7."""
+"""SJL/1 records of the fake controller: golden records of the protocol document, section 8."""
 
 from pathlib import Path
 
@@ -22,13 +22,13 @@ from fakes.world.frames import from_written
 DOCUMENT = Path(__file__).parents[2] / "docs" / "protocols" / "sjl-1.md"
 GOLDEN = [
     line.strip()
-    for line in DOCUMENT.read_text(encoding="utf-8").partition("## 7")[2].splitlines()
+    for line in DOCUMENT.read_text(encoding="utf-8").partition("## 8")[2].splitlines()
     if line.startswith("    ")
 ]
 
 
 def test_document_has_golden_records():
-    assert len(GOLDEN) == 9
+    assert len(GOLDEN) == 14
 
 
 @pytest.mark.parametrize("record", GOLDEN)

@@ -191,11 +191,11 @@ async def test_bad_identity(payload: bytes) -> None:
 @given(st.binary(min_size=0, max_size=60))
 def test_noise_is_a_violation(data: bytes) -> None:
     with pytest.raises(ProtocolViolation):
-        protocol.parse_header(data, Command.GRAB, 1)
+        protocol.parse_header(data, Command.GRAB_PAIR, 1)
 
 
 @given(st.binary(min_size=44, max_size=44))
 def test_noise_with_a_good_crc_is_a_violation(data: bytes) -> None:
     signed = b"CFSR\0\1" + data[6:]
     with pytest.raises(ProtocolViolation):
-        protocol.parse_header(signed + struct.pack(">I", zlib.crc32(signed)), Command.GRAB, 1)
+        protocol.parse_header(signed + struct.pack(">I", zlib.crc32(signed)), Command.GRAB_PAIR, 1)

@@ -1,11 +1,11 @@
-"""SJL/1 codec of the driver: golden records of docs/protocols/sjl-1.md section 7, and noise."""
+"""SJL/1 codec of the driver: golden records of docs/protocols/sjl-1.md section 8, and noise."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.errors.link import ProtocolViolation
-from drivers.robot.siasun import protocol
+from drivers.robot.siasun import decoder, protocol
 from drivers.robot.siasun.records import (
     Aborted,
     Ack,
@@ -16,6 +16,9 @@ from drivers.robot.siasun.records import (
     Rejected,
     Status,
     StopDone,
+    StreamFigures,
+    StreamOption,
+    Tick,
 )
 
 POSE = (1900.0, -0.125, 927.0, 90.0, 0.0, 180.0)
@@ -36,14 +39,26 @@ GOLDEN_FROM_ROBOT: dict[bytes, Record] = {
 }
 
 
+OFFER = StreamOption(8, StreamFigures(0.1, 0.05, 30.0, 5.0, 200))
+GOLDEN_FROM_ROBOT |= {
+    b"HELLO,SJL,1,CMD,SR500A,1.1,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300,"
+    b"STREAM=8/0.1000/0.0500/30.0000/5.0000/200*EA": Hello(
+        "1", "CMD", "SR500A", "1.1", "ZYX", "MMDEG", 0.5, 300, OFFER
+    ),
+    b"TICK,3,1024,2,0,1,1900.0000,-0.1250,926.9500,90.0000,0.0000,180.0000*40": Tick(
+        3, 1024, 2, 0, 1, (1900.0, -0.125, 926.95, 90.0, 0.0, 180.0)
+    ),
+}
+
+
 def with_sum(body: bytes) -> bytes:
     return body + b"*%02X" % (sum(body) % 256)
 
 
 @pytest.mark.parametrize("line", GOLDEN_FROM_ROBOT)
 def test_golden_records_from_the_robot(line: bytes) -> None:
-    assert protocol.decode(line) == GOLDEN_FROM_ROBOT[line]
-    assert protocol.decode(line + b"\r") == GOLDEN_FROM_ROBOT[line]
+    assert decoder.decode(line) == GOLDEN_FROM_ROBOT[line]
+    assert decoder.decode(line + b"\r") == GOLDEN_FROM_ROBOT[line]
 
 
 def test_golden_records_to_the_robot() -> None:
@@ -53,6 +68,39 @@ def test_golden_records_to_the_robot() -> None:
     assert protocol.move_linear(4711, 1, POSE, 50.0, 200.0) == (
         b"MOVL,4711,1,1900.0000,-0.1250,927.0000,90.0000,0.0000,180.0000,50.0000,200.0000*5E\n"
     )
+
+
+def test_golden_records_of_a_stream_to_the_robot() -> None:
+    figures = StreamFigures(0.05, 0.02, 10.0, 2.0, 100)
+    assert protocol.begin_stream(4711, 2, figures) == (
+        b"STREAM,4711,2,0.0500,0.0200,10.0000,2.0000,100*42\n"
+    )
+    assert protocol.set_point(4711, 4, (1900.0, -0.125, 926.9, 90.0, 0.0, 180.0)) == (
+        b"SET,4711,4,1900.0000,-0.1250,926.9000,90.0000,0.0000,180.0000*EC\n"
+    )
+    assert protocol.finish_stream(4711, 2) == b"FINISH,4711,2*18\n"
+
+
+HELLO = b"HELLO,SJL,1,CMD,SR500A,1.0,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"
+
+
+def test_options_of_the_hello() -> None:
+    known = b",STREAM=8/0.1000/0.0500/30.0000/5.0000/200"
+    for options, offered in ((b"", None), (b",COLOUR=RED", None), (b",COLOUR=RED" + known, OFFER)):
+        hello = decoder.decode(with_sum(HELLO + options))
+        assert isinstance(hello, Hello)
+        assert hello.stream == offered
+
+
+@pytest.mark.parametrize(
+    "option",
+    [b"STREAM=", b"STREAM=8", b"STREAM=8/0.1/0.0500/30.0000/5.0000/200",
+     b"STREAM=0/0.1000/0.0500/30.0000/5.0000/200", b"STREAM=8/0.1000/0.0500/30.0000/5.0000",
+     b"STREAM=8/0.1000/0.0500/30.0000/5.0000/200,STREAM=8/0.1000/0.0500/30.0000/5.0000/200"],
+)  # fmt: skip
+def test_bad_options(option: bytes) -> None:
+    with pytest.raises(ProtocolViolation):
+        decoder.decode(with_sum(HELLO + b"," + option))
 
 
 def test_other_records_to_the_robot() -> None:
@@ -81,7 +129,7 @@ def test_other_records_to_the_robot() -> None:
     ],
 )
 def test_other_records_from_the_robot(body: bytes, record: Record) -> None:
-    assert protocol.decode(with_sum(body)) == record
+    assert decoder.decode(with_sum(body)) == record
 
 
 @pytest.mark.parametrize(
@@ -108,7 +156,7 @@ def test_other_records_from_the_robot(body: bytes, record: Record) -> None:
 )
 def test_invalid_lines(line: bytes) -> None:
     with pytest.raises(ProtocolViolation):
-        protocol.decode(line)
+        decoder.decode(line)
 
 
 def test_a_changed_digit_never_passes() -> None:
@@ -117,10 +165,10 @@ def test_a_changed_digit_never_passes() -> None:
         for byte in b"0123456789":
             if good[at] != byte:
                 with pytest.raises(ProtocolViolation):
-                    protocol.decode(good[:at] + bytes([byte]) + good[at + 1 :])
+                    decoder.decode(good[:at] + bytes([byte]) + good[at + 1 :])
 
 
-def drain(reader: protocol.RecordReader) -> list[Record | None]:
+def drain(reader: decoder.RecordReader) -> list[Record | None]:
     """All records that wait; None stands for each violation."""
     found: list[Record | None] = []
     while True:
@@ -137,7 +185,7 @@ def drain(reader: protocol.RecordReader) -> list[Record | None]:
 @given(st.lists(st.integers(1, 60), max_size=20))
 def test_cuts_do_not_matter(cuts: list[int]) -> None:
     stream = b"".join(line + b"\n" for line in GOLDEN_FROM_ROBOT)
-    reader, found, start = protocol.RecordReader(), [], 0
+    reader, found, start = decoder.RecordReader(), [], 0
     for cut in [*cuts, len(stream)]:
         reader.feed(stream[start : start + cut])
         found += drain(reader)
@@ -147,7 +195,7 @@ def test_cuts_do_not_matter(cuts: list[int]) -> None:
 
 @given(st.lists(st.binary(max_size=400), max_size=5))
 def test_noise_costs_no_following_record(chunks: list[bytes]) -> None:
-    reader = protocol.RecordReader()
+    reader = decoder.RecordReader()
     for chunk in chunks:
         reader.feed(chunk)
         drain(reader)
@@ -160,13 +208,13 @@ def test_noise_costs_no_following_record(chunks: list[bytes]) -> None:
 @given(st.text("ACKDONEHLSTP,.*=-0123456789", max_size=120))
 def test_plausible_text_raises_only_protocol_violations(text: str) -> None:
     try:
-        protocol.decode(with_sum(text.encode()))
+        decoder.decode(with_sum(text.encode()))
     except ProtocolViolation:
         return
 
 
 def test_longest_record() -> None:
-    reader = protocol.RecordReader()
+    reader = decoder.RecordReader()
     reader.feed(b"x" * 254 + b"\n" + b"x" * 255 + b"\n" + b"x" * 1000)
     assert drain(reader) == [None, None, None]
     reader.feed(b"yyy\nACK,1*2C\n")

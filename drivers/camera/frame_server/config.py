@@ -1,4 +1,4 @@
-"""The settings of a stereo head behind a frame server. Seconds."""
+"""The settings of a camera or stereo head behind a frame server. Seconds."""
 
 from typing import Annotated
 

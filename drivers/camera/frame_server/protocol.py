@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.errors.link import ProtocolViolation
+from cellctl.interfaces.camera import PixelFormat
 from cellctl.interfaces.stereo_camera import Image
 
 VERSION = 1
-MONO8 = 1
-IMAGES_PER_GRAB = 2
 MAX_PAYLOAD_BYTES = 200_000_000
-"""More than any head has; a header that asks for more is wrong."""
+"""More than any camera has; a header that asks for more is wrong."""
 IDENTITY_BYTES = 4096
 
 _REQUEST = struct.Struct(">4sHHII")
@@ -28,7 +28,8 @@ class Command(IntEnum):
     """What the client asks for."""
 
     IDENTIFY = 1
-    GRAB = 2
+    GRAB_PAIR = 2
+    GRAB_IMAGE = 3
 
 
 class Status(IntEnum):
@@ -38,6 +39,34 @@ class Status(IntEnum):
     BUSY = 1
     CAMERA_FAULT = 2
     BAD_REQUEST = 3
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """How the samples of a pixel format lie in the payload."""
+
+    pixel_format: PixelFormat
+    sample: str
+    """Type of one sample, as numpy writes it."""
+    channels: int
+
+    @property
+    def pixel_bytes(self) -> int:
+        return np.dtype(self.sample).itemsize * self.channels
+
+
+_LAYOUTS = {
+    1: _Layout(PixelFormat.MONO8, ">u1", 1),
+    2: _Layout(PixelFormat.MONO16, ">u2", 1),
+    3: _Layout(PixelFormat.RGB8, ">u1", 3),
+}
+"""By the number on the wire."""
+_IMAGES = {Command.IDENTIFY: 0, Command.GRAB_PAIR: 2, Command.GRAB_IMAGE: 1}
+_FORMATS = {
+    # A stereo head measures holes in 8 bit grey; the interface of the head says so.
+    Command.GRAB_PAIR: (PixelFormat.MONO8,),
+    Command.GRAB_IMAGE: tuple(PixelFormat),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +82,7 @@ class Header:
     width: int
     height: int
     images: int
+    format_code: int
     payload_bytes: int
     payload_crc: int
 
@@ -66,39 +96,37 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
     """The header of the reply to a request; ``ProtocolViolation`` when any field does not fit."""
     if len(data) != HEADER_BYTES:
         raise ProtocolViolation(f"header of {len(data)} bytes")
-    magic, version, status, echoed, frame_id, time_us, exposure_us, *rest = _HEADER.unpack(data)
-    width, height, images, pixel_format, length, crc, own_crc = rest
+    magic, version, status, *fields, own_crc = _HEADER.unpack(data)
     if own_crc != zlib.crc32(data[:-4]):
         raise ProtocolViolation("header CRC does not match")
     if magic != b"CFSR" or version != VERSION:
         raise ProtocolViolation(f"magic {magic!r}, version {version}")
     if status not in {known.value for known in Status}:
         raise ProtocolViolation(f"unknown status {status}")
-    header = Header(
-        *(Status(status), echoed, frame_id, time_us, exposure_us),
-        *(width, height, images, length, crc),
-    )
-    if echoed != request_id:
-        raise ProtocolViolation(f"reply to request {echoed} instead of {request_id}")
-    _check_size(header, command, pixel_format)
+    header = Header(Status(status), *fields)
+    if header.request_id != request_id:
+        raise ProtocolViolation(f"reply to request {header.request_id} instead of {request_id}")
+    if not _size_fits(header, command):
+        raise ProtocolViolation(
+            f"{header.images} images of {header.width} x {header.height}, "
+            f"format {header.format_code}, in {header.payload_bytes} bytes"
+        )
     return header
 
 
-def _check_size(header: Header, command: Command, pixel_format: int) -> None:
-    size = (header.images, header.payload_bytes)
+def _size_fits(header: Header, command: Command) -> bool:
+    """Whether the announced images are what the command asks for and fill the payload exactly."""
     if header.status is not Status.OK:
-        fits = header.payload_bytes == 0
-    elif command is Command.GRAB:
-        pixels = header.width * header.height
-        fits = size == (IMAGES_PER_GRAB, IMAGES_PER_GRAB * pixels) and pixels > 0
-        fits = fits and pixel_format == MONO8 and header.payload_bytes <= MAX_PAYLOAD_BYTES
-    else:
-        fits = header.images == 0 and header.payload_bytes <= IDENTITY_BYTES
-    if not fits:
-        raise ProtocolViolation(
-            f"{size[0]} images of {header.width} x {header.height}, format {pixel_format}, "
-            f"in {size[1]} bytes"
-        )
+        return header.payload_bytes == 0
+    if header.images != _IMAGES[command]:
+        return False
+    if command is Command.IDENTIFY:
+        return header.payload_bytes <= IDENTITY_BYTES
+    layout = _LAYOUTS.get(header.format_code)
+    if layout is None or layout.pixel_format not in _FORMATS[command]:
+        return False
+    expected = header.images * header.width * header.height * layout.pixel_bytes
+    return 0 < header.payload_bytes == expected <= MAX_PAYLOAD_BYTES
 
 
 def check_payload(header: Header, payload: bytes) -> None:
@@ -111,6 +139,20 @@ def split_images(header: Header, payload: bytes) -> tuple[Image, Image]:
     """Left and right image, shape (height, width), read-only views of the payload."""
     pair = np.frombuffer(payload, np.uint8).reshape(2, header.height, header.width)
     return pair[0], pair[1]
+
+
+def to_pixels(
+    header: Header, payload: bytes
+) -> tuple[NDArray[np.uint8] | NDArray[np.uint16], PixelFormat]:
+    """The image of a single camera, shaped as its format says; 8 bit images are read-only views."""
+    layout = _LAYOUTS[header.format_code]
+    samples = np.frombuffer(payload, layout.sample)
+    shape: tuple[int, ...] = (header.height, header.width)
+    if layout.channels > 1:
+        shape = (*shape, layout.channels)
+    # Samples of two bytes come in network order; the rest of the program counts on the PC's own.
+    native = samples.astype(samples.dtype.newbyteorder("="), copy=False)
+    return native.reshape(shape), layout.pixel_format
 
 
 def parse_identity(payload: bytes) -> tuple[str, str, str]:

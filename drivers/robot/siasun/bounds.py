@@ -1,6 +1,7 @@
 """Checks every target against the site's bounds before anything is sent."""
 
 import math
+from dataclasses import fields
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -8,7 +9,9 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
+from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
 from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.records import StreamFigures, StreamOption
 
 STEP_MAX_ANGLE_DEG = 0.5
 """The controller refuses a STEP that turns further (protocol, section 4)."""
@@ -61,6 +64,66 @@ class Bounds:
             self._refuse(f"step of {distance_m / MM:.4f} mm, allowed {limit_mm:g}")
         if not math.degrees(angle_rad) <= STEP_MAX_ANGLE_DEG:
             self._refuse(f"step turns {math.degrees(angle_rad):.3f} deg")
+
+    def stream_offer(self, option: StreamOption) -> StreamOffer:
+        """What both the job program and the configuration allow."""
+        config, offered = self._config, option.figures
+        limits = StreamLimits(
+            step_m=min(config.max_stream_step_mm, offered.step_mm) * MM,
+            step_rad=math.radians(min(config.max_stream_step_deg, offered.step_deg)),
+            travel_m=min(config.max_stream_travel_mm, offered.travel_mm) * MM,
+            travel_rad=math.radians(min(config.max_stream_travel_deg, offered.travel_deg)),
+            loss_s=min(config.max_stream_loss_s, offered.loss_ms / 1000.0),
+        )
+        return StreamOffer(option.period_ms / 1000.0, limits)
+
+    def stream(self, limits: StreamLimits, offer: StreamOffer) -> StreamFigures:
+        """The limits of a stream in the controller's units; none may exceed what is offered."""
+        for field in fields(StreamLimits):
+            asked, allowed = getattr(limits, field.name), getattr(offer.limits, field.name)
+            # A process that asks for exactly what is offered must not fail for its last bit.
+            if not 0.0 < asked <= allowed * (1.0 + 1e-9):
+                self._refuse(f"stream with {field.name} {asked:g}, allowed (0, {allowed:g}]")
+        self._limited(
+            "stream speed",
+            limits.step_m / MM / offer.period_s,
+            self._config.max_speed_mm_s,
+            "mm/s",
+        )
+        return StreamFigures(
+            limits.step_m / MM,
+            math.degrees(limits.step_rad),
+            limits.travel_m / MM,
+            math.degrees(limits.travel_rad),
+            round(limits.loss_s * 1000.0),
+        )
+
+    def set_point(
+        self,
+        base_T_flange: RigidTransform,
+        last: RigidTransform,
+        start: RigidTransform,
+        limits: StreamLimits,
+    ) -> Array:
+        """A streamed setpoint in its written form, if it lies close enough to the last one and to
+        the start of the stream."""
+        if not np.isfinite(base_T_flange.as_matrix()).all():
+            self._refuse("streamed setpoint that is not a number")
+        self._near("step", base_T_flange, last, (limits.step_m, limits.step_rad))
+        self._near("travel", base_T_flange, start, (limits.travel_m, limits.travel_rad))
+        return self.pose(base_T_flange)
+
+    def _near(
+        self, what: str, pose: RigidTransform, other: RigidTransform, allowed: tuple[float, float]
+    ) -> None:
+        delta = other.inv() * pose
+        distance_m = float(np.linalg.norm(delta.translation))
+        angle_rad = float(delta.rotation.magnitude())
+        # The tolerance is that of the arithmetic.
+        if distance_m > allowed[0] + 1e-9 or angle_rad > allowed[1] + 1e-9:
+            self._refuse(
+                f"streamed {what} of {distance_m / MM:.4f} mm and {math.degrees(angle_rad):.4f} deg"
+            )
 
     def _limited(self, what: str, value: float, limit: float, unit: str) -> float:
         if not 1e-4 <= value <= limit:

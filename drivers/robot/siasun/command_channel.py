@@ -1,27 +1,15 @@
 """The CMD channel of one robot: sequence numbers, answers, and one command at a time."""
 
-import asyncio
-from collections.abc import Callable
-from typing import TypeVar
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 
 from cellctl.errors.base import CellError
-from cellctl.errors.link import LinkError, ProtocolViolation, ReplyTimeout
+from cellctl.errors.link import LinkError, ProtocolViolation
 from cellctl.errors.robot import MotionRejected
-from drivers.robot.siasun import faults
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
-from drivers.robot.siasun.records import (
-    Aborted,
-    Ack,
-    Answer,
-    Done,
-    Duplicate,
-    Record,
-    Rejected,
-    Six,
-)
-
-Expected = TypeVar("Expected", Ack, Done)
+from drivers.robot.siasun.records import Answer, Record, Six, Tick
+from drivers.robot.siasun.running_command import RunningCommand
 
 
 class CommandChannel:
@@ -41,12 +29,12 @@ class CommandChannel:
         self._robot = robot
         self._reply_timeout_s = config.reply_timeout_s
         self._seq = 0
-        self._answers: asyncio.Queue[Answer | CellError] | None = None
+        self._running: RunningCommand | None = None
 
     @property
     def running(self) -> bool:
         """A command waits for its end."""
-        return self._answers is not None
+        return self._running is not None
 
     async def run(self, build: Callable[[int, int], bytes], timeout_s: float) -> Six:
         """Send ``build(session, seq)``; the flange pose at its end.
@@ -54,59 +42,45 @@ class CommandChannel:
         Raises what the controller answered, what ``fail`` was given, or ``ReplyTimeout``. The
         channel is dropped when the controller is silent or its answer makes no sense.
         """
-        if self._answers is not None:
+        async with self.command(build) as command:
+            return await command.done(timeout_s)
+
+    @asynccontextmanager
+    async def command(self, build: Callable[[int, int], bytes]) -> AsyncIterator[RunningCommand]:
+        """Send ``build(session, seq)`` and give the command once it is accepted. Leaving the
+        context means that nobody waits for its end any more. Raises as ``run`` does."""
+        if self._running is not None:
             raise MotionRejected(f"{self._robot}: another motion is running")
-        self._answers = asyncio.Queue()
+        # An answer that comes too late would be taken for one to the next command, so the channel
+        # is dropped when this one is not answered as it should be.
+        command = self._running = RunningCommand(
+            self._robot, self.channel.session, self._seq + 1, self.channel.drop
+        )
         try:
             self._seq += 1
-            self.channel.send(build(self.channel.session, self._seq))
-            await self._expect(Ack, self._reply_timeout_s)
-            done = await self._expect(Done, timeout_s)
-        except (ReplyTimeout, ProtocolViolation) as fault:
-            self.channel.drop(fault)
-            raise
+            self.channel.send(build(command.session, command.seq))
+            await command.acknowledged(self._reply_timeout_s)
+            yield command
         finally:
-            self._answers = None
-        return done.flange_xyzabc
+            self._running = None
 
     def fail(self, fault: CellError) -> None:
         """End the running command, if any, with a fault."""
-        if self._answers is not None:
-            self._answers.put_nowait(fault)
+        if self._running is not None:
+            self._running.take(fault)
 
     def _up(self) -> None:
         self._seq = 0
 
     def _take(self, record: Record) -> None:
-        """Late answers to a command that was given up are passed over."""
+        """Late answers to a command that was given up are passed over, and so are late ticks."""
+        if isinstance(record, Tick):
+            if self._running is not None:
+                self._running.take_tick(record)
+            return
         if not isinstance(record, Answer):
             raise ProtocolViolation(f"{self.channel}: {type(record).__name__} on this channel")
         if not 1 <= record.seq <= self._seq:
             raise ProtocolViolation(f"{self.channel}: {record} to a command that was never sent")
-        if self._answers is not None and record.seq == self._seq:
-            self._answers.put_nowait(record)
-
-    async def _expect(self, kind: type[Expected], timeout_s: float) -> Expected:
-        """The next answer, if it is of a kind; every other one is a fault."""
-        assert self._answers is not None
-        try:
-            async with asyncio.timeout(timeout_s):
-                answer = await self._answers.get()
-        except TimeoutError:
-            facts = f"{self._robot}: no {kind.__name__.upper()} within {timeout_s:g} s"
-            raise ReplyTimeout(facts) from None
-        if isinstance(answer, kind):
-            return answer
-        raise self._fault(answer, kind.__name__.upper())
-
-    def _fault(self, answer: Answer | CellError, expected: str) -> CellError:
-        match answer:
-            case CellError():
-                return answer
-            case Rejected(reason=reason):
-                return faults.rejection(self._robot, reason)
-            case Aborted(reason=reason):
-                return faults.abortion(self._robot, reason)
-            case Duplicate(seq=seq):
-                return MotionRejected(f"{self._robot}: sequence number {seq} was used before")
-        return ProtocolViolation(f"{self._robot}: {answer} instead of {expected}")
+        if self._running is not None and record.seq == self._running.seq:
+            self._running.take(record)

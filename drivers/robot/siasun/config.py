@@ -45,6 +45,14 @@ class SiasunConfig(_Section):
     max_acceleration_mm_s2: Annotated[float, Field(gt=0.0, le=5000.0)] = 1000.0
     max_joint_speed_percent: Annotated[int, Field(ge=1, le=100)] = 25
     max_step_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
+    max_stream_step_mm: Annotated[float, Field(gt=0.0, le=2.0)] = 0.1
+    """Greatest way of a streamed setpoint in one tick of the controller."""
+    max_stream_step_deg: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    max_stream_travel_mm: Annotated[float, Field(gt=0.0, le=200.0)] = 30.0
+    """Greatest distance of a streamed setpoint from where the stream began."""
+    max_stream_travel_deg: Annotated[float, Field(gt=0.0, le=30.0)] = 5.0
+    max_stream_loss_s: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
+    """Longest time without a setpoint or without a tick before a stream must end."""
     arrival_tolerance_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
     """A motion that reports its end farther from its target than this has failed."""
     arrival_tolerance_deg: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1

@@ -14,6 +14,7 @@ from cellctl.errors.link import (
     VersionMismatch,
 )
 from drivers.robot.siasun import faults, protocol
+from drivers.robot.siasun.decoder import RecordReader
 from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
 from drivers.robot.siasun.records import Hello, Record
 
@@ -167,7 +168,7 @@ class _Client(asyncio.Protocol):
     def __init__(self, channel: SjlChannel) -> None:
         self.closed = asyncio.Event()
         self._channel = channel
-        self._reader = protocol.RecordReader()
+        self._reader = RecordReader()
         self._transport: asyncio.Transport | None = None
         self._hello_timer: asyncio.TimerHandle | None = None
 

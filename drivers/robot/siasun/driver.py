@@ -1,7 +1,8 @@
 """A SIASUN robot whose job programs speak SJL/1 (docs/protocols/sjl-1.md)."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
 from dataclasses import replace
 
 from scipy.spatial.transform import RigidTransform
@@ -14,18 +15,27 @@ from cellctl.errors.robot import (
     MotionRejected,
     NotRearmed,
     RobotNotReady,
+    StreamNotOffered,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
-from cellctl.interfaces.robot import Robot, RobotState
+from cellctl.interfaces.robot import RobotState
+from cellctl.interfaces.streaming_robot import (
+    PoseStream,
+    StreamingRobot,
+    StreamLimits,
+    StreamOffer,
+)
 from drivers.robot.siasun import protocol
 from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
+from drivers.robot.siasun.stream import SiasunStream
 
 
-class SiasunRobot(Robot):
+class SiasunRobot(StreamingRobot):
     """Commands go over CMD; state, heartbeat and stop over STA. The PC listens on both.
 
     Any fault that leaves it open what the arm does (lost link, invalid record, missing answer,
@@ -114,6 +124,49 @@ class SiasunRobot(Robot):
             lambda session, seq: protocol.step(session, seq, xyzabc, speed),
             lambda state: self._arrival.off_pose(state, base_T_flange),
         )
+
+    def stream_offer(self) -> StreamOffer:
+        """What the job program has offered in its hello, as far as the configuration allows it."""
+        self._check_link()
+        option = self._command.channel.hello.stream
+        if option is None:
+            version = self._command.channel.hello.job_version
+            raise StreamNotOffered(f"{self.name}: job program {version}")
+        return self._bounds.stream_offer(option)
+
+    @asynccontextmanager
+    async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
+        """STREAM, a SET for each tick, FINISH."""
+        offer = self.stream_offer()
+        figures = self._bounds.stream(limits, offer)
+        self._check_ready()
+        command: RunningCommand | None = None
+        try:
+            async with self._command.command(
+                lambda session, seq: protocol.begin_stream(session, seq, figures)
+            ) as command:
+                channel = self._command.channel
+                stream = SiasunStream(channel, command, self._bounds, limits, offer)
+                await stream.begin()
+                yield stream
+                await stream.finish(self._config.stop_timeout_s)
+        except BaseException as error:
+            await self._leave_stream(error, command)
+            raise
+        await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
+
+    async def _leave_stream(self, error: BaseException, command: RunningCommand | None) -> None:
+        """Stop the robot unless the controller has said itself that it has, or never began.
+
+        ``command`` is None as long as the controller has not accepted the stream.
+        """
+        known_to_stand = isinstance(error, CellError) and not isinstance(error, ReplyTimeout)
+        if command is None and known_to_stand:
+            return
+        if command is not None and command.over and known_to_stand:
+            self._latch = self._latch or NotRearmed(f"{self.name}: a stream ended early")
+            return
+        await self._stop_before_leaving()
 
     async def stop(self) -> None:
         """ABORT on STA; returns after STOPD."""

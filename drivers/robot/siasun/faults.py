@@ -10,6 +10,9 @@ from cellctl.errors.robot import (
     MotionRejected,
     NotRearmed,
     RobotNotReady,
+    SetpointRefused,
+    StreamNotOffered,
+    StreamStale,
 )
 
 _REJECTIONS: dict[str, tuple[type[CellError], str]] = {
@@ -27,6 +30,7 @@ _REJECTIONS: dict[str, tuple[type[CellError], str]] = {
     "SPEED": (MotionRejected, "speed or acceleration not allowed"),
     "STEP": (MotionRejected, "step too long or turns too far"),
     "LOAD": (MotionRejected, "load not allowed"),
+    "STREAM": (StreamNotOffered, "stream not offered like this"),
 }
 
 _ABORTS: dict[str, tuple[type[CellError], str]] = {
@@ -37,6 +41,12 @@ _ABORTS: dict[str, tuple[type[CellError], str]] = {
     "MODE": (MotionAborted, "operating mode was changed"),
     "DRIVES": (MotionAborted, "drives went off"),
     "ERROR": (ControllerFault, "controller error during the motion"),
+    "STALE": (StreamStale, "no setpoint within the time of the stream"),
+    "STEP": (SetpointRefused, "setpoint too far from the one before"),
+    "TRAVEL": (SetpointRefused, "setpoint too far from the beginning of the stream"),
+    "LIMIT": (SetpointRefused, "joint limit"),
+    "REACH": (SetpointRefused, "setpoint out of reach"),
+    "SINGULAR": (SetpointRefused, "setpoint near a singularity"),
 }
 
 

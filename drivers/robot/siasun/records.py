@@ -9,6 +9,25 @@ Six = tuple[float, float, float, float, float, float]
 
 
 @dataclass(frozen=True, slots=True)
+class StreamFigures:
+    """What a stream may at most do: in one tick, from its beginning, and without a setpoint."""
+
+    step_mm: float
+    step_deg: float
+    travel_mm: float
+    travel_deg: float
+    loss_ms: int
+
+
+@dataclass(frozen=True, slots=True)
+class StreamOption:
+    """What a job program offers for streamed motion."""
+
+    period_ms: int
+    figures: StreamFigures
+
+
+@dataclass(frozen=True, slots=True)
 class Hello:
     """Opens a channel. ``version`` other than 1 leaves the other fields empty."""
 
@@ -20,6 +39,8 @@ class Hello:
     unit: str = ""
     step_max_mm: float = 0.0
     deadman_ms: int = 0
+    stream: StreamOption | None = None
+    """None when the job program cannot stream."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,5 +107,18 @@ class StopDone:
     flange_xyzabc: Six
 
 
-Record = Hello | Ack | Done | Rejected | Aborted | Duplicate | Status | StopDone
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """One tick of a stream."""
+
+    number: int
+    robot_ms: int
+    set_number: int
+    """The newest setpoint that the robot has taken; 0 before the first."""
+    late: int
+    lost: int
+    flange_xyzabc: Six
+
+
+Record = Hello | Ack | Done | Rejected | Aborted | Duplicate | Status | StopDone | Tick
 Answer = Ack | Done | Rejected | Aborted | Duplicate

@@ -17,6 +17,7 @@ from cellctl.errors.link import (
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.config import SiasunStopChannelConfig
+from drivers.robot.siasun.decoder import RecordReader
 from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
 from drivers.robot.siasun.records import Hello, Record, Status, StopDone
 
@@ -37,7 +38,7 @@ class SiasunStopChannel(StopChannel):
         self._config = config
         self._session = random.randrange(SESSIONS)
         self._socket: socket.socket | None = None
-        self._reader = protocol.RecordReader()
+        self._reader = RecordReader()
         self._stops = 0
         self._beats = 0
         self._stop_record = b""
@@ -121,7 +122,7 @@ class SiasunStopChannel(StopChannel):
 
     def _greet(self, client: socket.socket, deadline_s: float) -> None:
         client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        reader = protocol.RecordReader()
+        reader = RecordReader()
         while (hello := reader.next()) is None:
             client.settimeout(self._left_s(deadline_s))
             data = client.recv(_CHUNK_BYTES)

@@ -124,3 +124,56 @@ def test_true_pose_does_not_jump_when_a_motion_begins(scenario: Scenario):
     before = arm.flange(t).translation
     arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 0.2)
     np.testing.assert_allclose(arm.flange(t).translation, before, atol=1e-9)
+
+
+def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario):
+    arm, t = at_work(scenario)
+    for number in range(1, 51):
+        target = shifted(arm, t, -5e-5)
+        arm.follow(t, target, 0.008)
+        assert arm.moving(t + 0.004)
+        t += 0.008
+        assert not arm.moving(t)
+        np.testing.assert_allclose(arm.encoder_pose(t).as_matrix(), target.as_matrix(), atol=1e-9)
+        assert arm.flange(t).translation[2] < arm.flange(t - 0.004).translation[2], number
+
+
+def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario):
+    """The settling error belongs to a motion, and a stream is one: its steps are as even as those
+    of a spline."""
+    arm, t = at_work(scenario)
+    steps = []
+    for _ in range(100):
+        before = arm.flange(t).translation
+        arm.follow(t, shifted(arm, t, -5e-5), 0.008)
+        t += 0.008
+        steps.append(arm.flange(t).translation[2] - before[2])
+    assert np.std(np.diff(steps)) < 1e-6
+
+
+def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario):
+    arm, t = at_work(scenario)
+    arm.follow(t, arm.encoder_pose(t), 0.008)
+    assert not arm.moving(t + 1e-6)
+
+
+def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario):
+    arm, t = at_work(scenario)
+    with pytest.raises(RefusedMotionError) as refusal:
+        arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]), 0.008)
+    assert refusal.value.reason == "REACH"
+
+
+def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario):
+    arm, t = at_work(scenario)
+    speed = 5e-5 / 0.008
+    arm.follow(t, shifted(arm, t, -5e-5), 0.008)
+    before = arm.encoder_pose(t + 0.004).translation[2]
+    arm.stop(t + 0.004)
+    arm.stop(t + 0.1)  # a second request puts nothing off
+    settings = scenario.robots["main"]
+    latency_s = settings.stop_latency_ms / 1000
+    braking = settings.stop_deceleration_mm_s2 / 1000
+    assert arm.standstill_s == pytest.approx(t + 0.004 + latency_s + speed / braking)
+    over = before - arm.encoder_pose(arm.standstill_s).translation[2]
+    assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), rel=0.01)

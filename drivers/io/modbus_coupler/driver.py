@@ -1,0 +1,38 @@
+"""Digital inputs and outputs behind a Modbus TCP coupler (docs/protocols/modbus-coupler.md)."""
+
+from collections.abc import Mapping
+
+from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
+from drivers.io.modbus_coupler import faults, protocol
+from drivers.io.modbus_coupler.config import ModbusCouplerConfig
+from drivers.io.modbus_coupler.connection import coupler
+
+
+class ModbusCouplerIo(DigitalIo):
+    """The names are those of the configuration."""
+
+    Config = ModbusCouplerConfig
+
+    def __init__(self, name: str, config: ModbusCouplerConfig) -> None:
+        self.name = name
+        self.input_names = tuple(config.inputs)
+        self.output_names = tuple(config.outputs)
+        self._coupler = coupler(name, config)
+
+    async def connect(self) -> None:
+        """Connect and check the coupler's watchdog. Idempotent."""
+        await self._coupler.connect()
+
+    async def disconnect(self) -> None:
+        """Switch every output off and drop the link."""
+        await self._coupler.disconnect()
+
+    async def read(self) -> DigitalIoState:
+        """Functions 2 and 1, now."""
+        return protocol.to_state(await self._coupler.read())
+
+    async def write(self, outputs: Mapping[str, bool]) -> None:
+        """Function 5 for each output, in the order given."""
+        if unknown := sorted(outputs.keys() - set(self.output_names)):
+            raise faults.unknown(self.name, unknown, self.output_names)
+        await self._coupler.write(outputs)
