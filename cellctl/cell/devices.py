@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +18,7 @@ from cellctl.errors.link import ConnectTimeout
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
-from cellctl.interfaces import Robot, StereoCamera, TargetTracker
+from cellctl.interfaces import Camera, DigitalIo, Gripper, Robot, StereoCamera, TargetTracker
 from cellctl.interfaces.device import Device
 from cellctl.workers import VisionWorkers
 
@@ -39,12 +38,9 @@ class Cell:
         self.robots: Mapping[str, Robot] = _built(config, "robots")
         self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
         self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
-        self.others: Mapping[str, Device] = {
-            name: device
-            for section in ("cameras", "grippers", "digital_ios")
-            for name, device in _built(config, section).items()
-        }
-        """Cameras, grippers, inputs and outputs."""
+        self.cameras: Mapping[str, Camera] = _built(config, "cameras")
+        self.grippers: Mapping[str, Gripper] = _built(config, "grippers")
+        self.digital_ios: Mapping[str, DigitalIo] = _built(config, "digital_ios")
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
         """By the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()
@@ -107,8 +103,13 @@ class Cell:
 
         Not while a run uses them: a camera answers one request at a time.
         """
-        questions = {name: camera.serial_number() for name, camera in self.stereo_cameras.items()}
-        questions |= {name: tracker.serial_number() for name, tracker in self.trackers.items()}
+        questions: dict[str, Awaitable[object]] = {
+            name: device.serial_number()
+            for devices in (self.stereo_cameras, self.cameras, self.trackers)
+            for name, device in devices.items()
+        }
+        questions |= {name: gripper.state() for name, gripper in self.grippers.items()}
+        questions |= {name: io.read() for name, io in self.digital_ios.items()}
         answers = await asyncio.gather(*questions.values(), return_exceptions=True)
         self.unanswered = {}
         for name, answer in zip(questions, answers, strict=True):
@@ -178,19 +179,18 @@ class Cell:
 
     def _by_path(self) -> dict[str, Device]:
         """Every device of the event loop by its path in the cell file."""
-        devices = dict(
-            chain(
-                self.robots.items(),
-                self.stereo_cameras.items(),
-                self.trackers.items(),
-                self.others.items(),
-            )
-        )
+        sections: Mapping[str, Mapping[str, Device]] = {
+            "robots": self.robots,
+            "stereo_cameras": self.stereo_cameras,
+            "cameras": self.cameras,
+            "trackers": self.trackers,
+            "grippers": self.grippers,
+            "digital_ios": self.digital_ios,
+        }
         return {
-            f"{section}.{name}": devices[name]
-            for section in GROUPS
-            for name in self.config.section(section)
-            if name in devices
+            f"{section}.{name}": device
+            for section, devices in sections.items()
+            for name, device in devices.items()
         }
 
 

@@ -9,13 +9,24 @@ from cellctl.config.devices import GROUPS, RobotConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.errors.config import UnknownDriver
-from cellctl.interfaces import FtSensor, Robot, StereoCamera, TargetTracker
+from cellctl.interfaces import (
+    Camera,
+    DigitalIo,
+    FtSensor,
+    Gripper,
+    Robot,
+    StereoCamera,
+    TargetTracker,
+)
 
 SECTIONS: Mapping[type, str] = {
     Robot: "robots",
     StereoCamera: "stereo_cameras",
+    Camera: "cameras",
     TargetTracker: "trackers",
     FtSensor: "force_sensors",
+    Gripper: "grippers",
+    DigitalIo: "digital_ios",
 }
 """Where the cell file describes devices of an interface."""
 

@@ -111,7 +111,9 @@ class CellInMemory:
         self.stereo_cameras = {name: Head(name, serial) for name, serial in HEADS.items()}
         self.tracker = InProcessTracker("tracker", {})
         self.trackers = {"tracker": self.tracker}
-        self.others: dict[str, Any] = {}
+        self.cameras: dict[str, Any] = {}
+        self.grippers: dict[str, Any] = {}
+        self.digital_ios: dict[str, Any] = {}
         self.guard = TinyGuard()
         self.guards = {"force": self.guard}
         self.workers = InlineWorkers()
