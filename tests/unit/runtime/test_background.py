@@ -5,8 +5,8 @@ import asyncio
 import pytest
 from structlog.testing import capture_logs
 
-from cellctl.daemon.background import Background
 from cellctl.errors.internal import WorkerDied
+from cellctl.runtime.background import Background
 
 # A drain that gives the loop no turn does not end by itself.
 pytestmark = pytest.mark.timeout(10)
