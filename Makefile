@@ -85,9 +85,17 @@ test-long: venv
 	$(BIN)/pytest -n 2 -m "long and not cell" --durations 0
 	$(BIN)/pytest -m "long and cell" --durations 0
 
+# Leaves out the tests marked long. The figures of each program that the tests start are combined.
+coverage: venv
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest -q -n 2 -m "not cell and not long"
+	$(BIN)/coverage run -m pytest -q -m "cell and not long"
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+
 lock: venv
 	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url \
 		--universal --fork-strategy fewest --custom-compile-command "make lock" --quiet -o requirements.lock
 
 clean:
-	rm -rf $(VENV) build *.egg-info runs .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) build *.egg-info runs .pytest_cache .mypy_cache .ruff_cache .coverage .coverage.*
