@@ -1,15 +1,26 @@
 # Two commands do everything on a fresh machine: `make demo` and `make test`.
+# Another Python has its own environment: make test PYTHON=python3.13 VENV=.venv-3.13
 PYTHON ?= python3
-VENV := .venv
+VENV ?= .venv
 BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration cell test test-long check lint types imports lock campaign campaign-mating bench bench-metrology bench-looks bench-guard clean
+.PHONY: venv demo demo-calibration cell campaign campaign-mating bench bench-metrology bench-looks bench-guard \
+	format lint types imports check test test-parallel test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
 
+# The question is put in words that Python 2 understands too.
+define TOO_OLD
+import sys
+if sys.version_info < (3, 11):
+    sys.exit("cellctl needs Python 3.11 or newer; $(PYTHON) is %d.%d. Name another one: make PYTHON=python3.12" % sys.version_info[:2])
+endef
+export TOO_OLD
+
 $(VENV)/.installed: requirements.lock pyproject.toml
+	@$(PYTHON) -c "$$TOO_OLD"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
 	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
@@ -42,6 +53,10 @@ bench-looks: venv
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard
 
+format: venv
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
 lint: venv
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
@@ -55,13 +70,32 @@ imports: venv
 check: lint types imports
 
 test: check
-	$(BIN)/pytest -n 2 -m "not long" --durations 25
+	$(MAKE) test-parallel
+	$(MAKE) test-cell
+
+# Two workers also where there are more processors: time limits within tests are those of two cores.
+test-parallel: venv
+	$(BIN)/pytest -n 2 -m "not cell and not long" --durations 25
+
+# A whole cell keeps real time with one test at a time only: without workers, and after the others.
+test-cell: venv
+	$(BIN)/pytest -m "cell and not long" --durations 25
 
 test-long: venv
-	$(BIN)/pytest -n 2 -m long
+	$(BIN)/pytest -n 2 -m "long and not cell" --durations 0
+	$(BIN)/pytest -m "long and cell" --durations 0
+
+# Leaves out the tests marked long. The figures of each program that the tests start are combined.
+coverage: venv
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest -q -n 2 -m "not cell and not long"
+	$(BIN)/coverage run -m pytest -q -m "cell and not long"
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
 
 lock: venv
-	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url --universal -o requirements.lock
+	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url \
+		--universal --fork-strategy fewest --custom-compile-command "make lock" --quiet -o requirements.lock
 
 clean:
-	rm -rf $(VENV) build *.egg-info runs .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) build *.egg-info runs .pytest_cache .mypy_cache .ruff_cache .coverage .coverage.*

@@ -1,14 +1,31 @@
-"""How tests are shared out between workers."""
+"""How tests are marked and shared out between workers, and what slow machines are allowed."""
 
+from pathlib import Path
+
+import hypothesis
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
+_WHOLE_CELLS = Path(__file__).parent / "cell"
 _SHARED_IMAGES = ("tests/unit/vision/", "tests/unit/calibration/")
+
+# Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
+# code; pytest-timeout is there for code that hangs.
+hypothesis.settings.register_profile("no-deadline", deadline=None)
+hypothesis.settings.load_profile("no-deadline")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """All of `tests/cell` is marked: `make test` runs it alone, after everything else."""
+    for item in items:
+        if _WHOLE_CELLS in item.path.parents:
+            item.add_marker("cell")
 
 
 class CellsOneByOne(LoadScopeScheduling):
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
+    This matters when pytest is called by hand with several workers; `make test` gives them one.
     Files whose tests share rendered images go out whole, so that these are made once; the others
     singly. (`--dist loadgroup` would do, but xdist 3.8 loses the groups with pytest 9.2, silently.)
     """

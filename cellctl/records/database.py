@@ -29,21 +29,28 @@ class Database:
         self._failed: str | None = None
         if not (create or file.exists()):
             raise StoreUnavailable(f"there is no {file}")
+        self._engine = _engine(file)
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
-            self._engine = _engine(file)
-            with self._engine.begin() as connection:
-                version = connection.execute(text("PRAGMA user_version")).scalar_one()
-                if version not in (0, SCHEMA_VERSION):
-                    raise StoreUnavailable(f"{file} has schema {version}, not {SCHEMA_VERSION}")
-                Base.metadata.create_all(connection)
-                connection.execute(text(f"PRAGMA user_version = {SCHEMA_VERSION}"))
+            self._prepare(file)
         except (OSError, SQLAlchemyError) as error:
+            self.close()
             raise StoreUnavailable(f"{file}: {_reason(error)}") from error
+        except StoreUnavailable:
+            self.close()
+            raise
 
     def close(self) -> None:
         """Drop the connection."""
         self._engine.dispose()
+
+    def _prepare(self, file: Path) -> None:
+        with self._engine.begin() as connection:
+            version = connection.execute(text("PRAGMA user_version")).scalar_one()
+            if version not in (0, SCHEMA_VERSION):
+                raise StoreUnavailable(f"{file} has schema {version}, not {SCHEMA_VERSION}")
+            Base.metadata.create_all(connection)
+            connection.execute(text(f"PRAGMA user_version = {SCHEMA_VERSION}"))
 
     @contextmanager
     def write(self) -> Iterator[Session]:

@@ -1,4 +1,4 @@
-"""Work that nobody waits for, such as writing an alarm: its failure is in the log."""
+"""Tasks that no caller awaits, such as writing an alarm: their failures go to the log."""
 
 import asyncio
 from collections.abc import Coroutine
@@ -10,21 +10,24 @@ _log = log.get(__name__)
 
 
 class Background:
-    """Keeps its tasks alive until they have ended."""
+    """Holds a reference to each of its tasks until that task has ended."""
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[object]] = set()
 
     def start(self, work: Coroutine[Any, Any, object]) -> None:
-        """Begin; errors are logged."""
+        """Start ``work`` as a task; its errors are logged."""
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._ended)
 
     async def drain(self) -> None:
-        """Wait for all of it."""
+        """Wait until all tasks have ended, also those that are started meanwhile."""
         while self._tasks:
             await asyncio.gather(*self._tasks, return_exceptions=True)
+            # A task leaves the set in its done callback, and callbacks run on the loop's next turn.
+            # Since Python 3.12 gather over tasks that have all ended returns without such a turn.
+            await asyncio.sleep(0)
 
     def _ended(self, task: asyncio.Task[object]) -> None:
         self._tasks.discard(task)

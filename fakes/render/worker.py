@@ -18,6 +18,7 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from fakes.priority import give_way
 from fakes.render.canvas import Image
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
 from fakes.render.options import RenderOptions
@@ -93,5 +94,6 @@ def _in_order(known: Iterable[str], wanted: frozenset[str]) -> list[str]:
 
 
 def _initialise() -> None:
+    give_way()
     cv2.setNumThreads(1)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent shuts the pool down

@@ -14,7 +14,6 @@ from tests.cell.own_cell import OwnCell, cellctl
 pytestmark = pytest.mark.timeout(300)
 
 
-@pytest.mark.long
 def test_a_good_part_with_its_record(own: OwnCell) -> None:
     out = own.folder / "run"
     demo = own.demo(out)

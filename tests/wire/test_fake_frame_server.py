@@ -2,6 +2,7 @@
 
 import asyncio
 import itertools
+import os
 import struct
 import zlib
 from collections.abc import AsyncIterator, Callable, Iterator
@@ -11,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
+from fakes.priority import RENDERER_NICE
 from fakes.render import api
 from fakes.render.worker import make_pool, render_frame
 from fakes.wire.frame_server import FrameServer
@@ -358,6 +360,12 @@ async def test_image_faults(server: FrameServer, client: Client) -> None:
 def test_unknown_fault() -> None:
     with pytest.raises(ValueError, match="no such fault: fire"):
         FrameFaults().inject("fire")
+
+
+def test_renderers_give_way_to_the_devices() -> None:
+    with make_pool(1) as pool:
+        niceness = pool.submit(os.getpriority, os.PRIO_PROCESS, 0).result()
+    assert niceness == min(os.getpriority(os.PRIO_PROCESS, 0) + RENDERER_NICE, 19)
 
 
 async def test_worker_process_renders_the_same_picture() -> None:

@@ -1,6 +1,8 @@
 """The store: what was written is there, what is closed stays as it was, what fails says so."""
 
+import contextlib
 import math
+import os
 import sqlite3
 import subprocess
 import sys
@@ -22,6 +24,17 @@ from cellctl.errors.records import (
 )
 from cellctl.records import RunResult, RunStore
 from tests.unit.records.conftest import start
+
+
+def files_held_open(folder: Path) -> list[str]:
+    """Files below ``folder`` that this process has open, whether or not it still needs them."""
+    opened = []
+    for descriptor in os.listdir("/proc/self/fd"):
+        # The descriptor of this very listing is gone by now.
+        with contextlib.suppress(FileNotFoundError):
+            opened.append(os.readlink(f"/proc/self/fd/{descriptor}"))
+    return [file for file in opened if file.startswith(f"{folder}/")]
+
 
 SIX = (0.01, -0.02, 0.03, 0.001, -0.002, 0.003)
 
@@ -269,6 +282,7 @@ def test_a_store_that_cannot_be_opened_is_a_clear_fault(tmp_path: Path) -> None:
     (tmp_path / "store.sqlite").write_bytes(b"this is not a database" * 100)
     with pytest.raises(StoreUnavailable, match="not a database"):
         RunStore(tmp_path)
+    assert files_held_open(tmp_path) == []
 
 
 def test_a_store_of_another_version_is_left_alone(tmp_path: Path) -> None:
@@ -278,3 +292,4 @@ def test_a_store_of_another_version_is_left_alone(tmp_path: Path) -> None:
     connection.close()
     with pytest.raises(StoreUnavailable, match="schema 99"):
         RunStore(tmp_path)
+    assert files_held_open(tmp_path) == []

@@ -18,7 +18,7 @@ from fakes.world.truth import draw, draw_parts
 
 mujoco = pytest.importorskip("mujoco")
 
-SCENARIO = Path(__file__).parents[2] / "config" / "fake-cell.toml"
+SCENARIO = Path(__file__).parents[4] / "config" / "fake-cell.toml"
 MASS_KG = 200.0
 DT_S = 1e-4
 GAP_M = 5e-5

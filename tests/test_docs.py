@@ -19,7 +19,7 @@ from fakes.__main__ import app as fakes_app
 from fakes.demo.app import app as demo_app
 from fakes.wire.line_plc import app as plc_app
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 PAGES = sorted(
     path
     for path in (

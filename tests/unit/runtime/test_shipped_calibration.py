@@ -19,7 +19,7 @@ from fakes.world.frames import from_written
 from fakes.world.world import World
 from tests.unit.fakes.world.driving import to_taught
 
-CONFIG = Path(__file__).parents[2] / "config"
+CONFIG = Path(__file__).parents[3] / "config"
 SIGMAS = 5.0
 
 

@@ -14,7 +14,16 @@ import pytest
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
 from fakes.scenario import Pins
 from fakes.world.payload import STEP_S
-from tests.cell.mujoco_rig import DT_S, MASS_KG, RADIUS_M, Oracle, Rig, carry, mujoco, rig
+from tests.unit.fakes.world.mujoco_rig import (
+    DT_S,
+    MASS_KG,
+    RADIUS_M,
+    Oracle,
+    Rig,
+    carry,
+    mujoco,
+    rig,
+)
 
 CONTACT_N_M = 3e6
 SPEED_M_S = 5e-4

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.cell.mujoco_rig import Oracle, Travel, rig
+from tests.unit.fakes.world.mujoco_rig import Oracle, Travel, rig
 
 PEAK, CURVE = 0.03, 0.03
 """Allowed difference of peaks, and rms difference of the whole curves relative to the peak."""
