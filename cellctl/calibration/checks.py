@@ -4,8 +4,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cellctl.errors.calibration import ResultOutOfLimits
-
 Side = Literal["max", "min"]
 
 
@@ -55,13 +53,6 @@ Checks = tuple[Check, ...]
 def all_passed(checks: Iterable[Check]) -> bool:
     """The verdict."""
     return all(check.passed for check in checks)
-
-
-def require_passed(checks: Sequence[Check]) -> None:
-    """Raise ``ResultOutOfLimits`` with every figure that is beyond its limit."""
-    failed = [str(check) for check in checks if not check.passed]
-    if failed:
-        raise ResultOutOfLimits("; ".join(failed))
 
 
 def evidence_to_record(method: str, checks: Checks, warnings: Sequence[str] = ()) -> dict[str, Any]:

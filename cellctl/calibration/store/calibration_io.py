@@ -1,4 +1,4 @@
-"""Writing into the folder of calibrations, and the fault when that fails."""
+"""Writing into the folder of calibrations: a failure of the disk becomes a numbered fault."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ from cellctl.errors.calibration import CalibrationNotStored
 
 
 @contextmanager
-def storing(path: Path) -> Iterator[None]:
+def raising_not_stored(path: Path) -> Iterator[None]:
     """Raise ``CalibrationNotStored`` for an ``OSError`` inside."""
     try:
         yield
@@ -18,6 +18,6 @@ def storing(path: Path) -> Iterator[None]:
 
 
 def write_file(path: Path, data: bytes) -> None:
-    """A file of the folder, durably; raises ``CalibrationNotStored``."""
-    with storing(path):
+    """Write a file of the folder durably; raises ``CalibrationNotStored``."""
+    with raising_not_stored(path):
         write_durably(path, data)

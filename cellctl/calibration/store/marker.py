@@ -1,6 +1,7 @@
-"""Word that a calibration is worthless before its date, in a file beside it.
+"""The marker ``<kind>.invalidated.json``: this calibration is invalid before its date.
 
-It stands until a new calibration takes the old one's place; an old file put back does not lift it.
+The marker is a file of its own so that it stays when somebody copies an old calibration back. Only
+a calibration that was made anew removes it.
 """
 
 import json
@@ -8,17 +9,22 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cellctl.atomic_files import remove_durably
-from cellctl.calibration.storing import storing, write_file
+from cellctl.calibration.store.calibration_io import raising_not_stored, write_file
 from cellctl.errors.calibration import CalibrationInvalidated
+
+SUFFIX = ".invalidated"
 
 
 def marker(folder: Path, kind: str) -> Path:
-    """The file that says so."""
-    return folder / f"{kind}.invalidated.json"
+    """Where the marker of a kind lies, if it was invalidated."""
+    return folder / f"{kind}{SUFFIX}.json"
 
 
 def mark_invalid(folder: Path, kind: str, reason: str, time: datetime) -> None:
-    """Invalidate a calibration durably; the first reason stays. Raises ``CalibrationNotStored``."""
+    """Invalidate a calibration durably; raises ``CalibrationNotStored``.
+
+    The first reason stays: later ones are mostly consequences of it.
+    """
     path = marker(folder, kind)
     if path.exists():
         return
@@ -27,14 +33,14 @@ def mark_invalid(folder: Path, kind: str, reason: str, time: datetime) -> None:
 
 
 def lift_invalidation(folder: Path, kind: str) -> None:
-    """A new calibration is in place; raises ``CalibrationNotStored``."""
+    """Remove the marker because a new calibration is in place; raises ``CalibrationNotStored``."""
     path = marker(folder, kind)
-    with storing(path):
+    with raising_not_stored(path):
         remove_durably(path)
 
 
 def require_not_invalidated(folder: Path, kind: str) -> None:
-    """Raise ``CalibrationInvalidated`` with time and reason; a marker needs not be readable."""
+    """Raise ``CalibrationInvalidated`` with time and reason when there is a marker."""
     path = marker(folder, kind)
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
@@ -42,5 +48,6 @@ def require_not_invalidated(folder: Path, kind: str) -> None:
     except FileNotFoundError:
         return
     except (OSError, ValueError, LookupError, TypeError) as error:
+        # Somebody has invalidated the calibration, even if the reason is lost: never use it.
         words = f"{kind}: {path} cannot be read: {error}"
     raise CalibrationInvalidated(words)

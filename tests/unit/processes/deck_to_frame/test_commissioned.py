@@ -1,16 +1,24 @@
 """Commissioned figures count while their records are there, passed, valid and of the recipe."""
 
-from datetime import timedelta
+from collections.abc import Callable
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from cellctl.calibration.files import StoredCalibration, write_stored
-from cellctl.calibration.invalidation import mark_invalid
+from cellctl.calibration.store.envelope import StoredCalibration, write_stored
+from cellctl.calibration.store.marker import mark_invalid
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
-from cellctl.runtime.commissioned import Commissioned, read_commissioned
-from tests.unit.cell.bench import spoil
+from cellctl.processes.deck_to_frame.calibrations import (
+    CALIBRATIONS,
+    CONTACT_STIFFNESS,
+    STOP_LATENCY,
+)
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from tests.unit.calibration.store.shipped import spoil
 
 HOUR = timedelta(hours=1)
 
@@ -29,8 +37,15 @@ def store_both(folder: Path, **stiffness: Any) -> tuple[StoredCalibration, Store
     return latency, store(folder, "contact_stiffness_1", **values)
 
 
+def snapshot(
+    folder: Path, recipe_id: int = 1, now: Callable[[], datetime] = utc_now
+) -> CalibrationSnapshot:
+    kinds = (STOP_LATENCY, CONTACT_STIFFNESS.for_recipe(recipe_id))
+    return CalibrationStore(folder, CALIBRATIONS, now).read_all(kinds, now() + HOUR)
+
+
 def read(folder: Path, recipe_id: int = 1) -> Commissioned:
-    return read_commissioned(folder, recipe_id, utc_now(), HOUR)
+    return Commissioned.of(snapshot(folder, recipe_id), recipe_id)
 
 
 def test_nothing_commissioned(tmp_path: Path) -> None:
@@ -42,7 +57,10 @@ def test_both_figures_with_where_they_come_from(tmp_path: Path) -> None:
     found = read(tmp_path)
     assert found.stop_latency_s == pytest.approx(0.262)
     assert found.stiffness_n_m == pytest.approx(6.1e5)
-    assert found.ids == {"stop_latency": latency.id, "contact_stiffness_1": stiffness.id}
+    assert snapshot(tmp_path).ids == {
+        "stop_latency": latency.id,
+        "contact_stiffness_1": stiffness.id,
+    }
 
 
 def test_the_stiffness_of_another_recipe_says_nothing(tmp_path: Path) -> None:
@@ -50,7 +68,7 @@ def test_the_stiffness_of_another_recipe_says_nothing(tmp_path: Path) -> None:
     found = read(tmp_path, recipe_id=2)
     assert found.stiffness_n_m is None
     assert found.stop_latency_s is not None
-    assert list(found.ids) == ["stop_latency"]
+    assert list(snapshot(tmp_path, recipe_id=2).ids) == ["stop_latency"]
 
 
 @pytest.mark.parametrize("change", [{"hours": 0.5}, {"verdict": "fail"}])
@@ -83,4 +101,9 @@ def test_what_is_invalidated_or_from_the_future_is_left_alone(tmp_path: Path) ->
     assert found.stop_latency_s is None
     assert found.stiffness_n_m is not None
     before = utc_now() - timedelta(days=1)
-    assert read_commissioned(tmp_path, 1, before, HOUR).stiffness_n_m is None
+    assert snapshot(tmp_path, now=lambda: before).ids == {}
+
+
+def test_a_record_without_its_figure_is_left_alone(tmp_path: Path) -> None:
+    store(tmp_path, "stop_latency", sigma_ms=4.0)
+    assert read(tmp_path) == Commissioned()
