@@ -8,7 +8,7 @@ Side = Literal["max", "min"]
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
+class LimitCheck:
     """One figure and what it may be at most or must be at least, in the unit of reports."""
 
     name: str
@@ -40,17 +40,17 @@ class Check:
         }
 
     @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> "Check":
+    def from_record(cls, record: Mapping[str, Any]) -> "LimitCheck":
         """The inverse of ``to_record``."""
         side: Side = "min" if record["side"] == "min" else "max"
         value, limit = float(record["value"]), float(record["limit"])
         return cls(str(record["name"]), value, limit, str(record["unit"]), side)
 
 
-Checks = tuple[Check, ...]
+Checks = tuple[LimitCheck, ...]
 
 
-def all_passed(checks: Iterable[Check]) -> bool:
+def all_passed(checks: Iterable[LimitCheck]) -> bool:
     """The verdict."""
     return all(check.passed for check in checks)
 
@@ -67,4 +67,4 @@ def evidence_to_record(method: str, checks: Checks, warnings: Sequence[str] = ()
 
 def checks_from_record(records: Sequence[Mapping[str, Any]]) -> Checks:
     """The checks of a record."""
-    return tuple(Check.from_record(record) for record in records)
+    return tuple(LimitCheck.from_record(record) for record in records)

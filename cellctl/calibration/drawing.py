@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cellctl.calibration.checks import Check
+from cellctl.calibration.checks import LimitCheck
 
 GOOD, BAD = "tab:green", "tab:red"
 
@@ -22,7 +22,7 @@ def title(figure: Figure, text: str, *, passed: bool) -> None:
     figure.suptitle(f"{text}: {verdict}", color=GOOD if passed else BAD)
 
 
-def list_checks(axes: Axes, checks: Sequence[Check], warnings: Sequence[str]) -> None:
+def list_checks(axes: Axes, checks: Sequence[LimitCheck], warnings: Sequence[str]) -> None:
     """The figures against their limits and the warnings, as text."""
     axes.axis("off")
     step = 0.95 / max(len(checks) + len(warnings), 8)

@@ -5,9 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.calibration.axis_fit import AxisStop
-from cellctl.calibration.base_frame import ArmGeometry, BaseFrameResult, calibrate_base_frame
-from cellctl.calibration.base_frame_picture import base_frame_picture
+from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
+from cellctl.calibration.solvers.base_frame.base_frame import (
+    ArmGeometry,
+    BaseFrameResult,
+    calibrate_base_frame,
+)
+from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker

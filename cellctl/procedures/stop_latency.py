@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.checks import Check, Checks, all_passed, evidence_to_record
+from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.force import CommissioningFailed
@@ -75,9 +75,9 @@ async def measure_stop_latency_on_cell(
 def _checks(estimate: LatencyEstimate, bound_ms: float) -> Checks:
     """The verdict; ``bound_ms``: what every recipe is safe with while this result is not valid."""
     return (
-        Check("upper bound", estimate.upper_s * 1e3, bound_ms, "ms"),
-        Check("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
-        Check("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
+        LimitCheck("upper bound", estimate.upper_s * 1e3, bound_ms, "ms"),
+        LimitCheck("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
+        LimitCheck("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
     )
 
 

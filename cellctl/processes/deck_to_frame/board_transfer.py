@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass, field
 
-from cellctl.calibration.board_transfer import BoardPlacement, calibrate_board_transfer
+from cellctl.calibration.solvers.transfer.board_transfer import (
+    BoardPlacement,
+    calibrate_board_transfer,
+)
+from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.calibration.store.store import CalibrationStore
-from cellctl.calibration.transfer_picture import transfer_picture
 from cellctl.config.base import JointsDeg
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.procedures.target_board import place_board

@@ -6,10 +6,10 @@ To add one: define it here, write its procedure, and use its result in a step.
 from collections.abc import Mapping
 from typing import Any
 
-from cellctl.calibration.base_frame import BaseFrameResult
-from cellctl.calibration.board_transfer import TransferResult
 from cellctl.calibration.payload import IdentifiedPayload, payload_accepted
-from cellctl.calibration.stereo_result import StereoResult
+from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.force import (
     ForceLimitExceeded,

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from cellctl.calibration.base_frame import BaseFrameResult
-from cellctl.calibration.board_transfer import TransferResult
-from cellctl.calibration.stereo_result import StereoResult
+from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.calibrations import (

@@ -6,9 +6,9 @@ from functools import partial
 
 import numpy as np
 
-from cellctl.calibration.base_frame import ArmGeometry
-from cellctl.calibration.board import CalibrationBoard
-from cellctl.calibration.stereo_result import StereoResult
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM

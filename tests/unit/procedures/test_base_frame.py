@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from cellctl.calibration.base_frame import BaseFrameResult
+from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
 from cellctl.runtime.steps import HeldMeanwhile
-from tests.unit.calibration.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
+from tests.unit.calibration.solvers.base_frame.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
 from tests.unit.procedures.rig import ProcedureRig
 
 

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.board_pose import target_board_discs
-from cellctl.calibration.board_transfer import TransferResult
+from cellctl.calibration.boards.board_pose import target_board_discs
+from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.files import read_calibration
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout

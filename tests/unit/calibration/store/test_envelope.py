@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.calibration.stereo import calibrate_stereo
-from cellctl.calibration.stereo_result import StereoResult
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
@@ -25,8 +25,9 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_2,
 )
 from cellctl.processes.deck_to_frame.geometry import CalibrationSet
-from tests.unit.calibration import test_base_frame, test_board_transfer
-from tests.unit.calibration.synthetic import BOARD, IMAGE_SIZE, make_views
+from tests.unit.calibration.solvers.base_frame import test_base_frame
+from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
+from tests.unit.calibration.solvers.transfer import test_board_transfer
 
 MADE = datetime(2026, 11, 21, 8, tzinfo=UTC)
 UNTIL = MADE + timedelta(days=180)
