@@ -25,11 +25,12 @@ from cellctl.calibration.input_files import (
 from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
 from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
-from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture, tool_picture
+from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
+from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.invalidate import invalidate

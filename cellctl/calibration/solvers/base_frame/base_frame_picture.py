@@ -8,8 +8,10 @@ from cellctl.calibration.solvers.base_frame.axis_fit import AxisFit
 from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import skew
+from cellctl.plot_style import INK, style
 
 
+@style()
 def base_frame_picture(result: BaseFrameResult) -> bytes:
     """PNG: the circles of both axes seen along them, residuals per point, checks."""
     figure = new_figure(13, 9)
@@ -36,7 +38,7 @@ def _circles(axes: Axes, fit: AxisFit) -> None:
         points = axes.plot(shown @ first, shown @ second, ".", markersize=4, label=target)
         circle = radius_m / MM * np.stack([np.cos(turn), np.sin(turn)])
         axes.plot(*circle, linewidth=0.5, color=points[0].get_color())
-    axes.plot(0, 0, "k+")
+    axes.plot(0, 0, "+", color=INK)
     axes.set(aspect="equal", xlabel="mm", ylabel="mm")
     axes.legend(fontsize=8, loc="center", ncols=2)
 
@@ -50,5 +52,4 @@ def _residuals(axes: Axes, result: BaseFrameResult) -> None:
     axes.set(
         title="distance of each target from its circle", xlabel="stop", ylabel="mm", ylim=(0, None)
     )
-    axes.grid(visible=True, alpha=0.3)
     axes.legend(fontsize=8)

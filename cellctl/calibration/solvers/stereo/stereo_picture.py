@@ -6,12 +6,14 @@ from matplotlib.axes import Axes
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.geometry.pose import MM, Array
+from cellctl.plot_style import ACCENT, LIMIT, style
 
 _MAX_ARROWS = 2500
 _ARROW_SCALE = 400.0
 """Image pixels per pixel of residual."""
 
 
+@style()
 def stereo_picture(result: StereoResult) -> bytes:
     """PNG: residuals over both images, residuals per view, shape of the board, checks."""
     figure = new_figure(14, 9)
@@ -43,6 +45,7 @@ def _residual_field(axes: Axes, field: Array) -> None:
         scale_units="xy",
         scale=1.0,
         width=0.002,
+        color=ACCENT,
     )
 
 
@@ -51,7 +54,6 @@ def _scatter(axes: Axes, result: StereoResult) -> None:
         axes.plot(field[:, 2], field[:, 3], ".", markersize=1.5, label=name)
     axes.set(title=f"residuals, rms {result.head.rms_px:.4f} px", aspect="equal")
     axes.set(xlabel="du / px", ylabel="dv / px")
-    axes.grid(visible=True, alpha=0.3)
     axes.legend(fontsize=8, markerscale=6)
 
 
@@ -61,16 +63,19 @@ def _views(axes: Axes, result: StereoResult) -> None:
     axes.bar(places + 0.2, [view.right_rms_px for view in result.views], 0.4, label="right")
     for place, view in enumerate(result.views):
         if not view.used:
-            axes.axvspan(place - 0.5, place + 0.5, color="tab:red", alpha=0.3)
+            axes.axvspan(place - 0.5, place + 0.5, color=LIMIT, alpha=0.3)
     labels = [view.name for view in result.views]
     axes.set_xticks(places, labels, rotation=90, fontsize=7)
     axes.set(title="rms per view (rejected: red)", ylabel="px")
-    axes.legend(fontsize=8)
+    axes.margins(y=0.12)  # room for the legend above the bars
+    axes.grid(visible=False, axis="x")
+    axes.legend(fontsize=8, loc="upper right", ncols=2)
 
 
 def _board(axes: Axes, result: StereoResult) -> None:
     shape = (result.board.rows, result.board.columns)
     x, y, z = (result.board_m[:, axis].reshape(shape) / MM for axis in range(3))
+    axes.grid(visible=False)
     shown = axes.contourf(x, y, z * 1000, levels=15, cmap="viridis")
     axes.figure.colorbar(shown, ax=axes, label="µm")
     flatness_um = result.flatness_m / MM * 1000

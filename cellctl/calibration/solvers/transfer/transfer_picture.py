@@ -6,8 +6,10 @@ from matplotlib.axes import Axes
 from cellctl.calibration.drawing import as_png, bars, list_checks, new_figure, title
 from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.geometry.pose import MM
+from cellctl.plot_style import ACCENT, GOOD, LIMIT, style
 
 
+@style()
 def transfer_picture(result: TransferResult) -> bytes:
     """PNG: heads and base from above, residuals of large and small heads, checks."""
     figure = new_figure(13, 9)
@@ -43,11 +45,10 @@ def _from_above(axes: Axes, result: TransferResult) -> None:
     for name, pose in poses:
         origin = np.zeros(3) if pose is None else pose.pose.translation / MM
         frame = np.eye(3) if pose is None else pose.pose.rotation.as_matrix()
-        for axis, color in enumerate(("tab:red", "tab:green", "tab:blue")):
+        for axis, color in enumerate((LIMIT, GOOD, ACCENT)):
             end = origin + 150 * frame[:, axis]
             axes.plot([origin[0], end[0]], [origin[1], end[1]], color=color)
         axes.annotate(name, (float(origin[0]), float(origin[1])))
     distance_mm = float(np.linalg.norm(result.c1_T_c2.pose.translation)) / MM
     axes.set(title=f"from above; heads {distance_mm:.1f} mm apart", aspect="equal")
     axes.set(xlabel="x of B / mm", ylabel="y of B / mm")
-    axes.grid(visible=True, alpha=0.3)

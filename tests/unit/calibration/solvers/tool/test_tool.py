@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 from scipy.stats import chi2
 
-from cellctl.calibration.solvers.hand_eye.hand_eye_picture import tool_picture
 from cellctl.calibration.solvers.tool.tool import ToolResult, calibrate_tool
+from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.errors.calibration import IllConditioned, PosesNotDiverse
 from cellctl.geometry.pose import pose_error, pose_from_xyzabc
 

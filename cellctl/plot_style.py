@@ -1,4 +1,8 @@
-"""One look for all figures: ink, one accent, limits in red, targets in green."""
+"""One look for all figures: ink, one accent, limits in red, targets in green.
+
+Reports take SVG, calibrations PNG; both are drawn inside ``style()``, which also serves as a
+decorator of the function that draws.
+"""
 
 import io
 import re
@@ -7,6 +11,7 @@ from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
@@ -25,6 +30,7 @@ _SETTINGS: dict[Any, Any] = {
     "axes.labelcolor": MUTED,
     "axes.edgecolor": GRID,
     "axes.grid": True,
+    "axes.prop_cycle": cycler(color=[ACCENT, SECOND, GOOD, THIRD, LIMIT, INK]),
     "axes.axisbelow": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
