@@ -5,7 +5,7 @@ import pytest
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
-from cellctl.processes.deck_to_frame.preparation import PLANNED
+from cellctl.runtime.job_factory import PLANNED
 from fakes.demo.calibration import PROCEDURES
 from tests.cell.own_cell import OwnCell
 

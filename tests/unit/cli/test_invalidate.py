@@ -12,7 +12,8 @@ from cellctl.cli.commands import app
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.store import RunStore
-from tests.unit.cell.bench import CELL_FILE, renew_calibrations
+from tests.unit.calibration.store.shipped import renew_calibrations
+from tests.unit.cell.bench import CELL_FILE
 
 ARGUMENTS = ("--reason", "camera knocked", "--by", "OP-3")
 

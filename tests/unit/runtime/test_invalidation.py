@@ -19,7 +19,7 @@ from cellctl.errors.force import (
 from cellctl.errors.robot import ControllerFault, HeadMoved, MotionAborted
 from cellctl.errors.vision import CorrectionDiverging, ResidualsTooLarge
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
-from cellctl.records.async_store import Archive
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.schema import AuditRow, CalibrationRow
 from cellctl.records.store import RunStore
 from cellctl.runtime.invalidation import invalidate_after
@@ -37,7 +37,7 @@ AGREED: dict[type[CellError], set[str]] = {
 }
 
 
-async def rows(archive: Archive) -> tuple[list[CalibrationRow], list[AuditRow]]:
+async def rows(archive: AsyncRunStore) -> tuple[list[CalibrationRow], list[AuditRow]]:
     def read(store: RunStore) -> tuple[list[CalibrationRow], list[AuditRow]]:
         with store._database.read() as session:
             return list(session.scalars(select(CalibrationRow))), list(
@@ -51,7 +51,7 @@ async def rows(archive: Archive) -> tuple[list[CalibrationRow], list[AuditRow]]:
 async def test_after_these_production_is_refused_with_the_reason(
     bench: Bench, tmp_path: Path, fault: type[CellError]
 ) -> None:
-    archive = Archive(tmp_path / "store")
+    archive = AsyncRunStore(tmp_path / "store")
     try:
         await invalidate_after(fault("aux_1 met the deck"), bench.calibrations, archive)
         refused = bench.calibrations.fault(CALIBRATIONS, HOUR)
@@ -71,7 +71,7 @@ async def test_after_these_production_is_refused_with_the_reason(
 async def test_other_faults_cost_nothing(
     bench: Bench, tmp_path: Path, fault: type[CellError]
 ) -> None:
-    archive = Archive(tmp_path / "store")
+    archive = AsyncRunStore(tmp_path / "store")
     try:
         await invalidate_after(fault(), bench.calibrations, archive)
         assert await rows(archive) == ([], [])
