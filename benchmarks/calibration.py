@@ -17,7 +17,7 @@ from benchmarks.calibration_cases import (
     image_calibration,
     stereo_case,
 )
-from cellctl.calibration.board import BoardShape
+from cellctl.calibration.boards.board import BoardShape
 
 Array = NDArray[np.float64]
 

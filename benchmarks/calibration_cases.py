@@ -7,25 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.calibration.base_frame import calibrate_base_frame
-from cellctl.calibration.board import BoardShape, CalibrationBoard
-from cellctl.calibration.board_images import ImagePair, detect_views
-from cellctl.calibration.hand_eye import calibrate_hand_eye
-from cellctl.calibration.hand_eye_result import HandEyePose, RobotNoise, Setup
-from cellctl.calibration.hand_eye_start import closed_form
-from cellctl.calibration.pnp import board_in_camera
-from cellctl.calibration.projection import camera_vector
-from cellctl.calibration.stereo import calibrate_stereo
-from cellctl.calibration.stereo_validation import intersect_rays
+from cellctl.calibration.boards.board import BoardShape, CalibrationBoard
+from cellctl.calibration.boards.board_images import BoardImages, detect_views
+from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.boards.projection import camera_vector
+from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
+from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
+from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_validation import intersect_rays
 from cellctl.geometry.pose import pose_error
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.camera import project, undistort
 from cellctl.vision.stereo_head import CameraModel, StereoHead
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard
-from tests.unit.calibration import synthetic
-from tests.unit.calibration import test_base_frame as base_frame_case
-from tests.unit.calibration import test_hand_eye as hand_eye_case
+from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case
+from tests.unit.calibration.solvers.hand_eye import test_hand_eye as hand_eye_case
+from tests.unit.calibration.solvers.stereo import synthetic
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def image_calibration(seed: int, count: int = 24) -> ImageCase:
         )
         board = SceneChessboard(pose, (9, 6), 0.025, (0.26, 0.19), (bow_x, bow_y), seed)
         left, right = api.render_pair(stereo, [board], rng=rng)
-        pairs.append(ImagePair(f"view {number}", left, right))
+        pairs.append(BoardImages(f"view {number}", left, right))
     pattern = CalibrationBoard(9, 6, 0.025)
     found = detect_views(pairs, pattern)
     result = calibrate_stereo(found.views, pattern, found.image_size)

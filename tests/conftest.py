@@ -7,7 +7,11 @@ import pytest
 from xdist.scheduler import LoadScopeScheduling
 
 _WHOLE_CELLS = Path(__file__).parent / "cell"
-_SHARED_IMAGES = ("tests/unit/vision/", "tests/unit/calibration/")
+_SHARED_IMAGES = (
+    "tests/unit/vision/",
+    "tests/unit/calibration/",
+    "tests/unit/cli/test_calibrate.py",
+)
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs.

@@ -4,13 +4,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from cellctl.errors.calibration import ResultOutOfLimits
-
 Side = Literal["max", "min"]
 
 
 @dataclass(frozen=True, slots=True)
-class Check:
+class LimitCheck:
     """One figure and what it may be at most or must be at least, in the unit of reports."""
 
     name: str
@@ -42,26 +40,19 @@ class Check:
         }
 
     @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> "Check":
+    def from_record(cls, record: Mapping[str, Any]) -> "LimitCheck":
         """The inverse of ``to_record``."""
         side: Side = "min" if record["side"] == "min" else "max"
         value, limit = float(record["value"]), float(record["limit"])
         return cls(str(record["name"]), value, limit, str(record["unit"]), side)
 
 
-Checks = tuple[Check, ...]
+Checks = tuple[LimitCheck, ...]
 
 
-def all_passed(checks: Iterable[Check]) -> bool:
+def all_passed(checks: Iterable[LimitCheck]) -> bool:
     """The verdict."""
     return all(check.passed for check in checks)
-
-
-def require_passed(checks: Sequence[Check]) -> None:
-    """Raise ``ResultOutOfLimits`` with every figure that is beyond its limit."""
-    failed = [str(check) for check in checks if not check.passed]
-    if failed:
-        raise ResultOutOfLimits("; ".join(failed))
 
 
 def evidence_to_record(method: str, checks: Checks, warnings: Sequence[str] = ()) -> dict[str, Any]:
@@ -76,4 +67,4 @@ def evidence_to_record(method: str, checks: Checks, warnings: Sequence[str] = ()
 
 def checks_from_record(records: Sequence[Mapping[str, Any]]) -> Checks:
     """The checks of a record."""
-    return tuple(Check.from_record(record) for record in records)
+    return tuple(LimitCheck.from_record(record) for record in records)

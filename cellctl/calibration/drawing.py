@@ -1,4 +1,4 @@
-"""What the pictures of all calibrations share."""
+"""What the pictures of all calibrations share: PNG in the look of ``cellctl.plot_style``."""
 
 import io
 from collections.abc import Sequence
@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from cellctl.calibration.checks import Check
+from cellctl.calibration.checks import LimitCheck
+from cellctl.plot_style import ACCENT, GOOD, LIMIT, SECOND
 
-GOOD, BAD = "tab:green", "tab:red"
+TEXT_SIZE = 9
 
 
 def new_figure(width: float = 12.0, height: float = 8.0) -> Figure:
@@ -19,28 +20,27 @@ def new_figure(width: float = 12.0, height: float = 8.0) -> Figure:
 def title(figure: Figure, text: str, *, passed: bool) -> None:
     """Heading with the verdict."""
     verdict = "passed" if passed else "NOT PASSED"
-    figure.suptitle(f"{text}: {verdict}", color=GOOD if passed else BAD)
+    figure.suptitle(f"{text}: {verdict}", color=GOOD if passed else LIMIT)
 
 
-def list_checks(axes: Axes, checks: Sequence[Check], warnings: Sequence[str]) -> None:
+def list_checks(axes: Axes, checks: Sequence[LimitCheck], warnings: Sequence[str]) -> None:
     """The figures against their limits and the warnings, as text."""
     axes.axis("off")
     step = 0.95 / max(len(checks) + len(warnings), 8)
     for line, check in enumerate(checks):
-        color = GOOD if check.passed else BAD
-        axes.text(0.0, 0.98 - line * step, str(check), color=color, va="top", fontsize=9)
+        color = GOOD if check.passed else LIMIT
+        axes.text(0.0, 0.98 - line * step, str(check), color=color, va="top", fontsize=TEXT_SIZE)
     for line, warning in enumerate(warnings, start=len(checks)):
         text = f"! {warning}"
-        axes.text(
-            0.0, 0.98 - line * step, text, color="tab:orange", va="top", fontsize=9, wrap=True
-        )
+        height = 0.98 - line * step
+        axes.text(0.0, height, text, color=SECOND, va="top", fontsize=TEXT_SIZE, wrap=True)
 
 
 def bars(axes: Axes, names: Sequence[str], values: Sequence[float], unit: str) -> None:
-    """One bar a name, labelled below, or by number when there are many."""
-    axes.bar(range(len(values)), values, color="tab:blue")
+    """One bar per name, labelled below; beyond 40 bars the names would not be legible."""
+    axes.bar(range(len(values)), values, color=ACCENT)
     axes.set_ylabel(unit)
-    axes.grid(visible=True, axis="y", alpha=0.3)
+    axes.grid(visible=False, axis="x")
     if len(names) <= 40:
         axes.set_xticks(range(len(names)), names, rotation=90, fontsize=7)
 

@@ -13,13 +13,13 @@ from typing import Any, TypeVar
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.axis_fit import AxisStop
-from cellctl.calibration.base_frame import ArmGeometry
-from cellctl.calibration.board_pose import BoardPoint, fit_board, target_board_discs
-from cellctl.calibration.board_transfer import BoardPlacement
-from cellctl.calibration.hand_eye_result import HandEyePose, RobotNoise, Setup
-from cellctl.calibration.pnp import board_in_camera
-from cellctl.calibration.record import covariance_from_written, matrix_mm_to_pose
+from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.boards.board_pose import BoardPoint, fit_board, target_board_discs
+from cellctl.calibration.pose_record import covariance_from_written, matrix_mm_to_pose
+from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
+from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
+from cellctl.calibration.solvers.transfer.board_transfer import BoardPlacement
 from cellctl.errors.calibration import CalibrationError
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, Array

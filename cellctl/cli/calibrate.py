@@ -13,25 +13,26 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from cellctl.calibration.base_frame import calibrate_base_frame
-from cellctl.calibration.base_frame_picture import base_frame_picture
-from cellctl.calibration.board import BoardShape, CalibrationBoard, Charuco
-from cellctl.calibration.board_images import ImagePair, detect_views
-from cellctl.calibration.board_transfer import calibrate_board_transfer
+from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charuco
+from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.checks import Checks
-from cellctl.calibration.hand_eye import calibrate_hand_eye
-from cellctl.calibration.hand_eye_picture import hand_eye_picture, tool_picture
-from cellctl.calibration.hand_eye_result import Setup
 from cellctl.calibration.input_files import (
     read_base_frame,
     read_hand_eye,
     read_tool,
     read_transfer,
 )
-from cellctl.calibration.stereo import calibrate_stereo
-from cellctl.calibration.stereo_picture import stereo_picture
-from cellctl.calibration.tool import calibrate_tool
-from cellctl.calibration.transfer_picture import transfer_picture
+from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
+from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
+from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
+from cellctl.calibration.solvers.tool.tool import calibrate_tool
+from cellctl.calibration.solvers.tool.tool_picture import tool_picture
+from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
+from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.invalidate import invalidate
 from cellctl.cli.measure import read_image
 from cellctl.cli.output import write_file
@@ -51,7 +52,7 @@ OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to
 Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")]
 
 
-class Result(Protocol):
+class CalibrationResult(Protocol):
     """What all calibrations return."""
 
     @property
@@ -162,7 +163,7 @@ def _board(
         raise typer.BadParameter(f"board {corners!r}: {error}") from error
 
 
-def _pairs(left: str, right: str) -> list[ImagePair]:
+def _pairs(left: str, right: str) -> list[BoardImages]:
     names = [sorted(glob.glob(pattern)) for pattern in (left, right)]
     for pattern, found in zip((left, right), names, strict=True):
         if not found:
@@ -170,7 +171,7 @@ def _pairs(left: str, right: str) -> list[ImagePair]:
     if len(names[0]) != len(names[1]):
         raise FileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
     return [
-        ImagePair(Path(one).stem, read_image(Path(one)), read_image(Path(other)))
+        BoardImages(Path(one).stem, read_image(Path(one)), read_image(Path(other)))
         for one, other in zip(*names, strict=True)
     ]
 
@@ -190,7 +191,7 @@ def _show(name: str, pose: UncertainPose) -> None:
 
 
 def _finish(
-    result: Result,
+    result: CalibrationResult,
     warnings: tuple[str, ...],
     out: Path | None,
     picture: Path | None,

@@ -5,12 +5,13 @@ from typing import Annotated
 
 import typer
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.store import RunStore
-from cellctl.runtime.calibration_folder import CalibrationFolder
+from cellctl.runtime.process import calibration_kinds
 
 INSTALLED = Path("/etc/cellctl/cell.toml")
 
@@ -32,12 +33,14 @@ def invalidate(
     if not reason.strip():
         raise typer.BadParameter("say what happened", param_hint="--reason")
     config = load_cell(cell)
-    folder = CalibrationFolder(cell.parent / config.calibration_dir)
-    found = folder.invalidate([name], f"{reason} ({by})")
+    store = CalibrationStore(cell.parent / config.calibration_dir, calibration_kinds(config))
+    kind = store.named(name)
+    found = store.invalidate([kind], f"{reason} ({by})")
     if not found:
-        raise CalibrationMissing(f"{name}: there is no such calibration in {folder.path}")
+        raise CalibrationMissing(f"{name}: there is no such calibration in {store.path}")
+    anew = f"made anew by {kind.made_by}" if kind.made_by else "made anew"
     for stored in found:
-        typer.echo(f"{stored.kind} is invalid until it is made anew: {reason}")
+        typer.echo(f"{stored.kind} is invalid until it is {anew}: {reason}")
     _record(config, data_dir, found, reason, by)
 
 

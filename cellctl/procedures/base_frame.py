@@ -5,9 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.calibration.axis_fit import AxisStop
-from cellctl.calibration.base_frame import ArmGeometry, calibrate_base_frame
-from cellctl.calibration.base_frame_picture import base_frame_picture
+from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
+from cellctl.calibration.solvers.base_frame.base_frame import (
+    ArmGeometry,
+    BaseFrameResult,
+    calibrate_base_frame,
+)
+from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
@@ -38,6 +43,7 @@ async def calibrate_base(
     *,
     turns: AxisTurns,
     arm: ArmGeometry,
+    kind: CalibrationKind[BaseFrameResult],
     go_home: Callable[[], Awaitable[None]],
 ) -> ProcedureOutcome:
     """Turn A1 alone, then A2 alone, and measure the flange's targets at every stop.
@@ -52,7 +58,7 @@ async def calibrate_base(
     await go_home()
     result = await workers.run(calibrate_base_frame, a1_stops, a2_stops, arm)
     return ProcedureOutcome(
-        item="base_frame",
+        kind=kind,
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,

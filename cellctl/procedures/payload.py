@@ -6,6 +6,8 @@ from typing import Protocol
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.calibration.payload import IdentifiedPayload
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
@@ -47,6 +49,7 @@ async def identify_payload_on_cell(
     *,
     pose_count: int,
     cone_deg: float,
+    kind: CalibrationKind[IdentifiedPayload],
 ) -> ProcedureOutcome:
     """Tilt around the present orientation, with nothing near, and identify.
 
@@ -76,7 +79,7 @@ async def identify_payload_on_cell(
         roles.append(pose.role)
     result = _evaluate(rotations, wrenches, roles)
     return ProcedureOutcome(
-        item="payload",
+        kind=kind,
         record=payload_document(result),
         passed=result.accepted,
         warnings=tuple(str(check) for check in result.checks if not check.passed),

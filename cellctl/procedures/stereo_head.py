@@ -3,10 +3,12 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.board import BoardView, CalibrationBoard
-from cellctl.calibration.board_images import ImagePair, detect_view
-from cellctl.calibration.stereo import calibrate_stereo
-from cellctl.calibration.stereo_picture import stereo_picture
+from cellctl.calibration.boards.board import BoardView, CalibrationBoard
+from cellctl.calibration.boards.board_images import BoardImages, detect_view
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM
@@ -24,6 +26,7 @@ async def calibrate_head(
     *,
     board: CalibrationBoard,
     view_count: int,
+    kind: CalibrationKind[StereoResult],
 ) -> ProcedureOutcome:
     """Swing the head about the board, find its corners in every pair, solve, and drive back.
 
@@ -38,7 +41,7 @@ async def calibrate_head(
         pair = await station.camera.grab()
         image_size = (pair.left.shape[1], pair.left.shape[0])
         view = await workers.run(
-            detect_view, ImagePair(f"view {number}", pair.left, pair.right), board
+            detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
         )
         if view is not None:
             views.append(view)
@@ -47,7 +50,7 @@ async def calibrate_head(
         raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
     result = await workers.run(calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
-        item=station.name,
+        kind=kind,
         record=result.to_record(),
         passed=result.passed,
         warnings=result.warnings,

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.checks import Check, Checks, all_passed, evidence_to_record
+from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
@@ -16,7 +17,6 @@ from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_l
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
 from cellctl.procedures.stop_latency_picture import latency_picture
-from cellctl.runtime.commissioned import STOP_LATENCY
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
@@ -44,7 +44,12 @@ class StopLatency:
 
 
 async def measure_stop_latency_on_cell(
-    context: ProcedureContext, robot: Robot, workers: VisionWorkers, *, bound_ms: float
+    context: ProcedureContext,
+    robot: Robot,
+    workers: VisionWorkers,
+    *,
+    bound_ms: float,
+    kind: CalibrationKind[float],
 ) -> ProcedureOutcome:
     """Stop the robot on its way up from where it stands, at several speeds.
 
@@ -58,7 +63,7 @@ async def measure_stop_latency_on_cell(
     checks = _checks(measured.estimate, bound_ms)
     data = measured.estimate, measured.speeds_m_s, measured.overruns_m
     return ProcedureOutcome(
-        item=STOP_LATENCY,
+        kind=kind,
         record=_record(measured, checks),
         passed=all_passed(checks),
         warnings=(),
@@ -70,9 +75,9 @@ async def measure_stop_latency_on_cell(
 def _checks(estimate: LatencyEstimate, bound_ms: float) -> Checks:
     """The verdict; ``bound_ms``: what every recipe is safe with while this result is not valid."""
     return (
-        Check("upper bound", estimate.upper_s * 1e3, bound_ms, "ms"),
-        Check("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
-        Check("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
+        LimitCheck("upper bound", estimate.upper_s * 1e3, bound_ms, "ms"),
+        LimitCheck("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
+        LimitCheck("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
     )
 
 

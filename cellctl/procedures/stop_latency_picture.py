@@ -6,8 +6,10 @@ from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.force.contact.commissioning import LatencyEstimate
 from cellctl.geometry.pose import MM, Array
+from cellctl.plot_style import style
 
 
+@style()
 def latency_picture(
     estimate: LatencyEstimate, speeds_m_s: Array, overruns_m: Array, checks: Checks
 ) -> bytes:
@@ -19,7 +21,6 @@ def latency_picture(
     left.plot(line_m_s / MM, (estimate.latency_s * line_m_s + estimate.offset_m) / MM, "-")
     left.set_xlabel("speed / mm/s")
     left.set_ylabel("way from request to standstill / mm")
-    left.grid(visible=True, alpha=0.3)
     list_checks(right, checks, ())
     title(figure, f"Stop latency {estimate.latency_s * 1e3:.0f} ms", passed=all_passed(checks))
     return as_png(figure)

@@ -2,14 +2,14 @@
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.board_pose import (
+from cellctl.calibration.boards.board_pose import (
     BoardPoint,
     BoardPose,
     fit_board,
     points_from_targets,
     target_board_discs,
 )
-from cellctl.calibration.board_transfer import BoardPlacement
+from cellctl.calibration.solvers.transfer.board_transfer import BoardPlacement
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM

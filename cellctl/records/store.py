@@ -11,7 +11,7 @@ from typing import Any
 
 from sqlalchemy import select
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import ValueRefused
 from cellctl.records import ledger, reading

@@ -1,6 +1,7 @@
 """A snapshot of the cell for whoever watches it: line, terminal, page."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from cellctl.packml.mode import Mode
 from cellctl.packml.result import Result
@@ -34,8 +35,8 @@ class CellStatus:
     cycle_counter: int = 0
     run_number: int = 0
     run_result: Result = Result.NONE
-    validity_h: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    """Heads, base frame, board transfer, payload."""
+    validity_h: Mapping[str, float] = field(default_factory=dict)
+    """By name of the register; one that no calibration of the cell belongs to reads 0."""
     error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
     """x, y, z in mm, rx, ry, rz in degrees."""
     force_peaks: tuple[float, ...] = (NO_VALUE,) * 6

@@ -1,65 +1,33 @@
-"""Which faults make which calibrations worthless, and what is done then.
-
-A fault is here when what caused it may have moved or bent something that a calibration holds for,
-or has proved a figure wrong. Faults with a likelier harmless cause (a bad part, a jogged robot
-that returns by its encoders) are not: whoever finds a moved head says so with
-``cellctl calibrate invalidate``.
-"""
+"""What a fault does to calibrations: those that it may have spoilt are invalid from then on."""
 
 import asyncio
 
 from cellctl import log
+from cellctl.calibration.store.kind import kinds_invalidated_by
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.errors import CellError
-from cellctl.errors.force import (
-    ForceLimitExceeded,
-    LiftOffHeld,
-    MatingOverforce,
-    SensorSaturated,
-)
-from cellctl.errors.robot import ControllerFault
-from cellctl.errors.vision import CorrectionDiverging
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
-from cellctl.runtime.calibration_folder import PAYLOAD, CalibrationFolder
-from cellctl.runtime.commissioned import CONTACT_STIFFNESS, STOP_LATENCY
 
 _log = log.get(__name__)
 
-INVALIDATED_BY: dict[type[CellError], tuple[str, ...]] = {
-    # Collision detection of a robot comes as an error of its controller.
-    ControllerFault: ("board_transfer", PAYLOAD),
-    # Heads and main robot do not agree any more where things are.
-    CorrectionDiverging: ("board_transfer",),
-    # Gripper, deck and sensor were loaded beyond what the plan allows.
-    SensorSaturated: (PAYLOAD,),
-    LiftOffHeld: (PAYLOAD,),
-    # Contact where none was expected: the deck may have met a head.
-    ForceLimitExceeded: ("board_transfer", PAYLOAD),
-    # The figures it was planned with were wrong.
-    MatingOverforce: (PAYLOAD, STOP_LATENCY, CONTACT_STIFFNESS),
-}
-
-
-def invalidated_by(fault: CellError) -> tuple[str, ...]:
-    """Kinds of calibrations that a fault makes worthless; mostly none."""
-    return INVALIDATED_BY.get(type(fault), ())
-
 
 async def invalidate_after(
-    fault: CellError, folder: CalibrationFolder, archive: AsyncRunStore
+    fault: CellError, calibrations: CalibrationStore, records: AsyncRunStore
 ) -> None:
-    """Invalidate durably what a fault has made worthless.
+    """Invalidate durably, in folder and run store, what a fault has made worthless.
 
     Raises ``CalibrationNotStored`` or ``RecordNotWritten``.
     """
-    kinds = invalidated_by(fault)
+    kinds = kinds_invalidated_by(fault, calibrations.kinds)
     if not kinds:
         return
     reason = str(fault)
-    found = await asyncio.to_thread(folder.invalidate, kinds, reason)
+    # The folder first: it is what production reads, the run store only remembers why.
+    found = await asyncio.to_thread(calibrations.invalidate, kinds, reason)
     names = [stored.kind for stored in found]
     _log.warning("calibrations invalidated", items=names, reason=reason)
     for stored in found:
-        await archive.do(RunStore.invalidate_calibration, stored, reason)
+        await records.do(RunStore.invalidate_calibration, stored, reason)
     detail = {"items": names, "reason": reason}
-    await archive.do(RunStore.audit, "cell", "calibrations invalidated", detail)
+    await records.do(RunStore.audit, "cell", "calibrations invalidated", detail)

@@ -78,7 +78,13 @@ class JobFactory:
             if recipe is None:
                 return RejectCode.RECIPE_UNKNOWN
             newest = await self._services.store.do(RunStore.newest_time)
-            fault = await asyncio.to_thread(self._services.calibrations.fault, PLANNED, newest)
+            kinds = self._processes[recipe.process].calibration_kinds()
+            fault = await asyncio.to_thread(
+                self._services.calibrations.fault,
+                [kind.for_recipe(recipe.id) for kind in kinds],
+                PLANNED,
+                newest,
+            )
             return _refused(RejectCode.CALIBRATION_INVALID, fault)
         if mode is Mode.MAINTENANCE:
             if command.recipe_id not in self._procedures:
@@ -88,7 +94,11 @@ class JobFactory:
         return RejectCode.NONE
 
     def _some_recipe_is_calibrated(self) -> bool:
-        return self._services.calibrations.all_valid(PLANNED)
+        store = self._services.calibrations
+        return any(
+            store.all_valid(process.calibration_kinds(), PLANNED)
+            for process in self._processes.values()
+        )
 
     def _validate_cell(self) -> tuple[RejectCode, CellError | None]:
         """Why no Start at all is taken now."""

@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Sequence
 
 from cellctl import log
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.cell.devices import Cell
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError

@@ -87,13 +87,14 @@ class MaintenanceJob(Job):
         Raises ``CalibrationNotStored``, ``ResultOutOfLimits`` or ``RecordNotWritten``.
         """
         for warning in outcome.warnings:
-            _log.warning("calibration", item=outcome.item, warning=warning)
+            _log.warning("calibration", item=outcome.kind.name, warning=warning)
         if not outcome.passed:
             reasons = "; ".join(_failed_checks(outcome)) or "see the record"
-            raise ResultOutOfLimits(f"{outcome.item}: {reasons}; {await self._put_aside(outcome)}")
+            aside = await self._put_aside(outcome)
+            raise ResultOutOfLimits(f"{outcome.kind.name}: {reasons}; {aside}")
         stored = await asyncio.to_thread(
             self._calibrations.store,
-            outcome.item,
+            outcome.kind,
             outcome.record,
             outcome.serial_number,
             self._procedure.valid_for,
@@ -102,12 +103,12 @@ class MaintenanceJob(Job):
         await self._store.do(RunStore.add_calibration, stored)
         detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
         await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
-        _log.info("calibration stored", item=outcome.item, id=stored.id)
+        _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
 
     async def _put_aside(self, outcome: ProcedureOutcome) -> str:
         try:
             folder = await asyncio.to_thread(
-                self._calibrations.put_aside, outcome.item, outcome.record, outcome.picture_png
+                self._calibrations.put_aside, outcome.kind, outcome.record, outcome.picture_png
             )
         except CalibrationNotStored as error:
             return f"and not kept: {error.detail}"

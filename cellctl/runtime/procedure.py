@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
 
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
@@ -34,8 +35,8 @@ class ProcedureContext:
 class ProcedureOutcome:
     """A result on its way to the store."""
 
-    item: str
-    """Name of the calibration item, for example ``head_1``."""
+    kind: CalibrationKind[Any]
+    """What was calibrated."""
     record: Mapping[str, Any]
     passed: bool
     warnings: tuple[str, ...]

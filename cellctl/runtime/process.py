@@ -10,14 +10,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Generic, TypeVar
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
+from cellctl.calibration.store.kind import CalibrationKind, Kinds
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
+from cellctl.config.cell import CellConfig
 from cellctl.config.process_definition import ProcessDefinition, process_definition
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.runtime.calibration_folder import CalibrationFolder
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, Steps
@@ -32,7 +34,7 @@ class CellServices:
     """What the daemon lends to every process of its cell."""
 
     cell: Cell
-    calibrations: CalibrationFolder
+    calibrations: CalibrationStore
     board: ProgressBoard
     store: AsyncRunStore
 
@@ -69,6 +71,15 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     def __init__(self, services: CellServices) -> None:
         self.services = services
 
+    @classmethod
+    def calibration_kinds(cls) -> Kinds:
+        """The calibrations that it requires, or uses when they are there.
+
+        A method, because the parsers of kinds load what computes, and whoever only reads a cell
+        file loads this class too.
+        """
+        return ()
+
     @abstractmethod
     async def prepare(self, recipe: Recipe) -> Prepared[P]:
         """Starting, before anything moves: read and check everything that a run needs.
@@ -104,8 +115,17 @@ def open_processes(services: CellServices) -> dict[str, Process[Any, Any, Any]]:
     """Every process that the cell file names, by name; raises ``UnknownDriver``."""
     processes: dict[str, Process[Any, Any, Any]] = {}
     for name in services.cell.config.processes:
-        definition = process_definition(name)
-        if not issubclass(definition, Process):
-            raise UnknownDriver(f"process '{name}' has checks but cannot run")
-        processes[name] = definition(services)
+        processes[name] = _process_class(name)(services)
     return processes
+
+
+def calibration_kinds(config: CellConfig) -> list[CalibrationKind[Any]]:
+    """Kinds of every process that the cell file names; raises ``UnknownDriver``."""
+    return [kind for name in config.processes for kind in _process_class(name).calibration_kinds()]
+
+
+def _process_class(name: str) -> type[Process[Any, Any, Any]]:
+    definition = process_definition(name)
+    if not issubclass(definition, Process):
+        raise UnknownDriver(f"process '{name}' has checks but cannot run")
+    return definition

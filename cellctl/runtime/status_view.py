@@ -1,5 +1,6 @@
 """The snapshot that the line sees."""
 
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
@@ -8,7 +9,6 @@ from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.runtime.alarms import Alarms
-from cellctl.runtime.calibration_folder import CalibrationFolder
 from cellctl.runtime.cell_status import NO_VALUE, CellStatus
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_factory import JobFactory
@@ -25,7 +25,7 @@ class StatusView:
         machine: PackMLMachine,
         board: ProgressBoard,
         jobs: JobFactory,
-        calibrations: CalibrationFolder,
+        calibrations: CalibrationStore,
         alarms: Alarms,
     ) -> None:
         self._cell = cell
@@ -50,7 +50,7 @@ class StatusView:
             ready=self._may_start(),
             error=bool(faults),
             warning=bool(alarms) and not faults,
-            calibration_ok=self._calibrations.all_valid(),
+            calibration_ok=self._calibrations.all_valid(self._calibrations.kinds),
             simulation=self._cell.config.simulated,
             manual=self._any_manual(),
             force_guard_tripped=any(guard.trip for guard in self._cell.guards.values()),
@@ -61,7 +61,7 @@ class StatusView:
             cycle_counter=parts,
             run_number=job.run_number if job else 0,
             run_result=result,
-            validity_h=self._calibrations.validity_h(),
+            validity_h=self._calibrations.validity_h(self._calibrations.kinds),
             error_mm_deg=progress.error_mm_deg,
             force_peaks=progress.force_peaks,
             force_z_n=self._force_z_n(),

@@ -3,6 +3,7 @@
 import asyncio
 
 from cellctl import log
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
 from cellctl.errors import CellError
@@ -17,11 +18,10 @@ from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
-from cellctl.runtime.calibration_folder import CalibrationFolder
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.job_factory import JobFactory
 from cellctl.runtime.job_runner import JobRunner
-from cellctl.runtime.process import CellServices, open_processes
+from cellctl.runtime.process import CellServices, calibration_kinds, open_processes
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.status_view import StatusView
 
@@ -45,7 +45,9 @@ class UnitController:
         self.board = ProgressBoard()
         self.background = Background()
         self.alarms = Alarms(store, self.background)
-        self.calibrations = CalibrationFolder(cell.folder / cell.config.calibration_dir)
+        self.calibrations = CalibrationStore(
+            cell.folder / cell.config.calibration_dir, calibration_kinds(cell.config)
+        )
         services = CellServices(cell, self.calibrations, self.board, store)
         self._processes = open_processes(services)
         self.factory = JobFactory(services, self._processes)

@@ -2,8 +2,10 @@
 
 import pytest
 
-from cellctl.processes.deck_to_frame.preparation import PLANNED
-from cellctl.runtime.calibration_folder import CalibrationFolder
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.clock import utc_now
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
+from cellctl.runtime.job_factory import PLANNED
 from fakes.demo.calibration import PROCEDURES
 from tests.cell.own_cell import OwnCell
 
@@ -22,7 +24,9 @@ def test_all_procedures_in_their_order_open_the_gate(own: OwnCell) -> None:
             plc = own.plc("--mode", "maintenance", "--recipe", str(procedure.number))
             assert plc.end(400) == 0, (procedure.title, plc.stdout)
             assert plc.messages[-1]["result"] == "good", procedure.title
-    calibrations = CalibrationFolder(folder)
-    assert calibrations.fault(PLANNED) is None
-    assert len(calibrations.commissioned(1, PLANNED).records) == 2
+    calibrations = CalibrationStore(folder, CALIBRATIONS)
+    assert calibrations.fault(CALIBRATIONS, PLANNED) is None
+    kinds = [kind.for_recipe(1) for kind in CALIBRATIONS]
+    found = calibrations.read_all(kinds, utc_now() + PLANNED)
+    assert found.ids.keys() == {kind.name for kind in kinds}, "what commissioning measures too"
     assert [entry for entry in daemon.log if entry.get("event") == "fault"] == []

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
+from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
 from tests.cell.outside_plc import OutsidePlc
 from tests.cell.own_cell import ROOT, OwnCell, Program, cellctl
 

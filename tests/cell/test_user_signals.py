@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from cellctl.calibration.files import read_stored, write_stored
+from cellctl.calibration.store.envelope import read_stored, write_stored
 from cellctl.records.entries import RunHead
 from cellctl.records.store import RunStore
 from fakes.demo.control import Control

@@ -1,11 +1,9 @@
 """Compiles the status of the cell for operators, in words; changes nothing."""
 
 import asyncio
-from datetime import datetime
-from pathlib import Path
 
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
-from cellctl.calibration.files import StoredCalibration, read_calibration
+from cellctl.calibration.store.inventory import inventory
 from cellctl.cell.devices import Cell
 from cellctl.clock import utc_now
 from cellctl.command.arbiter import CommandArbiter
@@ -13,7 +11,6 @@ from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError, catalogue
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
-from cellctl.runtime.calibration_folder import ALL_KINDS
 from cellctl.runtime.unit import UnitController
 
 
@@ -92,33 +89,15 @@ class Reporter:
         return found
 
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
-        folder, now = self._unit.calibrations.path, utc_now()
-        found = []
-        for kind in _kinds(folder):
-            try:
-                stored = read_calibration(folder, kind)
-            except CellError as error:
-                found.append(CalibrationReport(kind=kind, problem=str(error)))
-                continue
-            problem = _problem(stored, now)
-            found.append(
-                CalibrationReport(
-                    kind=kind, made=stored.made, valid_until=stored.valid_until, problem=problem
-                )
+        return tuple(
+            CalibrationReport(
+                kind=entry.name,
+                made=entry.made,
+                valid_until=entry.valid_until,
+                problem=entry.problem,
             )
-        return tuple(found)
-
-
-def _kinds(folder: Path) -> tuple[str, ...]:
-    """What production demands, then whatever else there is; a marker's name has a dot in it."""
-    found = {path.stem for path in folder.glob("*.json") if "." not in path.stem}
-    return (*ALL_KINDS, *sorted(found.difference(ALL_KINDS)))
-
-
-def _problem(stored: StoredCalibration, now: datetime) -> str:
-    if not (stored.passed or stored.record.get("accepted") is True):
-        return "did not pass"
-    return "" if stored.valid_until > now else "expired"
+            for entry in inventory(self._unit.calibrations, utc_now())
+        )
 
 
 def _fault(error: CellError) -> FaultReport:

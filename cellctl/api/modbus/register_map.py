@@ -65,16 +65,16 @@ _ALARMS = tuple(
     Item(14 + index, f"alarm_{index + 1}", f"active alarm {index + 1}, 0 for none")
     for index in range(8)
 )
+VALIDITY_REGISTERS = {
+    "stereo": "the two stereo heads",
+    "base_frame": "the base frame",
+    "board_transfer": "head I to head II",
+    "payload": "force sensor and payload",
+}
+"""Groups of calibrations whose remaining hours the line sees, with their text."""
 _VALIDITY = tuple(
     Item(27 + index, f"validity_{name}", f"calibration of {what}; 0 is invalid", unit="h")
-    for index, (name, what) in enumerate(
-        (
-            ("stereo", "the two stereo heads"),
-            ("base_frame", "the base frame"),
-            ("board_transfer", "head I to head II"),
-            ("payload", "force sensor and payload"),
-        )
-    )
+    for index, (name, what) in enumerate(VALIDITY_REGISTERS.items())
 )
 _POSE_ERROR = tuple(
     _i32(31 + 2 * index, f"pose_error_{axis}", "µm" if index < 3 else "µdeg", f"deck: {axis}")

@@ -3,13 +3,12 @@
 from dataclasses import dataclass
 
 from cellctl.api.modbus.image import Value, millionths, thousandths
-from cellctl.api.modbus.register_map import MAP_VERSION, STATUS_BITS
+from cellctl.api.modbus.register_map import MAP_VERSION, STATUS_BITS, VALIDITY_REGISTERS
 from cellctl.runtime.cell_status import CellStatus
 
 _BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 _WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
-_VALIDITY = ("stereo", "base_frame", "board_transfer", "payload")
 _U16_MAX = 0xFFFF
 
 
@@ -51,8 +50,8 @@ def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Valu
         "run_number": status.run_number,
         "run_result": status.run_result,
         **{
-            f"validity_{name}": max(0, min(_U16_MAX, int(hours)))
-            for name, hours in zip(_VALIDITY, status.validity_h, strict=True)
+            f"validity_{name}": max(0, min(_U16_MAX, int(status.validity_h.get(name, 0.0))))
+            for name in VALIDITY_REGISTERS
         },
         **{
             f"pose_error_{axis}": (thousandths if index < 3 else millionths)(value)

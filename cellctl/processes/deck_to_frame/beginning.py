@@ -9,11 +9,11 @@ from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_pose
 async def to_the_beginning(opened: OpenRun) -> Ready:
     """Go to the beginning; nothing is measured yet. Raises the faults of guard and robots."""
     facts, cell = opened.facts, opened.facts.cell
-    await cell.guard.set_gravity_compensation(facts.calibrations.gravity_compensation)
+    await cell.guard.set_gravity_compensation(facts.payload.gravity_compensation)
     opened.board.update(step=0, step_label="", iteration=0, message="to the beginning")
     await main_to_home(cell)
     await heads_to_measuring_poses(cell)
-    geometry = facts.calibrations.geometry
+    geometry = facts.geometry
     heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
     # Takes the poses of the heads as the reference that they must keep from here on.
     measurer = PartMeasurer(cell, heads, facts.recipe.pose_correction.method)

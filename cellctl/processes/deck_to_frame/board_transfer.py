@@ -2,16 +2,28 @@
 
 from dataclasses import dataclass, field
 
-from cellctl.calibration.board_transfer import BoardPlacement, calibrate_board_transfer
-from cellctl.calibration.transfer_picture import transfer_picture
-from cellctl.cell.stereo_station import StereoStation
+from cellctl.calibration.solvers.transfer.board_transfer import (
+    BoardPlacement,
+    calibrate_board_transfer,
+)
+from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.config.base import JointsDeg
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.procedures.target_board import place_board
+from cellctl.processes.deck_to_frame.calibrations import (
+    BASE_FRAME,
+    BOARD_TRANSFER,
+    HEAD_JOINTS,
+    STEREO_HEAD_1,
+    STEREO_HEAD_2,
+)
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell
-from cellctl.runtime.calibration_folder import HEAD_JOINTS, CalibrationFolder
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+
+_CAMERAS = {HEAD_1: STEREO_HEAD_1, HEAD_2: STEREO_HEAD_2}
+"""The calibration of the cameras of each head, by its role."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,28 +44,41 @@ class WaitingPlacements:
 
     by_head: dict[str, HeadPlacement] = field(default_factory=dict)
 
-    def drop(self, head: str) -> None:
-        """What this head has seen counts no longer; nothing for other names."""
-        self.by_head.pop(head, None)
+    def take(self, first: str, second: str) -> tuple[HeadPlacement, HeadPlacement] | None:
+        """The placements before both heads, once; None while one of them is still to come.
+
+        Once, because what was seen an hour ago, before something else was calibrated, must not
+        meet what is seen now.
+        """
+        if not {first, second} <= self.by_head.keys():
+            return None
+        return self.by_head.pop(first), self.by_head.pop(second)
+
+    def drop(self, kind: str) -> None:
+        """Forget what was seen through a head that was calibrated anew; ignores other kinds."""
+        for head, cameras in _CAMERAS.items():
+            if cameras.name == kind:
+                self.by_head.pop(head, None)
 
     def clear(self) -> None:
-        """Nothing that was seen counts any longer."""
+        """Forget everything that was seen."""
         self.by_head.clear()
 
 
 async def measure_board(
     context: ProcedureContext,
     cell: DeckCell,
-    station: StereoStation,
-    calibrations: CalibrationFolder,
+    head: str,
+    calibrations: CalibrationStore,
     waiting: WaitingPlacements,
 ) -> ProcedureOutcome | None:
     """Measure the board with head and large-field head; solve once both heads have seen it.
 
-    Returns None while the other head's turn is still to come. A placement serves once: what was
-    seen an hour ago, before something else was calibrated, must not meet what is seen now.
+    ``head`` is the role of the head before which the board lies now. Returns None while the other
+    head's turn is still to come.
     """
-    model = calibrations.head(station.name)
+    station = cell.head(head)
+    model = calibrations.read(_CAMERAS[head]).head
     await context.progress(1, 1, f"{station.name}: target board")
     board = await place_board(
         station,
@@ -63,17 +88,18 @@ async def measure_board(
         flange_T_board=pose_from_xyzabc(cell.settings.flange_T_target_board),
         tracker_frames=cell.settings.tracker_frames,
     )
-    placements = waiting.by_head
-    placements[station.name] = HeadPlacement(board, station.config.poses_deg[MEASURING])
-    if len(placements) < 2:
+    waiting.by_head[head] = HeadPlacement(board, station.config.poses_deg[MEASURING])
+    both = waiting.take(HEAD_1, HEAD_2)
+    if both is None:
         return None
-    first, second = (placements.pop(head.name) for head in cell.heads)
+    first, second = both
+    c_T_base = calibrations.read(BASE_FRAME).c_T_base
     result = await cell.workers.run(
-        calibrate_board_transfer, calibrations.c_T_base(), [first.board], [second.board]
+        calibrate_board_transfer, c_T_base, [first.board], [second.board]
     )
     joints_deg = {HEAD_1: first.joints_deg, HEAD_2: second.joints_deg}
     return ProcedureOutcome(
-        item="board_transfer",
+        kind=BOARD_TRANSFER,
         record={**result.to_record(), HEAD_JOINTS: joints_deg},
         passed=result.passed,
         warnings=result.warnings,

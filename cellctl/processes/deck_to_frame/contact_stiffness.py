@@ -3,6 +3,8 @@
 from cellctl import log
 from cellctl.calibration.checks import all_passed
 from cellctl.processes.deck_to_frame.beginning import to_the_beginning
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, CONTACT_STIFFNESS
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.contact_stiffness_picture import stiffness_picture
 from cellctl.processes.deck_to_frame.contact_stiffness_result import (
     stiffness_checks,
@@ -21,7 +23,6 @@ from cellctl.processes.deck_to_frame.state import Corrected, Ready
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.steps import CORRECT_POSE, TO_STAND_OFF
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home
-from cellctl.runtime.commissioned import Commissioned, stiffness_kind
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.steps import HeldMeanwhile, StepRunner, Steps, StepSpec
@@ -39,8 +40,9 @@ async def measure_contact_stiffness_on_cell(
     Planned with the bounds of the chosen recipe, as if nothing had been commissioned. Everything
     goes into a run of its own, with all force curves. Raises what the steps raise.
     """
-    facts = await read_facts(cell, recipe, services.calibrations)
-    number = await context.record.open(recipe, MODE, facts.stored)
+    kinds = [kind for kind in CALIBRATIONS if kind.required]
+    facts = await read_facts(cell, recipe, services.calibrations, kinds)
+    number = await context.record.open(recipe, MODE, facts.calibrations.records)
     opened = OpenRun.of(facts, services, RunContext(number, context.safe_point))
     runner = StepRunner(services.board, context.safe_point, number)
     touch = StepSpec(108, "measure contact stiffness", _touch, contact=True)
@@ -54,7 +56,7 @@ async def measure_contact_stiffness_on_cell(
     await main_to_home(cell)
     checks = stiffness_checks(measured, recipe.mating)
     return ProcedureOutcome(
-        item=stiffness_kind(recipe.id),
+        kind=CONTACT_STIFFNESS.for_recipe(recipe.id),
         record=stiffness_record(measured, checks, recipe.id, number),
         passed=all_passed(checks),
         warnings=(),

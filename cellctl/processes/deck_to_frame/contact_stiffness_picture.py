@@ -5,10 +5,12 @@ import numpy as np
 from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.geometry.pose import MM
+from cellctl.plot_style import style
 from cellctl.processes.deck_to_frame.contact_stiffness_result import readings_of
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 
 
+@style()
 def stiffness_picture(measured: ContactStiffness, checks: Checks) -> bytes:
     """PNG: standstill readings of every contact with their line, and the checks."""
     figure = new_figure(11.0, 5.0)
@@ -25,7 +27,6 @@ def stiffness_picture(measured: ContactStiffness, checks: Checks) -> bytes:
         left.plot(ends_m / MM, line_n, "-", color=dots.get_color(), linewidth=1.0)
     left.set_xlabel("travel from the stand-off / mm")
     left.set_ylabel("force along the approach / N")
-    left.grid(visible=True, alpha=0.3)
     left.legend(fontsize="small")
     list_checks(right, checks, ())
     title(figure, "Contact stiffness, arm and contact in series", passed=all_passed(checks))

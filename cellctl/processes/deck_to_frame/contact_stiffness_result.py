@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.calibration.checks import Check, Checks, evidence_to_record
+from cellctl.calibration.checks import Checks, LimitCheck, evidence_to_record
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.result import MatingResult, Reading
@@ -24,11 +24,11 @@ def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:
     peak_n = max(contact.statistics.peak_filtered_fz_n for contact in measured.contacts)
     percent = 100.0 * estimate.sigma_n_m / estimate.stiffness_n_m
     return (
-        Check("stiffness", estimate.stiffness_n_m * MM, mating.stiffness_n_per_mm, "N/mm"),
-        Check("relative sigma", percent, SIGMA_PERCENT, "%"),
-        Check("residual", estimate.residual_n, RESIDUAL_N, "N"),
-        Check("spread of the touch points", float(np.ptp(starts_mm)), SPREAD_MM, "mm"),
-        Check("peak force", peak_n, mating.limit_force_n, "N"),
+        LimitCheck("stiffness", estimate.stiffness_n_m * MM, mating.stiffness_n_per_mm, "N/mm"),
+        LimitCheck("relative sigma", percent, SIGMA_PERCENT, "%"),
+        LimitCheck("residual", estimate.residual_n, RESIDUAL_N, "N"),
+        LimitCheck("spread of the touch points", float(np.ptp(starts_mm)), SPREAD_MM, "mm"),
+        LimitCheck("peak force", peak_n, mating.limit_force_n, "N"),
     )
 
 

@@ -3,14 +3,18 @@
 import asyncio
 from dataclasses import dataclass
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.payload import IdentifiedPayload
+from cellctl.calibration.store.kind import Kinds
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.readiness import require_full_speed
-from cellctl.force.gravity.payload_result import mass_kg
+from cellctl.clock import utc_now
+from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import MEASURING
+from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell
-from cellctl.runtime.calibration_folder import PAYLOAD, CalibrationFolder, Calibrations
-from cellctl.runtime.commissioned import Commissioned
 from cellctl.runtime.job_factory import PLANNED
 from cellctl.vision.features import FeatureFile, read_features
 
@@ -21,32 +25,52 @@ class RunFacts:
 
     cell: DeckCell
     recipe: DeckRecipe
-    calibrations: Calibrations
-    stored: tuple[StoredCalibration, ...]
-    """What production demands, as it lies on disk."""
+    calibrations: CalibrationSnapshot
+    """Everything that counts in the run, as it lies on disk."""
+    geometry: CalibrationSet
+    payload: IdentifiedPayload
     commissioned: Commissioned
-    payload_kg: float
-    """Everything that hangs on the force sensor, as identified."""
     frame_features: FeatureFile
     deck_features: FeatureFile
 
 
-async def read_facts(cell: DeckCell, recipe: DeckRecipe, folder: CalibrationFolder) -> RunFacts:
-    """Read and check everything; raises the faults of calibrations and feature files.
+async def read_facts(
+    cell: DeckCell, recipe: DeckRecipe, store: CalibrationStore, kinds: Kinds
+) -> RunFacts:
+    """Read and check everything; ``kinds`` are the calibrations that count in the run.
 
-    Also ``SpeedOverridden``: better now than with the deck over its seat.
+    Raises the faults of calibrations and feature files, and ``SpeedOverridden``: better now than
+    with the deck over its seat.
     """
     require_full_speed(cell.main)
-    calibrations = await asyncio.to_thread(folder.read, PLANNED)
+    kinds = [kind.for_recipe(recipe.id) for kind in kinds]
+    snapshot = await asyncio.to_thread(store.read_all, kinds, utc_now() + PLANNED)
     frame = read_features(cell.cell.folder / recipe.frame_features)
     deck = read_features(cell.cell.folder / recipe.deck_features)
-    for head in cell.heads:
-        calibrations.require_instrument(head.name, await head.camera.serial_number())
-        calibrations.require_head_pose(head.name, head.config.poses_deg[MEASURING])
-    calibrations.require_instrument(PAYLOAD, cell.guard.health().sensor_serial)
-    stored = await asyncio.to_thread(folder.stored)
-    payload_kg = next(mass_kg(item.record) for item in stored if item.kind == PAYLOAD)
-    commissioned = await asyncio.to_thread(folder.commissioned, recipe.id, PLANNED)
+    await _require_same_cell(cell, snapshot, kinds)
     return RunFacts(
-        cell, recipe, calibrations, tuple(stored), commissioned, payload_kg, frame, deck
+        cell=cell,
+        recipe=recipe,
+        calibrations=snapshot,
+        geometry=CalibrationSet.of(snapshot),
+        payload=snapshot.get(PAYLOAD),
+        commissioned=Commissioned.of(snapshot, recipe.id),
+        frame_features=frame,
+        deck_features=deck,
     )
+
+
+async def _require_same_cell(cell: DeckCell, snapshot: CalibrationSnapshot, kinds: Kinds) -> None:
+    """Raise when a device was exchanged, or a head taught another pose, since a calibration."""
+    serial_numbers = {
+        HEAD_1: await cell.head_1.camera.serial_number(),
+        HEAD_2: await cell.head_2.camera.serial_number(),
+        FORCE: cell.guard.health().sensor_serial,
+    }
+    for kind in kinds:
+        if kind.device is not None:
+            snapshot.require_instrument(kind, serial_numbers[kind.device])
+        if kind.holds_for is not None:
+            for role in (HEAD_1, HEAD_2):
+                taught = cell.head(role).config.poses_deg[MEASURING]
+                snapshot.require_taught_pose(kind, role, taught)

@@ -6,8 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from cellctl.calibration.base_frame import ArmGeometry
-from cellctl.calibration.board import CalibrationBoard
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM
 from cellctl.procedures.base_frame import AxisTurns, calibrate_base
@@ -15,8 +17,16 @@ from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
 from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
 from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements, measure_board
+from cellctl.processes.deck_to_frame.calibrations import (
+    BASE_FRAME,
+    PAYLOAD,
+    STEREO_HEAD_1,
+    STEREO_HEAD_2,
+    STOP_LATENCY,
+)
 from cellctl.processes.deck_to_frame.clear_cell import clear_the_cell
 from cellctl.processes.deck_to_frame.contact_stiffness import measure_contact_stiffness_on_cell
+from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
@@ -40,11 +50,11 @@ def deck_procedures(
         return Procedure(number, number, label, run, valid_for)
 
     return (
-        procedure(101, "calibrate head 1", partial(on_cell.head, cell.head_1)),
-        procedure(102, "calibrate head 2", partial(on_cell.head, cell.head_2)),
+        procedure(101, "calibrate head 1", partial(on_cell.head, cell.head_1, STEREO_HEAD_1)),
+        procedure(102, "calibrate head 2", partial(on_cell.head, cell.head_2, STEREO_HEAD_2)),
         procedure(103, "calibrate base frame", on_cell.base_frame),
-        procedure(104, "calibrate board 1", partial(on_cell.board, cell.head_1)),
-        procedure(105, "calibrate board 2", partial(on_cell.board, cell.head_2)),
+        procedure(104, "calibrate board 1", partial(on_cell.board, HEAD_1)),
+        procedure(105, "calibrate board 2", partial(on_cell.board, HEAD_2)),
         procedure(106, "identify payload", on_cell.payload),
         procedure(107, "measure stop latency", on_cell.stop_latency),
         *_contact_stiffness(cell, services, valid_for),
@@ -75,7 +85,12 @@ class _OnCell:
     def __init__(self, cell: DeckCell, services: CellServices, waiting: WaitingPlacements) -> None:
         self._cell, self._services, self._waiting = cell, services, waiting
 
-    async def head(self, station: StereoStation, context: ProcedureContext) -> ProcedureOutcome:
+    async def head(
+        self,
+        station: StereoStation,
+        kind: CalibrationKind[StereoResult],
+        context: ProcedureContext,
+    ) -> ProcedureOutcome:
         """101, 102."""
         settings = self._cell.settings
         columns, rows = (int(number) for number in settings.board.split("x"))
@@ -87,6 +102,7 @@ class _OnCell:
             self._cell.workers,
             board=board,
             view_count=settings.stereo_views,
+            kind=kind,
         )
 
     async def base_frame(self, context: ProcedureContext) -> ProcedureOutcome:
@@ -109,16 +125,15 @@ class _OnCell:
             cell.workers,
             turns=turns,
             arm=arm,
+            kind=BASE_FRAME,
             go_home=partial(main_to_home, cell),
         )
 
-    async def board(
-        self, station: StereoStation, context: ProcedureContext
-    ) -> ProcedureOutcome | None:
+    async def board(self, head: str, context: ProcedureContext) -> ProcedureOutcome | None:
         """104, 105."""
-        await clear_the_cell(self._cell, context.board, measuring=station)
-        calibrations = self._services.calibrations
-        return await measure_board(context, self._cell, station, calibrations, self._waiting)
+        cell, calibrations = self._cell, self._services.calibrations
+        await clear_the_cell(cell, context.board, measuring=cell.head(head))
+        return await measure_board(context, cell, head, calibrations, self._waiting)
 
     async def payload(self, context: ProcedureContext) -> ProcedureOutcome:
         """106: home holds the deck in the mating orientation, high above the frame."""
@@ -130,6 +145,7 @@ class _OnCell:
             cell.workers,
             pose_count=settings.payload_poses,
             cone_deg=settings.payload_cone_deg,
+            kind=PAYLOAD,
         )
 
     async def stop_latency(self, context: ProcedureContext) -> ProcedureOutcome:
@@ -138,5 +154,5 @@ class _OnCell:
         await clear_the_cell(cell, context.board)
         bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.recipes)
         return await measure_stop_latency_on_cell(
-            context, cell.main, cell.workers, bound_ms=bound_ms
+            context, cell.main, cell.workers, bound_ms=bound_ms, kind=STOP_LATENCY
         )

@@ -16,6 +16,7 @@ from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
+    from cellctl.calibration.store.kind import Kinds
     from cellctl.processes.deck_to_frame.facts import RunFacts
     from cellctl.processes.deck_to_frame.run import OpenRun
     from cellctl.processes.deck_to_frame.state import Ready
@@ -53,13 +54,25 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
         return recipe_issues(cell, cast(DeckRecipe, recipe), key, folder)
 
+    @classmethod
+    def calibration_kinds(cls) -> "Kinds":
+        """Heads, base frame, board transfer, payload, and what commissioning measures."""
+        from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
+
+        return CALIBRATIONS
+
     async def prepare(self, recipe: Recipe) -> "Prepared[RunFacts]":
         """Read calibrations and drawings, and compare them with what is connected."""
         from cellctl.processes.deck_to_frame.facts import read_facts
 
         deck_recipe = cast(DeckRecipe, recipe)
-        facts = await read_facts(self.cell(deck_recipe), deck_recipe, self.services.calibrations)
-        return Prepared(facts, (*facts.stored, *facts.commissioned.records))
+        facts = await read_facts(
+            self.cell(deck_recipe),
+            deck_recipe,
+            self.services.calibrations,
+            self.calibration_kinds(),
+        )
+        return Prepared(facts, tuple(facts.calibrations.records))
 
     def open(self, prepared: "Prepared[RunFacts]", context: RunContext) -> "OpenRun":
         """Facts, record and the way to tell of progress."""

@@ -96,7 +96,7 @@ class AssemblyRun:
     @property
     def base_T_c1(self) -> RigidTransform:
         """Head I at its measuring pose."""
-        return self.facts.calibrations.geometry.base_T_c1.pose
+        return self.facts.geometry.base_T_c1.pose
 
     async def measure(self, features: FeatureFile, c1_T_part: RigidTransform) -> PartMeasurement:
         """Measure a part near a predicted pose, as certainly as the loop needs it."""
@@ -136,7 +136,7 @@ class AssemblyRun:
         speed_mm_s: float,
         acceleration_mm_s2: float,
     ) -> None:
-        inertia_n = SWING_RATIO * self.facts.payload_kg * acceleration_mm_s2 * MM
+        inertia_n = SWING_RATIO * self.facts.payload.mass_kg * acceleration_mm_s2 * MM
         force_n = inertia_n + self.recipe.mating.limit_force_n
         tolerance = WrenchTolerance(force_n, force_n * LEVER_M)
         async with guarded_moves(self.cell.cell, self.cell.arm, flange_T_deck, tolerance) as move:

@@ -59,6 +59,10 @@ class DeckCell:
         """Head I and head II."""
         return self.head_1, self.head_2
 
+    def head(self, role: str) -> StereoStation:
+        """The head in one of the two roles."""
+        return {HEAD_1: self.head_1, HEAD_2: self.head_2}[role]
+
     @property
     def main(self) -> Robot:
         """The robot that carries the deck."""

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
-from cellctl.records.plots.style import ACCENT, GOOD, INK, LIMIT, SECOND, label_line, style, to_svg
+from cellctl.plot_style import ACCENT, GOOD, INK, LIMIT, SECOND, label_line, style, to_svg
 
 _BINS = 700
 _CONTACT_MM = 0.5

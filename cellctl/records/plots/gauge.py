@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
+from cellctl.plot_style import ACCENT, GOOD_FILL, INK, LIMIT, style, to_svg
 from cellctl.records.entries import Gauge
-from cellctl.records.plots.style import ACCENT, GOOD_FILL, INK, LIMIT, style, to_svg
 
 HOLE_MM = 6.0
 """Pin hole of both parts: a gauge of 6.00 would mean no offset at all."""

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from cellctl.plot_style import ACCENT, GOOD, GOOD_FILL, LIMIT, MUTED, style, to_svg
 from cellctl.records.entries import Iteration
-from cellctl.records.plots.style import ACCENT, GOOD, GOOD_FILL, LIMIT, MUTED, style, to_svg
 
 _COMPONENTS = (
     ("X", "mm"), ("Y", "mm"), ("Z", "mm"),

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.calibration.board_transfer import head_2_in_head_1
+from cellctl.calibration.solvers.transfer.board_transfer import head_2_in_head_1
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.vision.camera import distort

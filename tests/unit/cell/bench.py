@@ -1,16 +1,16 @@
 """A whole cell in memory, with a true world behind its heads."""
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import timedelta
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.files import StoredCalibration, read_calibration, write_stored
+from cellctl.calibration.payload import IdentifiedPayload
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.clock import now_s, utc_now
@@ -21,19 +21,21 @@ from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.unit_command import Options, Source, UnitCommand
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.facts import RunFacts
+from cellctl.processes.deck_to_frame.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
-from cellctl.runtime.calibration_folder import ALL_KINDS, PAYLOAD, CalibrationFolder
-from cellctl.runtime.commissioned import Commissioned
 from cellctl.vision.features import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.misfit import Misfit
 from cellctl.vision.part_pose import PartPose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
+from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
 
@@ -142,7 +144,7 @@ class Bench:
 
     cell: CellInMemory
     world: World
-    calibrations: CalibrationFolder
+    calibrations: CalibrationStore
     station: RigidTransform
     """Nominal ``base_T_frame``."""
     grip: RigidTransform
@@ -169,13 +171,14 @@ class Bench:
     def facts(self, **changes: Any) -> RunFacts:
         """Of a run with the shipped recipe."""
         frame, deck = self.features()
+        snapshot = self.snapshot()
         values: dict[str, Any] = {
             "cell": self.deck,
             "recipe": self.recipe,
-            "calibrations": self.calibrations.read(timedelta(0)),
-            "stored": (),
+            "calibrations": snapshot,
+            "geometry": CalibrationSet.of(snapshot),
+            "payload": IdentifiedPayload(snapshot.get(PAYLOAD).gravity_compensation, 200.0),
             "commissioned": Commissioned(),
-            "payload_kg": 200.0,
             "frame_features": frame,
             "deck_features": deck,
         }
@@ -189,7 +192,15 @@ class Bench:
 
     def base_T_c1(self) -> RigidTransform:
         """Head I as calibrated."""
-        return self.calibrations.read(timedelta(0)).geometry.base_T_c1.pose
+        return self.geometry().base_T_c1.pose
+
+    def snapshot(self) -> CalibrationSnapshot:
+        """What production requires."""
+        return self.calibrations.read_all(REQUIRED, utc_now())
+
+    def geometry(self) -> CalibrationSet:
+        """Where everything is, as calibrated."""
+        return CalibrationSet.of(self.snapshot())
 
     def features(self) -> tuple[FeatureFile, FeatureFile]:
         recipe, folder = self.recipe, CELL_FILE.parent
@@ -217,7 +228,7 @@ def make_bench(tmp_path: Path) -> Bench:
         flange_T_deck=grip * pose_from_xyzabc([1.0, -2.0, 0.5, -0.3, 0.05, 0.02]),
         robot_error=pose_from_xyzabc([0.3, -0.2, 0.1, 0.02, -0.01, 0.01]),
     )
-    bench = Bench(cell, world, CalibrationFolder(folder), station, grip)
+    bench = Bench(cell, world, CalibrationStore(folder, CALIBRATIONS), station, grip)
     teach(bench)
     return bench
 
@@ -228,20 +239,6 @@ def teach(bench: Bench) -> None:
         (np.radians(poses["home"]), RigidTransform.from_translation([1.5, 0.0, 1.8])),
         (np.radians(poses["deck_measure"]), bench.flange_over_seat(0.05)),
     ]
-
-
-def renew_calibrations(folder: Path, valid_for: timedelta = timedelta(days=1)) -> None:
-    """The shipped calibrations, with the instruments of this cell and a validity of their own."""
-    serials = {**HEADS, PAYLOAD: "M4347K-1"}
-    for kind in ALL_KINDS:
-        shipped = read_calibration(CELL_FILE.parent / "demo-calibration", kind)
-        now = utc_now()
-        write_stored(
-            folder,
-            StoredCalibration(
-                kind, shipped.record, now, now + valid_for, "test", serials.get(kind, "ET-0001")
-            ),
-        )
 
 
 @dataclass
@@ -284,9 +281,3 @@ def start_command(serial: str = "SAT-0001", *, options: int = 0, **changes: Any)
     """Start of recipe 1 in Production, by the line."""
     values: dict[str, Any] = {"source": Source.LINE, "unit_mode": 1, "cntrl_cmd": 2, "recipe_id": 1}
     return UnitCommand(serial=serial, options=Options(options), **(values | changes))
-
-
-def spoil(path: Path, **changes: Any) -> None:
-    """Change keys of a JSON file."""
-    data = json.loads(path.read_text(encoding="utf-8"))
-    path.write_text(json.dumps(data | changes), encoding="utf-8")

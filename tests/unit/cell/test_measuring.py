@@ -1,7 +1,6 @@
 """Measuring a part: as many frames as it takes, and nothing moves meanwhile."""
 
 from dataclasses import dataclass, field
-from datetime import timedelta
 from typing import Any
 
 import numpy as np
@@ -63,7 +62,7 @@ def eyes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> Eyes:
 
 
 def measurer(bench: Bench) -> PartMeasurer:
-    geometry = bench.calibrations.read(timedelta(0)).geometry
+    geometry = bench.geometry()
     heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
     return PartMeasurer(bench.deck, heads, "default")
 
@@ -86,7 +85,7 @@ async def test_each_head_looks_for_its_own_holes_where_they_should_be(
 ) -> None:
     found = await measured(bench)
     assert found.frames == 2
-    geometry = bench.calibrations.read(timedelta(0)).geometry
+    geometry = bench.geometry()
     features = bench.features()[0]
     first = [call for call in eyes.calls if call[1] == list(features.head_1)]
     second = [call for call in eyes.calls if call[1] == list(features.head_2)]

@@ -6,12 +6,14 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cellctl.calibration.invalidation import require_not_invalidated
+from cellctl.calibration.store.marker import require_not_invalidated
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cli.commands import app
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.store import RunStore
-from cellctl.runtime.calibration_folder import CalibrationFolder
-from tests.unit.cell.bench import CELL_FILE, renew_calibrations
+from tests.unit.calibration.store.shipped import renew_calibrations
+from tests.unit.cell.bench import CELL_FILE
 
 ARGUMENTS = ("--reason", "camera knocked", "--by", "OP-3")
 
@@ -35,9 +37,11 @@ def invalidate(cell: Path, name: str) -> str:
 
 def test_production_is_refused_and_the_store_knows_who_said_so(cell: Path) -> None:
     RunStore(cell.parent / "store").close()
-    assert "head_1 is invalid until it is made anew" in invalidate(cell, "head_1")
-    folder = CalibrationFolder(cell.parent / "calibration")
-    fault = folder.fault(timedelta(0))
+    assert "head_1 is invalid until it is made anew by procedure 101: camera" in invalidate(
+        cell, "head_1"
+    )
+    calibrations = CalibrationStore(cell.parent / "calibration", CALIBRATIONS)
+    fault = calibrations.fault(CALIBRATIONS, timedelta(0))
     assert isinstance(fault, CalibrationInvalidated)
     assert "camera knocked (OP-3)" in fault.detail
     store = RunStore(cell.parent / "store", create=False)

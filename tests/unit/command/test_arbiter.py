@@ -17,7 +17,7 @@ from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
-from tests.unit.cell.bench import renew_calibrations
+from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.daemon_rig import DaemonRig
 
 

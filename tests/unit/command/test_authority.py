@@ -17,7 +17,8 @@ from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.packml.unit_command import Source
 from cellctl.records.store import RunStore
-from tests.unit.cell.bench import renew_calibrations, start_command
+from tests.unit.calibration.store.shipped import renew_calibrations
+from tests.unit.cell.bench import start_command
 from tests.unit.command.test_arbiter import audit
 from tests.unit.daemon_rig import BY_ANNA, DaemonRig
 

@@ -3,12 +3,18 @@
 import numpy as np
 import pytest
 
-from cellctl.calibration.base_frame import BaseFrameResult
+from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
+from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME
 from cellctl.runtime.steps import HeldMeanwhile
-from tests.unit.calibration.test_base_frame import C_T_BASE, RING, SIGMA_M, flange
+from tests.unit.calibration.solvers.base_frame.test_base_frame import (
+    C_T_BASE,
+    RING,
+    SIGMA_M,
+    flange,
+)
 from tests.unit.procedures.rig import ProcedureRig
 
 
@@ -44,7 +50,7 @@ async def test_the_base_is_found_and_the_arm_goes_home(
 ) -> None:
     outcome = await rig.run(103)
     settings, main = rig.bench.settings, rig.bench.deck.main_config
-    assert (outcome.item, outcome.serial_number, outcome.passed) == ("base_frame", "ET-7", True)
+    assert (outcome.kind, outcome.serial_number, outcome.passed) == (BASE_FRAME, "ET-7", True)
     found = BaseFrameResult.from_record(outcome.record).c_T_base.pose
     distance, angle = pose_error(C_T_BASE, found)
     assert np.linalg.norm(distance) < 1e-3

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from cellctl.calibration.files import read_calibration
+from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.processes.deck_to_frame.calibrations import STEREO_HEAD_1
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
@@ -23,7 +24,7 @@ def outcome(rig: ProcedureRig, *, passed: bool = True) -> ProcedureOutcome:
     record = dict(read_calibration(rig.bench.calibrations.path, "head_1").record)
     checks = [] if passed else CHECKS
     return ProcedureOutcome(
-        "head_1", record | {"checks": checks}, passed, ("few views",), b"png", "FH-0001"
+        STEREO_HEAD_1, record | {"checks": checks}, passed, ("few views",), b"png", "FH-0001"
     )
 
 

@@ -45,7 +45,7 @@ async def test_all_views_are_taken_and_the_head_comes_back(rig: ProcedureRig) ->
     assert all(move.kind == "linear" for move in views)
     assert views[0].speed == pytest.approx(station.config.linear_speed_mm_s * MM)
     np.testing.assert_allclose(views[0].target.as_matrix(), back.target.as_matrix(), atol=1e-9)
-    assert (outcome.item, outcome.serial_number, outcome.picture_png) == (
+    assert (outcome.kind.name, outcome.serial_number, outcome.picture_png) == (
         "head_1", "FH-0001", b"png",
     )  # fmt: skip
     used, board, image_size = solver.given

@@ -10,14 +10,20 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.board_pose import target_board_discs
-from cellctl.calibration.board_transfer import TransferResult
-from cellctl.calibration.files import read_calibration
+from cellctl.calibration.boards.board_pose import target_board_discs
+from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
+from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.interfaces import Target
 from cellctl.procedures.target_board import PAIRS
+from cellctl.processes.deck_to_frame.calibrations import (
+    BASE_FRAME,
+    BOARD_TRANSFER,
+    PAYLOAD,
+    STEREO_HEAD_1,
+)
 from cellctl.runtime.procedure import ProcedureOutcome
 from cellctl.vision.ellipse import Ellipse
 from cellctl.vision.features import Hole
@@ -50,7 +56,7 @@ class Boards:
     def __init__(self, rig: ProcedureRig) -> None:
         self.rng = np.random.default_rng(0)
         self.rig = rig
-        self.c_T_base = rig.bench.calibrations.c_T_base().pose
+        self.c_T_base = rig.bench.calibrations.read(BASE_FRAME).c_T_base.pose
         self.head_T_board = pose_from_xyzabc([5, -8, 505, 3, 1, 179])
         self.predicted: list[RigidTransform] = []
         rig.answer(measure_pair=self._measure, transfer_picture=lambda _: b"png")
@@ -102,7 +108,7 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
     boards.place("head_2")
     outcome = await half(rig, 105)
     assert outcome is not None
-    assert (outcome.item, outcome.passed, outcome.picture_png) == ("board_transfer", True, b"png")
+    assert (outcome.kind, outcome.passed, outcome.picture_png) == (BOARD_TRANSFER, True, b"png")
     result = TransferResult.from_record(outcome.record)
     for head, found in (("head_1", result.base_T_c1), ("head_2", result.base_T_c2)):
         distance, angle = pose_error(BASE_T_C[head], found.pose)
@@ -155,8 +161,8 @@ async def test_what_a_head_saw_before_counts_no_longer(
     store = rig.bench.calibrations
     if spoil.startswith("head_1"):
         stored = read_calibration(store.path, "head_1")
-        store.store("head_1", stored.record, stored.serial_number, timedelta(days=1))
+        store.store(STEREO_HEAD_1, stored.record, stored.serial_number, timedelta(days=1))
     else:
-        store.invalidate(["payload"], "collision")
+        store.invalidate([PAYLOAD], "collision")
     boards.place("head_2")
     assert await half(rig, 105) is None, "head I has to see the board again"

@@ -4,7 +4,7 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
 from cellctl.records.recording import MEDIA_TYPE, encode_curve

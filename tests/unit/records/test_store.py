@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.calibration.files import StoredCalibration
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.errors.records import (
     ArtefactDamaged,
     RecordNotWritten,

@@ -5,13 +5,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.calibration.files import read_calibration
+from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.force import FalseSeat
 from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame import contact_stiffness
+from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
@@ -68,7 +69,7 @@ async def test_contact_in_maintenance_leaves_a_run_and_a_calibration(
     assert record.iterations[-1].converged
     assert sum("force" in artefact.name for artefact in record.artefacts) == 3
     stored = read_calibration(rig.bench.calibrations.path, "contact_stiffness_1")
-    assert stored.passed
+    assert CONTACT_STIFFNESS.accepted(stored.record)
     assert stored.record["upper_n_per_mm"] == pytest.approx(660.0)
     assert stored.record["recipe_id"] == 1
     assert stored.record["run"] == head.number

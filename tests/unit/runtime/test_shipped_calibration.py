@@ -4,16 +4,20 @@
 hardware seed, so every result can be held against the devices as they really are.
 """
 
-from datetime import timedelta
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.runtime.calibration_folder import CalibrationFolder, Calibrations
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.geometry import CalibrationSet
 from fakes import scenario as scenarios
 from fakes.world.frames import from_written
 from fakes.world.world import World
@@ -24,8 +28,14 @@ SIGMAS = 5.0
 
 
 @pytest.fixture(scope="module")
-def calibrations() -> Calibrations:
-    return CalibrationFolder(CONFIG / "demo-calibration").read(timedelta(0))
+def calibrations() -> CalibrationSnapshot:
+    store = CalibrationStore(CONFIG / "demo-calibration", CALIBRATIONS)
+    return store.read_all([kind.for_recipe(1) for kind in CALIBRATIONS], utc_now())
+
+
+@pytest.fixture(scope="module")
+def geometry(calibrations: CalibrationSnapshot) -> CalibrationSet:
+    return CalibrationSet.of(calibrations)
 
 
 @pytest.fixture(scope="module")
@@ -37,9 +47,9 @@ def world() -> World:
 
 
 @pytest.mark.parametrize("index", [0, 1])
-def test_heads_see_points_where_they_are(calibrations: Calibrations, world: World, index: int):
+def test_heads_see_points_where_they_are(geometry: CalibrationSet, world: World, index: int):
     """What counts is a distance measured in the working volume, not single parameters."""
-    head = calibrations.geometry.heads[index]
+    head = geometry.heads[index]
     truth = world.truth.heads[("head_1", "head_2")[index]].stereo
     baseline_m = np.linalg.norm(head.translation_m)
     true_baseline_m = np.linalg.norm(truth.right_T_left.translation)
@@ -52,22 +62,19 @@ def test_heads_see_points_where_they_are(calibrations: Calibrations, world: Worl
     assert turn < 0.02
 
 
-def test_base_frame_is_where_it_says_within_its_uncertainty(
-    calibrations: Calibrations, world: World
-):
+def test_base_frame_is_where_it_says_within_its_uncertainty(geometry: CalibrationSet, world: World):
     """What the data sheet says of d1 and of A1 is only as true as the arm was built."""
     truth = world.truth.large_field.cell_T_head.inv()
     arm = world.scenario.robots["main"]
     built_m = arm.link_sigma_mm * MM
     built_rad = np.radians(np.hypot(arm.link_sigma_deg, arm.joint_sigma_deg))
     built = np.diag(np.repeat([built_m**2, built_rad**2], 3))
-    measured = calibrations.geometry.c_T_base
+    measured = geometry.c_T_base
     assert_within(UncertainPose(measured.pose, measured.covariance + built), truth)
 
 
-def test_heads_are_where_they_say(calibrations: Calibrations, world: World):
+def test_heads_are_where_they_say(geometry: CalibrationSet, world: World):
     report = world.report()
-    geometry = calibrations.geometry
     for pose, key, allowed_mm, allowed_deg in (
         (geometry.base_T_c1, "base_T_c1_mm_deg", 0.3, 0.03),
         (geometry.base_T_c2, "base_T_c2_mm_deg", 0.3, 0.03),
@@ -78,16 +85,18 @@ def test_heads_are_where_they_say(calibrations: Calibrations, world: World):
         assert np.degrees(np.linalg.norm(turn_rad)) < allowed_deg, key
 
 
-def test_the_payload_weighs_what_it_weighs(calibrations: Calibrations):
+def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot):
     scenario = scenarios.load(CONFIG / "fake-cell.toml")
     weight_n = 9.80665 * (scenario.payload.gripper_kg + scenario.payload.deck_kg)
-    down = calibrations.gravity_compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
+    down = calibrations.get(PAYLOAD).gravity_compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
     assert np.linalg.norm(down) == pytest.approx(weight_n, rel=0.02)
 
 
-def test_latency_and_stiffness_are_true_and_on_the_safe_side(world: World):
+def test_latency_and_stiffness_are_true_and_on_the_safe_side(
+    calibrations: CalibrationSnapshot, world: World
+):
     """The latency is that of the fake robot; other parts may be stiffer, within the recipe's."""
-    found = CalibrationFolder(CONFIG / "demo-calibration").commissioned(1, timedelta(0))
+    found = Commissioned.of(calibrations, recipe_id=1)
     assert found.stop_latency_s is not None
     assert found.stiffness_n_m is not None
     true_s = world.scenario.robots["main"].stop_latency_ms / 1e3

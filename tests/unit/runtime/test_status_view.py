@@ -2,6 +2,7 @@
 
 import math
 
+from cellctl.api.modbus.register_map import VALIDITY_REGISTERS
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.errors.link import StaleData
 from cellctl.guard.report import GuardTrip, TripReason
@@ -34,7 +35,7 @@ async def test_silent_devices_do_not_silence_the_status(rig: DaemonRig) -> None:
     status = rig.shown()
     assert not status.manual
     assert math.isnan(status.force_z_n)
-    assert status.validity_h == (0.0, 0.0, 0.0, 0.0)
+    assert status.validity_h == dict.fromkeys(VALIDITY_REGISTERS, 0.0)
     assert not status.calibration_ok
 
 

@@ -9,11 +9,11 @@ from cellctl.config.sensor import sensor_rate_hz
 from cellctl.force.contact.approach import planned_stiffness
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Pins
 from cellctl.processes.deck_to_frame.state import Corrected
-from cellctl.runtime.commissioned import Commissioned
 
 ABORT_MARGIN_N = 5.0
 """The guard stops the robot this much below the limit: for its filter and the arm's way to stop."""
@@ -37,7 +37,9 @@ def contact_plan(corrected: Corrected, commissioned: Commissioned) -> MatingPlan
         M_T_D=corrected.M_T_D,
         deck_thickness_m=recipe.deck_thickness_mm * MM,
         over_travel_m=recipe.over_travel_mm * MM,
-        settings=mating_settings(cell.force_config, recipe, commissioned, run.facts.payload_kg),
+        settings=mating_settings(
+            cell.force_config, recipe, commissioned, run.facts.payload.mass_kg
+        ),
     )
 
 

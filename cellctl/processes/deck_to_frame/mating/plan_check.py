@@ -11,11 +11,11 @@ from cellctl.errors.config import UnknownDriver
 from cellctl.errors.force import MatingPlanInvalid
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.mating.contact_plan import mating_settings
 from cellctl.processes.deck_to_frame.mating.plan import plan_mating
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE
-from cellctl.runtime.commissioned import Commissioned
 
 ASSUMED_PAYLOAD_KG = 200.0
 """No payload is identified yet; heavier ones are judged again with the deck at the stand-off."""

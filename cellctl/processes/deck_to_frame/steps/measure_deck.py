@@ -24,7 +24,7 @@ async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     measurement = await run.measure(run.facts.deck_features, predicted)
     flange_T_deck = deck_on_flange(
         UncertainPose.exact(measurement.base_T_flange),
-        run.facts.calibrations.geometry.base_T_c1,
+        run.facts.geometry.base_T_c1,
         measurement.pose.pose,
     )
     require_near("deck on flange", run.recipe, nominal, flange_T_deck.pose)

@@ -30,7 +30,7 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
-from tests.unit.cell.bench import renew_calibrations
+from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.command.test_arbiter import audit
 from tests.unit.daemon_rig import DaemonRig
 

@@ -1,6 +1,5 @@
 """A run of the assembly in memory: real steps, real journal, a true world instead of pictures."""
 
-from datetime import timedelta
 from pathlib import Path
 from typing import Any, cast
 
@@ -48,8 +47,7 @@ class RunRig:
         self.board = ProgressBoard()
         workers = cast(VisionWorkers, bench.cell.workers)
         self.journal = Journal(self.archive, workers, self.number)
-        self.calibrations = bench.calibrations.read(timedelta(0))
-        geometry = self.calibrations.geometry
+        geometry = bench.geometry()
         heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
 

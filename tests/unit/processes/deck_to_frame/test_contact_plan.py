@@ -10,6 +10,8 @@ from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
+from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.facts import read_facts
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan, mating_settings
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
@@ -17,7 +19,6 @@ from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.recipe import Pins
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
-from cellctl.runtime.commissioned import Commissioned
 from tests.unit.processes.deck_to_frame.rig import RunRig
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off
 
@@ -107,13 +108,13 @@ async def test_a_run_is_not_prepared_for_a_head_that_was_taught_another_pose(rig
     moved = deck.head_1.config.model_copy(update={"poses_deg": poses_deg})
     deck = replace(deck, head_1=replace(deck.head_1, config=moved))
     with pytest.raises(HeadPoseChanged):
-        await read_facts(deck, rig.bench.recipe, rig.bench.calibrations)
+        await read_facts(deck, rig.bench.recipe, rig.bench.calibrations, CALIBRATIONS)
 
 
 async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig) -> None:
     rig.bench.cell.main.looks["speed_override_ratio"] = 0.5
     with pytest.raises(SpeedOverridden):
-        await read_facts(rig.bench.deck, rig.bench.recipe, rig.bench.calibrations)
+        await read_facts(rig.bench.deck, rig.bench.recipe, rig.bench.calibrations, CALIBRATIONS)
 
 
 def with_rate(sensor: ForceSensorConfig, rate_hz: float) -> ForceSensorConfig:

@@ -1,0 +1,50 @@
+"""Pose of a board in a camera from its corners, with the covariance that the corners leave."""
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.calibration.boards.projection import camera_vector, project
+from cellctl.errors.calibration import BoardPoseInvalid
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.vision.stereo_head import CameraModel
+
+_MIN_CORNERS = 6
+
+
+def board_in_camera(
+    camera: CameraModel, board_m: Array, pixels: Array, sigma_px: float | None = None
+) -> tuple[UncertainPose, float]:
+    """camera_T_board and the rms residual (px, both axes) from points (n, 3) and pixels (n, 2).
+
+    Without ``sigma_px`` the noise is estimated from the residuals. Raises ``BoardPoseInvalid``.
+    """
+    if len(board_m) < _MIN_CORNERS or len(board_m) != len(pixels):
+        raise BoardPoseInvalid(f"{len(pixels)} corners for {len(board_m)} points")
+    is_found, turn, shift = cv2.solvePnP(board_m, pixels, camera.camera_matrix, camera.distortion)
+    if not is_found:
+        raise BoardPoseInvalid("the corners give no pose")
+    rotation = Rotation.from_rotvec(np.ravel(turn))
+    translation = np.ravel(shift).astype(float)
+    vector = camera_vector(camera)
+    for _ in range(10):
+        turned = rotation.apply(board_m)
+        projection = project(vector, turned + translation)
+        residuals = (pixels - projection.pixels).ravel()
+        x, y, z = turned.T
+        zero = np.zeros_like(x)
+        skews = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+        jacobian = np.concatenate([projection.by_point, -projection.by_point @ skews], axis=2)
+        jacobian = jacobian.reshape(-1, 6)
+        delta = np.linalg.lstsq(jacobian, residuals, rcond=None)[0]
+        translation = translation + delta[:3]
+        rotation = Rotation.from_rotvec(delta[3:]) * rotation
+        if np.abs(delta).max() < 1e-12:
+            break
+    squares = float(residuals @ residuals)
+    if sigma_px is None:
+        sigma_px = float(np.sqrt(squares / max(len(residuals) - 6, 1)))
+    covariance = np.linalg.inv(jacobian.T @ jacobian) * sigma_px**2
+    pose = RigidTransform.from_components(translation, rotation)
+    return UncertainPose(pose, covariance), float(np.sqrt(squares / len(board_m)))

@@ -1,0 +1,228 @@
+"""Hand-eye calibration: AX = XB (eye in hand) and CG = GD (eye to hand).
+
+A closed form starts a weighted maximum-likelihood solution: each pose's residual is weighted with
+the covariance of the camera's pose and of the robot's pose. Measured against every closed form
+and against pure reprojection, this is best or near best whatever the robot's accuracy
+(docs/calibration.md).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.calibration.checks import Checks, LimitCheck
+from cellctl.calibration.solvers.adjustment import Adjustment, weighted_least_squares
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
+    HandEyePose,
+    HandEyeResult,
+    RobotNoise,
+    Setup,
+)
+from cellctl.calibration.solvers.hand_eye.hand_eye_start import MIN_POSES, closed_form
+from cellctl.errors.calibration import RobotCameraMismatch
+from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose
+
+_OUTLIER_CHI2 = 40.0
+_MAX_START_M = 0.02
+
+
+@dataclass(frozen=True, slots=True)
+class HandEyeLimits:
+    """Limits of the result."""
+
+    poses: int = 8
+    rms_m: float = 3e-4
+    rms_rad: float = float(np.radians(0.05))
+    position_sigma_m: float = 1e-4
+    rotation_sigma_rad: float = float(np.radians(0.01))
+
+
+def calibrate_hand_eye(
+    poses: Sequence[HandEyePose],
+    setup: Setup,
+    *,
+    noise: RobotNoise | None = None,
+    limits: HandEyeLimits | None = None,
+) -> HandEyeResult:
+    """Solve for camera and board. Raises ``PosesNotDiverse`` or ``RobotCameraMismatch``."""
+    noise, limits = noise or RobotNoise(), limits or HandEyeLimits()
+    x, z, spread = _start(poses, setup)
+    used = list(poses)
+    rejected: list[str] = []
+    while True:
+        solution, x, z = _maximum_likelihood(used, setup, noise, x, z)
+        squares = _pose_squares(used, setup, noise, x, z)
+        worst = int(np.argmax(squares))
+        typical = max(1.0, float(np.median(squares)) / 5.35)
+        spare = len(used) > max(MIN_POSES, 0.8 * len(poses))
+        if squares[worst] <= _OUTLIER_CHI2 * typical or not spare:
+            break
+        rejected.append(used.pop(worst).name)
+    residuals = {pose.name: _distance(pose, setup, x, z) for pose in poses}
+    kept = np.array([residuals[pose.name] for pose in used])
+    camera = UncertainPose(x, solution.covariance[:6, :6])
+    return HandEyeResult(
+        setup=setup,
+        camera=camera,
+        board=UncertainPose(z, solution.covariance[6:, 6:]),
+        residuals=residuals,
+        rejected=tuple(rejected),
+        chi2_ratio=solution.chi2_ratio,
+        spread_rad=(float(spread[0]), float(spread[1]), float(spread[2])),
+        checks=_checks(camera, kept, limits),
+        warnings=_warnings(rejected, solution.chi2_ratio),
+    )
+
+
+def _start(
+    poses: Sequence[HandEyePose], setup: Setup
+) -> tuple[RigidTransform, RigidTransform, Array]:
+    """Closed form, and whether the data belong to the other setup."""
+    x, z, spread = _closed_form(poses, setup)
+    if _typical_distance(poses, setup, x, z) > _MAX_START_M:
+        other_x, other_z, _ = _closed_form(poses, setup.other)
+        fits = _typical_distance(poses, setup.other, other_x, other_z) <= _MAX_START_M
+        hint = f"; the data fit {setup.other.value}" if fits else ""
+        raise RobotCameraMismatch(
+            f"the board is off by {_typical_distance(poses, setup, x, z) / MM:.0f} mm "
+            f"in the setup {setup.value}{hint}"
+        )
+    return x, z, spread
+
+
+def _closed_form(
+    poses: Sequence[HandEyePose], setup: Setup
+) -> tuple[RigidTransform, RigidTransform, Array]:
+    turns = [_turn(pose.base_T_flange, setup) for pose in poses]
+    return closed_form(turns, [pose.camera_T_board.pose for pose in poses])
+
+
+def _maximum_likelihood(
+    poses: Sequence[HandEyePose],
+    setup: Setup,
+    noise: RobotNoise,
+    x: RigidTransform,
+    z: RigidTransform,
+) -> tuple[Adjustment, RigidTransform, RigidTransform]:
+    """Two rounds, because the weights depend a little on X and Z."""
+    back_turns, measured = _stacked(poses, setup)
+    for _ in range(2):
+        whitening = _whitening(poses, setup, noise, x, z)
+        x_0, z_0 = x, z
+
+        def residuals(delta: Array) -> Array:
+            x_1, z_1 = _moved(x_0, delta[:6]), _moved(z_0, delta[6:])  # noqa: B023
+            raw = _compare(back_turns, measured, x_1, z_1)
+            return np.asarray(np.einsum("nij,nj->ni", whitening, raw).ravel())  # noqa: B023
+
+        solution = weighted_least_squares(residuals, np.zeros(12))
+        x, z = _moved(x, solution.parameters[:6]), _moved(z, solution.parameters[6:])
+    return solution, x, z
+
+
+def _residuals(
+    poses: Sequence[HandEyePose], setup: Setup, x: RigidTransform, z: RigidTransform
+) -> Array:
+    """Measured against predicted camera_T_board, shape (n, 6)."""
+    return _compare(*_stacked(poses, setup), x, z)
+
+
+def _stacked(poses: Sequence[HandEyePose], setup: Setup) -> tuple[RigidTransform, RigidTransform]:
+    """All turns, inverted, and all measured camera_T_board."""
+    turns = [_turn(pose.base_T_flange, setup).inv() for pose in poses]
+    return RigidTransform.concatenate(turns), RigidTransform.concatenate(
+        [pose.camera_T_board.pose for pose in poses]
+    )
+
+
+def _compare(
+    back_turns: RigidTransform, measured: RigidTransform, x: RigidTransform, z: RigidTransform
+) -> Array:
+    predicted = x.inv() * back_turns * z
+    turn = (measured.rotation * predicted.rotation.inv()).as_rotvec()
+    return np.concatenate([measured.translation - predicted.translation, turn], axis=1)
+
+
+def _whitening(
+    poses: Sequence[HandEyePose],
+    setup: Setup,
+    noise: RobotNoise,
+    x: RigidTransform,
+    z: RigidTransform,
+) -> Array:
+    """Inverse Cholesky factors of the residuals' covariances, shape (n, 6, 6)."""
+    back, board = UncertainPose.exact(x.inv()), UncertainPose.exact(z)
+    factors = []
+    for pose in poses:
+        robot = UncertainPose(pose.base_T_flange, noise.covariance)
+        turn = robot if setup is Setup.EYE_IN_HAND else robot.inv()
+        predicted = back * turn.inv() * board
+        total = predicted.covariance + pose.camera_T_board.covariance
+        factors.append(np.linalg.inv(np.linalg.cholesky(total)))
+    return np.stack(factors)
+
+
+def _pose_squares(
+    poses: Sequence[HandEyePose],
+    setup: Setup,
+    noise: RobotNoise,
+    x: RigidTransform,
+    z: RigidTransform,
+) -> Array:
+    raw = _residuals(poses, setup, x, z)
+    white = np.einsum("nij,nj->ni", _whitening(poses, setup, noise, x, z), raw)
+    return np.asarray((white**2).sum(axis=1))
+
+
+def _turn(base_T_flange: RigidTransform, setup: Setup) -> RigidTransform:
+    return base_T_flange if setup is Setup.EYE_IN_HAND else base_T_flange.inv()
+
+
+def _moved(pose: RigidTransform, delta: Array) -> RigidTransform:
+    rotation = Rotation.from_rotvec(delta[3:]) * pose.rotation
+    return RigidTransform.from_components(pose.translation + delta[:3], rotation)
+
+
+def _distance(
+    pose: HandEyePose, setup: Setup, x: RigidTransform, z: RigidTransform
+) -> tuple[float, float]:
+    residual = _residuals([pose], setup, x, z)[0]
+    return float(np.linalg.norm(residual[:3])), float(np.linalg.norm(residual[3:]))
+
+
+def _typical_distance(
+    poses: Sequence[HandEyePose], setup: Setup, x: RigidTransform, z: RigidTransform
+) -> float:
+    return float(np.median(np.linalg.norm(_residuals(poses, setup, x, z)[:, :3], axis=1)))
+
+
+def _checks(camera: UncertainPose, kept: Array, limits: HandEyeLimits) -> Checks:
+    rms_m, rms_rad = np.sqrt((kept**2).mean(axis=0))
+    sigma = camera.sigma
+    degrees = np.degrees
+    return (
+        LimitCheck("poses", len(kept), limits.poses, "", "min"),
+        LimitCheck("residual rms", rms_m / MM, limits.rms_m / MM, "mm"),
+        LimitCheck("residual rms", degrees(rms_rad), float(degrees(limits.rms_rad)), "°"),
+        LimitCheck("position sigma", sigma[:3].max() / MM, limits.position_sigma_m / MM, "mm"),
+        LimitCheck(
+            "rotation sigma",
+            degrees(sigma[3:].max()),
+            float(degrees(limits.rotation_sigma_rad)),
+            "°",
+        ),
+    )
+
+
+def _warnings(rejected: Sequence[str], chi2_ratio: float) -> tuple[str, ...]:
+    warnings = []
+    if rejected:
+        warnings.append(f"poses left out as gross errors: {', '.join(rejected)}")
+    if chi2_ratio > 4:
+        warnings.append(
+            f"residuals are {np.sqrt(chi2_ratio):.1f} times the stated noise of robot and camera"
+        )
+    return tuple(warnings)

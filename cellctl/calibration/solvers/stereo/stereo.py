@@ -1,0 +1,202 @@
+"""Calibration of a stereo head from views of a board (paper section 2.1.1, table 1).
+
+Both cameras, all board poses and the shape of the board are adjusted together. The board's shape
+is released because a bow of 0.1 mm does not show in the residuals but costs tenths of a
+millimetre (docs/calibration.md has the figures).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, shape_modes
+from cellctl.calibration.boards.projection import camera_model
+from cellctl.calibration.checks import LimitCheck
+from cellctl.calibration.solvers.stereo.bundle import (
+    BundleResult,
+    BundleState,
+    adjust,
+    residual_norms,
+)
+from cellctl.calibration.solvers.stereo.stereo_coverage import CoverageLimits, check_coverage
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult, ViewResidual
+from cellctl.calibration.solvers.stereo.stereo_start import start_values
+from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation, cross_validate
+from cellctl.errors.calibration import TooFewViews
+from cellctl.geometry.pose import Array
+from cellctl.vision.stereo_head import StereoHead
+
+Mask = NDArray[np.bool_]
+
+_BAD_VIEW = 2.5
+"""A view is bad when its rms is so many times the median view's."""
+_MAX_REJECTED_RATIO = 0.2
+_MIN_HALF = 5
+"""Views that a half calibration needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class StereoLimits:
+    """Limits of the result. Pixel figures count both axes of a corner, as OpenCV does."""
+
+    coverage: CoverageLimits = field(default_factory=CoverageLimits)
+    rms_px: float = 0.25
+    held_out_m: float = 5e-5
+    baseline_sigma_m: float = 5e-5
+    rejected_ratio: float = _MAX_REJECTED_RATIO
+
+
+def calibrate_stereo(
+    views: Sequence[BoardView],
+    board: CalibrationBoard,
+    image_size: tuple[int, int],
+    *,
+    shape: BoardShape = BoardShape.BENT,
+    pitch_relative_sigma: float = 0.0,
+    limits: StereoLimits | None = None,
+) -> StereoResult:
+    """Calibrate a head.
+
+    ``pitch_relative_sigma`` is the standard uncertainty of the board's pitch; nothing in the images
+    can tell it, and it goes into the covariance of the translation. Raises ``TooFewViews``,
+    ``PoorCoverage``, ``CalibrationCamerasSwapped``, ``CalibrationCameraUpsideDown``,
+    ``PairsInconsistent`` or ``SolveFailed``; figures beyond their limits are in ``checks``.
+    """
+    limits = limits or StereoLimits()
+    left, right, coverage_checks = check_coverage(views, board, image_size, limits.coverage)
+    modes = shape_modes(board, shape)
+    flat_m = board.corners_m
+    ordered, start = start_values(views, board, image_size, len(modes.sigma))
+    result = adjust(ordered, flat_m, modes, start)
+    view_rms = np.array([np.sqrt((n**2).mean()) for n in residual_norms(result.residuals)])
+    good = _good_views(view_rms)
+    if good.sum() < limits.coverage.views:
+        raise TooFewViews(f"{good.sum()} views are left after rejecting {_names(ordered, ~good)}")
+    all_residuals = [
+        _view_residual(v, result, i, used=bool(good[i])) for i, v in enumerate(ordered)
+    ]
+    kept = [view for view, is_good in zip(ordered, good, strict=True) if is_good]
+    state = _of_views(result.state, good)
+    if not good.all():
+        result = adjust(kept, flat_m, modes, state)
+        state = result.state
+    board_m = flat_m + modes.modes @ state.shape
+    validation = _validate(kept, board, shape, state, board_m)
+    norms = np.concatenate(residual_norms(result.residuals))
+    covariance = _covariance(result, pitch_relative_sigma)
+    head = StereoHead(
+        image_size=image_size,
+        left=camera_model(state.left),
+        right=camera_model(state.right),
+        rotation=state.rotation,
+        translation_m=state.translation_m,
+        rms_px=float(np.sqrt((norms**2).mean())),
+        covariance=covariance,
+    )
+    return StereoResult(
+        head=head,
+        method=f"joint bundle adjustment, board shape {shape.value}",
+        board=board,
+        views=tuple(all_residuals),
+        board_m=board_m,
+        coverage=(left, right),
+        validation=validation,
+        checks=(*coverage_checks, *_result_checks(head, covariance, good, validation, limits)),
+        warnings=_warnings(len(kept), validation, _names(ordered, ~good)),
+        sigma_px=result.sigma_px,
+        left_residuals=_field([view.left.pixels for view in kept], result, 0),
+        right_residuals=_field([view.right.pixels for view in kept], result, 1),
+    )
+
+
+def _good_views(view_rms: Array) -> Mask:
+    good = view_rms <= _BAD_VIEW * np.median(view_rms)
+    allowed = int(_MAX_REJECTED_RATIO * len(view_rms))
+    for index in np.argsort(-view_rms)[allowed:]:
+        good[index] = True
+    return np.asarray(good, dtype=np.bool_)
+
+
+def _view_residual(
+    view: BoardView, result: BundleResult, index: int, *, used: bool
+) -> ViewResidual:
+    left, right = (float(np.sqrt((r**2).sum(axis=1).mean())) for r in result.residuals[index])
+    return ViewResidual(view.name, left, right, len(view.left.ids), len(view.right.ids), used)
+
+
+def _of_views(state: BundleState, chosen: Mask) -> BundleState:
+    return replace(
+        state,
+        view_rotations=state.view_rotations[chosen],
+        view_translations_m=state.view_translations_m[chosen],
+    )
+
+
+def _validate(
+    views: Sequence[BoardView],
+    board: CalibrationBoard,
+    shape: BoardShape,
+    state: BundleState,
+    board_m: Array,
+) -> CrossValidation | None:
+    """Two half calibrations, every other view each; None when there are too few views."""
+    if len(views) < 2 * _MIN_HALF:
+        return None
+    modes = shape_modes(board, shape)
+    first = np.arange(len(views)) % 2 == 0
+    parts = (list(views[0::2]), list(views[1::2]))
+    halves = tuple(
+        adjust(part, board.corners_m, modes, _of_views(state, chosen)).state
+        for part, chosen in zip(parts, (first, ~first), strict=True)
+    )
+    return cross_validate((halves[0], halves[1]), parts, board_m)
+
+
+def _covariance(result: BundleResult, pitch_relative_sigma: float) -> Array:
+    covariance = result.covariance[:24, :24].copy()
+    scale_m = result.state.translation_m * pitch_relative_sigma
+    covariance[21:, 21:] += np.outer(scale_m, scale_m)
+    return covariance
+
+
+def _result_checks(
+    head: StereoHead,
+    covariance: Array,
+    good: Mask,
+    validation: CrossValidation | None,
+    limits: StereoLimits,
+) -> tuple[LimitCheck, ...]:
+    direction = head.translation_m / np.linalg.norm(head.translation_m)
+    sigma_m = float(np.sqrt(direction @ covariance[21:, 21:] @ direction))
+    checks = [
+        LimitCheck("reprojection rms", head.rms_px, limits.rms_px, "px"),
+        LimitCheck("baseline sigma", sigma_m * 1e3, limits.baseline_sigma_m * 1e3, "mm"),
+        LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
+    ]
+    if validation is not None:
+        held_out_mm = validation.held_out_m * 1e3
+        checks.append(LimitCheck("held-out error", held_out_mm, limits.held_out_m * 1e3, "mm"))
+    return tuple(checks)
+
+
+def _warnings(kept: int, validation: CrossValidation | None, rejected: str) -> tuple[str, ...]:
+    warnings = []
+    if rejected:
+        warnings.append(f"views rejected for their residuals: {rejected}")
+    if kept < 20:
+        warnings.append(f"{kept} views; 20 to 40 are advisable")
+    if validation is None:
+        warnings.append(f"no cross-validation: it needs {2 * _MIN_HALF} views")
+    return tuple(warnings)
+
+
+def _names(views: Sequence[BoardView], chosen: Mask) -> str:
+    return ", ".join(view.name for view, is_chosen in zip(views, chosen, strict=True) if is_chosen)
+
+
+def _field(pixels: Sequence[Array], result: BundleResult, side: int) -> Array:
+    """Positions and residuals of all corners, shape (n, 4), for the picture."""
+    residuals = np.concatenate([pair[side] for pair in result.residuals])
+    return np.concatenate([np.concatenate(list(pixels)), residuals], axis=1)

@@ -1,0 +1,170 @@
+"""The result of a stereo calibration."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cellctl.calibration.boards.board import CalibrationBoard, Charuco
+from cellctl.calibration.checks import (
+    Checks,
+    all_passed,
+    checks_from_record,
+    evidence_to_record,
+)
+from cellctl.calibration.solvers.stereo.stereo_coverage import Coverage
+from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation
+from cellctl.geometry.pose import MM, Array
+from cellctl.vision.stereo_head import CameraModel, StereoHead, stereo_head_to_json
+
+
+@dataclass(frozen=True, slots=True)
+class ViewResidual:
+    """Rms residual of one pair, both axes together."""
+
+    name: str
+    left_rms_px: float
+    right_rms_px: float
+    left_corners: int
+    right_corners: int
+    used: bool
+    """False for a view that was rejected as bad; its residuals are from before."""
+
+
+def _no_residuals() -> Array:
+    return np.zeros((0, 4))
+
+
+@dataclass(frozen=True, slots=True)
+class StereoResult:
+    """A calibrated head and how far to trust it."""
+
+    head: StereoHead
+    method: str
+    board: CalibrationBoard
+    views: tuple[ViewResidual, ...]
+    board_m: Array
+    """Corners of the board as found, shape (n, 3)."""
+    coverage: tuple[Coverage, Coverage]
+    """Left, right."""
+    validation: CrossValidation | None
+    checks: Checks
+    warnings: tuple[str, ...]
+    sigma_px: float
+    """Standard deviation of a corner coordinate."""
+    left_residuals: Array = field(default_factory=_no_residuals)
+    """Columns u, v, du, dv in px; for the picture only, not in the record."""
+    right_residuals: Array = field(default_factory=_no_residuals)
+
+    @property
+    def passed(self) -> bool:
+        """The verdict."""
+        return all_passed(self.checks)
+
+    @property
+    def flatness_m(self) -> float:
+        """Height of the board from its lowest to its highest corner."""
+        return float(np.ptp(self.board_m[:, 2]))
+
+    def to_record(self) -> dict[str, Any]:
+        """Plain data: the head's file with the evidence added."""
+        return {
+            **stereo_head_to_json(self.head),
+            **evidence_to_record(self.method, self.checks, self.warnings),
+            "sigma_px": self.sigma_px,
+            "board": _board_to_record(self.board),
+            "board_flatness_mm": self.flatness_m / MM,
+            "board_corners_mm": (self.board_m / MM).tolist(),
+            "views": [_view_to_record(view) for view in self.views],
+            "coverage": [_coverage_to_record(side) for side in self.coverage],
+            "cross_validation": _validation_to_record(self.validation),
+        }
+
+    @classmethod
+    def from_record(cls, record: Mapping[str, Any]) -> "StereoResult":
+        """The inverse of ``to_record``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
+        left, right = (_coverage_from_record(side) for side in record["coverage"])
+        return cls(
+            head=_head_from_record(record),
+            method=str(record["method"]),
+            board=_board_from_record(record["board"]),
+            views=tuple(ViewResidual(**view) for view in record["views"]),
+            board_m=np.asarray(record["board_corners_mm"], dtype=float) * MM,
+            coverage=(left, right),
+            validation=_validation_from_record(record["cross_validation"]),
+            checks=checks_from_record(record["checks"]),
+            warnings=tuple(record["warnings"]),
+            sigma_px=float(record["sigma_px"]),
+        )
+
+
+def _head_from_record(record: Mapping[str, Any]) -> StereoHead:
+    width, height = record["image_size"]
+    units = np.array([1.0] * 21 + [MM] * 3)
+    return StereoHead(
+        image_size=(int(width), int(height)),
+        left=_camera_from_record(record["left"]),
+        right=_camera_from_record(record["right"]),
+        rotation=np.asarray(record["rotation"], dtype=float),
+        translation_m=np.asarray(record["translation_mm"], dtype=float) * MM,
+        rms_px=float(record["rms_px"]),
+        covariance=np.asarray(record["covariance"], dtype=float) * np.outer(units, units),
+    )
+
+
+def _camera_from_record(record: Mapping[str, Any]) -> CameraModel:
+    matrix, distortion = record["camera_matrix"], record["distortion"]
+    return CameraModel(np.asarray(matrix, dtype=float), np.asarray(distortion, dtype=float))
+
+
+def _view_to_record(view: ViewResidual) -> dict[str, Any]:
+    return {name: getattr(view, name) for name in ViewResidual.__slots__}
+
+
+def _board_to_record(board: CalibrationBoard) -> dict[str, Any]:
+    charuco = board.charuco
+    return {
+        "inner_corners": [board.columns, board.rows],
+        "square_mm": board.square_m / MM,
+        "charuco_dictionary": None if charuco is None else charuco.dictionary,
+        "charuco_marker_mm": None if charuco is None else charuco.marker_m / MM,
+    }
+
+
+def _board_from_record(record: Mapping[str, Any]) -> CalibrationBoard:
+    columns, rows = record["inner_corners"]
+    charuco = None
+    if record["charuco_dictionary"] is not None:
+        charuco = Charuco(record["charuco_dictionary"], record["charuco_marker_mm"] * MM)
+    return CalibrationBoard(columns, rows, record["square_mm"] * MM, charuco)
+
+
+def _coverage_to_record(coverage: Coverage) -> dict[str, Any]:
+    return {
+        "corners_per_cell": coverage.cells.astype(int).tolist(),
+        "filled_ratio": coverage.filled_ratio,
+        "tilt_ratio": coverage.tilt_ratio,
+    }
+
+
+def _coverage_from_record(record: Mapping[str, Any]) -> Coverage:
+    cells = np.asarray(record["corners_per_cell"], dtype=float)
+    return Coverage(cells, float(record["filled_ratio"]), float(record["tilt_ratio"]))
+
+
+def _validation_to_record(validation: CrossValidation | None) -> dict[str, float] | None:
+    if validation is None:
+        return None
+    return {
+        "held_out_mm": validation.held_out_m / MM,
+        "difference_mm": validation.difference_m / MM,
+        "difference_deg": float(np.degrees(validation.difference_rotation_rad)),
+    }
+
+
+def _validation_from_record(record: Mapping[str, float] | None) -> CrossValidation | None:
+    if record is None:
+        return None
+    turn_rad = float(np.radians(record["difference_deg"]))
+    return CrossValidation(record["held_out_mm"] * MM, record["difference_mm"] * MM, turn_rad)

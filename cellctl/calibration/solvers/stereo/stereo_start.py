@@ -1,0 +1,113 @@
+"""Start values of a stereo adjustment, and the wrong inputs that show themselves there."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Corners
+from cellctl.calibration.solvers.stereo.bundle import BundleState
+from cellctl.errors.calibration import (
+    CalibrationCamerasSwapped,
+    CalibrationCameraUpsideDown,
+    PairsInconsistent,
+    SolveFailed,
+)
+from cellctl.geometry.pose import Array
+
+_MAX_SPREAD_RAD = 0.035
+_MAX_SPREAD_OF_BASELINE = 0.15
+_UPSIDE_DOWN_RAD = np.pi / 2
+
+
+def start_values(
+    views: Sequence[BoardView], board: CalibrationBoard, image_size: tuple[int, int], modes: int
+) -> tuple[list[BoardView], BundleState]:
+    """Views in a consistent corner order, and a start for the adjustment.
+
+    Raises ``CalibrationCamerasSwapped``, ``CalibrationCameraUpsideDown`` or ``PairsInconsistent``.
+    """
+    if board.symmetric:
+        views = [_same_direction(view, board) for view in views]
+    left, left_T_board = _single_camera([view.left for view in views], board, image_size)
+    right, right_T_board = _single_camera([view.right for view in views], board, image_size)
+    relative = [r @ np.linalg.inv(a) for a, r in zip(left_T_board, right_T_board, strict=True)]
+    rotation, translation_m = _common_pose([view.name for view in views], np.stack(relative))
+    return list(views), BundleState(
+        left,
+        right,
+        rotation,
+        translation_m,
+        np.zeros(modes),
+        np.stack([pose[:3, :3] for pose in left_T_board]),
+        np.stack([pose[:3, 3] for pose in left_T_board]),
+    )
+
+
+def _single_camera(
+    images: Sequence[Corners], board: CalibrationBoard, image_size: tuple[int, int]
+) -> tuple[Array, list[Array]]:
+    """Nine numbers of the camera and camera_T_board as 4x4 matrices."""
+    flat = board.corners_m
+    points = [flat[corners.ids].astype(np.float32) for corners in images]
+    pixels = [corners.pixels.astype(np.float32)[:, None, :] for corners in images]
+    try:
+        _, matrix, distortion, turns, shifts = cv2.calibrateCamera(
+            points, pixels, image_size, np.eye(3), np.zeros(5)
+        )
+    except cv2.error as error:
+        raise SolveFailed(f"start values of a camera: {error.err}") from error
+    poses = []
+    for turn, shift in zip(turns, shifts, strict=True):
+        pose = np.eye(4)
+        pose[:3, :3] = Rotation.from_rotvec(np.ravel(turn)).as_matrix()
+        pose[:3, 3] = np.ravel(shift)
+        poses.append(pose)
+    k = np.asarray(matrix, dtype=float)
+    inner = [k[0, 0], k[1, 1], k[0, 2], k[1, 2]]
+    return np.concatenate([inner, np.ravel(distortion)[:5]]), poses
+
+
+def _common_pose(names: Sequence[str], relative: Array) -> tuple[Array, Array]:
+    """The pose right_T_left that the views agree on."""
+    rotations = Rotation.from_matrix(relative[:, :3, :3])
+    angles = np.stack([(rotations * one.inv()).magnitude() for one in rotations])
+    middle = rotations[int(np.argmin(np.median(angles, axis=1)))]
+    off_rad = (rotations * middle.inv()).magnitude()
+    translation_m = np.median(relative[off_rad <= np.median(off_rad), :3, 3], axis=0)
+    off_m = np.linalg.norm(relative[:, :3, 3] - translation_m, axis=1)
+    baseline_m = float(np.linalg.norm(translation_m))
+    bad = (off_rad > _MAX_SPREAD_RAD) | (off_m > _MAX_SPREAD_OF_BASELINE * baseline_m)
+    if bad.mean() > 0.3:
+        worst = ", ".join(np.asarray(names)[bad][:8])
+        raise PairsInconsistent(f"{bad.sum()} of {len(names)} pairs disagree: {worst}")
+    if middle.magnitude() > _UPSIDE_DOWN_RAD:
+        raise CalibrationCameraUpsideDown(
+            f"the cameras appear turned by {np.degrees(middle.magnitude()):.0f}° to each other"
+        )
+    if translation_m[0] > 0 and abs(translation_m[0]) > np.abs(translation_m[1:]).max():
+        raise CalibrationCamerasSwapped(
+            f"the right camera would stand {translation_m[0] * 1e3:.1f} mm left of the left one"
+        )
+    rotation: Array = middle.as_matrix()
+    return rotation, translation_m
+
+
+def _same_direction(view: BoardView, board: CalibrationBoard) -> BoardView:
+    """Give the right image of a symmetric board the corner order of the left one."""
+    left, right = (_row_direction(c, board) for c in (view.left, view.right))
+    if left @ right >= 0:
+        return view
+    last = board.columns * board.rows - 1
+    turned = Corners((last - view.right.ids)[::-1], view.right.pixels[::-1])
+    return replace(view, right=turned)
+
+
+def _row_direction(corners: Corners, board: CalibrationBoard) -> Array:
+    """Mean direction of the board's x axis in the image."""
+    column = corners.ids % board.columns
+    centred = column - column.mean()
+    direction: Array = centred @ (corners.pixels - corners.pixels.mean(axis=0))
+    return direction

@@ -1,0 +1,49 @@
+"""What the folder of calibrations holds, for operators: names, dates, and what is wrong."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from cellctl.calibration.store.envelope import StoredCalibration, read_calibration
+from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.errors import CellError
+
+
+@dataclass(frozen=True, slots=True)
+class InventoryEntry:
+    """One calibration; dates are None when it cannot be read."""
+
+    name: str
+    made: datetime | None
+    valid_until: datetime | None
+    problem: str
+    """Why it may not be used; empty when it may."""
+
+
+def inventory(store: CalibrationStore, now: datetime) -> tuple[InventoryEntry, ...]:
+    """Every kind that production requires, missing ones too, then all others that are there."""
+    return tuple(_entry(store, kind, now) for kind in _kinds(store))
+
+
+def _kinds(store: CalibrationStore) -> Iterator[CalibrationKind[Any]]:
+    required = {kind.name: kind for kind in store.kinds if kind.required and not kind.per_recipe}
+    yield from required.values()
+    for name in store.names():
+        if name not in required:
+            yield store.named(name)
+
+
+def _entry(store: CalibrationStore, kind: CalibrationKind[Any], now: datetime) -> InventoryEntry:
+    try:
+        stored = read_calibration(store.path, kind.name)
+    except CellError as error:
+        return InventoryEntry(kind.name, None, None, str(error))
+    return InventoryEntry(kind.name, stored.made, stored.valid_until, _problem(kind, stored, now))
+
+
+def _problem(kind: CalibrationKind[Any], stored: StoredCalibration, now: datetime) -> str:
+    if not kind.accepted(stored.record):
+        return "did not pass"
+    return "" if stored.valid_until > now else "expired"

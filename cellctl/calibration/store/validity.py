@@ -1,0 +1,63 @@
+"""How many hours calibrations stay valid, cheap enough to be asked at every update of the PLC."""
+
+from collections.abc import Callable
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+from cellctl.calibration.store.envelope import StoredCalibration, read_calibration
+from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.calibration.store.marker import marker
+from cellctl.errors import CellError
+
+Stamp = tuple[tuple[int, int], ...]
+"""Time of change and size of a calibration's files: changes when one changes, goes or appears."""
+
+
+class ValidityClock:
+    """Reads a calibration again only when its file or its marker has changed."""
+
+    def __init__(self, folder: Path, now: Callable[[], datetime]) -> None:
+        self._folder = folder
+        self._now = now
+        self._known: dict[str, tuple[Stamp, StoredCalibration | None]] = {}
+
+    def hours(self, kind: CalibrationKind[Any]) -> float:
+        """Hours that are left; 0 when the calibration may not be used. Never raises."""
+        stored = self._usable(kind)
+        now = self._now()
+        try:
+            if stored is None:
+                return 0.0
+            stored.require_past(now)
+        except CellError:
+            return 0.0  # the line learns "not valid"; who starts production gets the fault itself
+        return max(0.0, (stored.valid_until - now).total_seconds() / 3600)
+
+    def forget(self, name: str) -> None:
+        """Read this calibration again next time, although its files may look the same."""
+        # Two writes within the resolution of the file system's clock have the same stamp.
+        self._known.pop(name, None)
+
+    def _usable(self, kind: CalibrationKind[Any]) -> StoredCalibration | None:
+        files = (self._folder / f"{kind.name}.json", marker(self._folder, kind.name))
+        stamp = tuple(_changed(file) for file in files)
+        known = self._known.get(kind.name)
+        if known is None or known[0] != stamp:
+            known = self._known[kind.name] = stamp, self._read(kind)
+        return known[1]
+
+    def _read(self, kind: CalibrationKind[Any]) -> StoredCalibration | None:
+        try:
+            stored = read_calibration(self._folder, kind.name)
+        except CellError:
+            return None
+        return stored if kind.accepted(stored.record) else None
+
+
+def _changed(path: Path) -> tuple[int, int]:
+    try:
+        status = path.stat()
+    except OSError:
+        return 0, 0
+    return status.st_mtime_ns, status.st_size

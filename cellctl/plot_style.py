@@ -1,0 +1,78 @@
+"""One look for all figures: ink, one accent, limits in red, targets in green.
+
+Reports take SVG, calibrations PNG; both are drawn inside ``style()``, which also serves as a
+decorator of the function that draws.
+"""
+
+import io
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import matplotlib as mpl
+from cycler import cycler
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+INK, MUTED, GRID = "#1c2733", "#6b7785", "#dfe4ea"
+ACCENT, SECOND, THIRD = "#1f5fa8", "#c77d0a", "#7a8795"
+GOOD, GOOD_FILL, LIMIT = "#2b8a57", "#e3f3ea", "#c0342b"
+
+_SETTINGS: dict[Any, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.titlesize": 8.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelcolor": MUTED,
+    "axes.edgecolor": GRID,
+    "axes.grid": True,
+    "axes.prop_cycle": cycler(color=[ACCENT, SECOND, GOOD, THIRD, LIMIT, INK]),
+    "axes.axisbelow": True,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "grid.color": GRID,
+    "grid.linewidth": 0.6,
+    "text.color": INK,
+    "xtick.color": MUTED,
+    "ytick.color": MUTED,
+    "legend.frameon": False,
+    "svg.hashsalt": "cellctl",
+    "svg.fonttype": "path",
+}
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """The look, for the figures made inside."""
+    with mpl.rc_context(_SETTINGS):
+        yield
+
+
+def to_svg(figure: Figure) -> str:
+    """The figure as an ``<svg>`` element; the same figure gives the same text."""
+    FigureCanvasSVG(figure)
+    stream = io.StringIO()
+    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
+    svg = stream.getvalue()
+    size = re.compile(r'width="[\d.]+pt" height="[\d.]+pt"')
+    return size.sub('width="100%"', svg[svg.index("<svg") :], count=1)
+
+
+def label_line(axes: Axes, y: float, text: str, colour: str, *, dashed: bool = False) -> None:
+    """A horizontal line with its meaning written on it, at its left end."""
+    axes.axhline(y, color=colour, linewidth=1.0, linestyle=(0, (5, 3)) if dashed else "-", zorder=1)
+    axes.annotate(
+        text,
+        (0.0, y),
+        xycoords=("axes fraction", "data"),
+        xytext=(4, 2),
+        textcoords="offset points",
+        ha="left",
+        va="bottom",
+        color=colour,
+        fontsize=7,
+    )

@@ -1,0 +1,144 @@
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from cellctl.calibration.boards.board import CalibrationBoard, Charuco
+from cellctl.calibration.boards.board_images import BoardImages, detect_corners, detect_views
+from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
+from cellctl.errors.vision import ImageBlack, ImageSaturated
+
+BOARD = CalibrationBoard(9, 6, 0.025)
+CHARUCO = CalibrationBoard(9, 6, 0.025, Charuco("5X5_100", 0.018))
+SIZE = (1224, 1024)
+SQUARE_PX = 60
+Array = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+def view(number: int) -> Array:
+    """Homography from board pixels (SQUARE_PX a square, first corner at the origin) to image."""
+    rng = np.random.default_rng(number)
+    turn = np.radians(rng.uniform(-25, 25))
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    matrix = np.eye(3)
+    matrix[:2, :2] = rotation @ np.diag(rng.uniform(0.8, 1.1, 2))
+    matrix[2, :2] = rng.uniform(-2e-4, 2e-4, 2)
+    middle = matrix @ [4 * SQUARE_PX, 2.5 * SQUARE_PX, 1]
+    shift = np.eye(3)
+    shift[:2, 2] = np.array(SIZE) / 2 - middle[:2] / middle[2] + rng.uniform(-40, 40, 2)
+    return shift @ matrix
+
+
+def draw(board: CalibrationBoard, homography: Array, *, samples: int = 8) -> Image:
+    """A chessboard; each pixel is the mean of samples that lie on no common row or column."""
+    u, v = np.meshgrid(np.arange(SIZE[0], dtype=float), np.arange(SIZE[1], dtype=float))
+    back = np.linalg.inv(homography)
+    grey = np.zeros(u.shape)
+    for sample in range(samples):
+        du, dv = (sample + 0.5) / samples - 0.5, (sample * 0.618034) % 1 - 0.5
+        x, y, w = np.tensordot(back, np.stack([u + du, v + dv, np.ones_like(u)]), axes=1)
+        x, y = x / w / SQUARE_PX, y / w / SQUARE_PX
+        inside = (x > -1) & (x < board.columns) & (y > -1) & (y < board.rows)
+        dark = inside & ((np.floor(x) + np.floor(y)) % 2 == 0)
+        grey += np.where(dark, 40.0, 200.0) / samples
+    return np.clip(np.rint(cv2.GaussianBlur(grey, (0, 0), 1.0)), 0, 255).astype(np.uint8)
+
+
+def expected(board: CalibrationBoard, homography: Array) -> Array:
+    column, row = np.meshgrid(np.arange(board.columns), np.arange(board.rows))
+    points = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1) * SQUARE_PX
+    points[:, 2] = 1
+    moved = points @ homography.T
+    return moved[:, :2] / moved[:, 2:]
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_corners_are_sub_pixel_and_in_the_board_order(number: int) -> None:
+    homography = view(number)
+    corners = detect_corners(draw(BOARD, homography, samples=32), BOARD)
+    assert corners is not None
+    np.testing.assert_array_equal(corners.ids, np.arange(54))
+    assert np.abs(corners.pixels - expected(BOARD, homography)).max() < 0.05
+
+
+def test_order_follows_the_colours_when_the_camera_is_upside_down() -> None:
+    homography = view(1)
+    image = draw(BOARD, homography, samples=32)
+    corners = detect_corners(np.ascontiguousarray(image[::-1, ::-1]), BOARD)
+    assert corners is not None
+    upright = np.array(SIZE) - 1 - corners.pixels
+    assert np.abs(upright - expected(BOARD, homography)).max() < 0.05
+
+
+def test_charuco_in_part() -> None:
+    assert CHARUCO.charuco is not None
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_100)
+    pattern = cv2.aruco.CharucoBoard((10, 7), 0.025, 0.018, dictionary)
+    image = np.full((900, 900), 200, np.uint8)
+    drawn = cv2.resize(
+        pattern.generateImage((2000, 1400)), (1000, 700), interpolation=cv2.INTER_AREA
+    )
+    image[100:800, 50:] = drawn[:, :850]
+    corners = detect_corners(cv2.GaussianBlur(image, (0, 0), 1.0), CHARUCO)
+    assert corners is not None
+    assert 12 <= len(corners.ids) < 54
+    row, column = np.divmod(corners.ids, 9)
+    truth = np.stack([50 + 100 * (column + 1), 100 + 100 * (row + 1)], axis=1) - 0.5
+    assert np.abs(corners.pixels - truth).max() < 0.1
+
+
+def pairs(count: int = 3) -> list[BoardImages]:
+    images = [draw(BOARD, view(number), samples=4) for number in range(count)]
+    return [BoardImages(f"p{n}", image, image) for n, image in enumerate(images)]
+
+
+def test_pairs_without_the_board_are_named() -> None:
+    given = pairs()
+    plain = np.full((SIZE[1], SIZE[0]), 120, np.uint8)
+    given[1] = BoardImages("p1", given[1].left, plain)
+    found = detect_views(given, BOARD)
+    assert [one.name for one in found.views] == ["p0", "p2"]
+    assert found.not_found == ("p1",)
+    assert found.image_size == SIZE
+
+
+@pytest.mark.parametrize(
+    ("level", "fault"), [(0, ImageBlack), (255, ImageSaturated)], ids=["black", "saturated"]
+)
+def test_black_and_saturated_images_are_named(level: int, fault: type[Exception]) -> None:
+    given = pairs(2)
+    given[1] = BoardImages("p1", given[1].left, np.full((SIZE[1], SIZE[0]), level, np.uint8))
+    with pytest.raises(fault, match="p1 right"):
+        detect_views(given, BOARD)
+
+
+def test_mixed_sizes() -> None:
+    given = pairs(2)
+    given[1] = BoardImages("p1", given[1].left[:-8], given[1].right)
+    with pytest.raises(MixedImageSizes, match=r"1224 x 1024 \(p0 left\); 1224 x 1016 \(p1 left\)"):
+        detect_views(given, BOARD)
+
+
+def test_wrong_board_says_what_is_there() -> None:
+    with pytest.raises(WrongBoard, match=r"p0 shows 9 x 6 inner corners, not the 8 x 6"):
+        detect_views(pairs(1), CalibrationBoard(8, 6, 0.025))
+
+
+def test_chessboard_in_place_of_charuco() -> None:
+    with pytest.raises(WrongBoard, match="without a marker"):
+        detect_views(pairs(1), CHARUCO)
+
+
+def test_unknown_dictionary() -> None:
+    board = CalibrationBoard(9, 6, 0.025, Charuco("9X9_7", 0.018))
+    with pytest.raises(WrongBoard, match="9X9_7"):
+        detect_views(pairs(1), board)
+
+
+def test_no_board_at_all() -> None:
+    noise = np.random.default_rng(0).integers(80, 120, (400, 500)).astype(np.uint8)
+    with pytest.raises(BoardNotFound, match="no pair shows the 9 x 6 chessboard"):
+        detect_views([BoardImages("p0", noise, noise)], BOARD)
+    with pytest.raises(TooFewViews):
+        detect_views([], BOARD)

@@ -1,0 +1,201 @@
+import json
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.stats import chi2
+
+from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
+    HandEyePose,
+    HandEyeResult,
+    RobotNoise,
+    Setup,
+)
+from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
+from cellctl.errors.calibration import BoardPoseInvalid, PosesNotDiverse, RobotCameraMismatch
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.vision.camera import project
+from cellctl.vision.stereo_head import CameraModel
+
+Array = NDArray[np.float64]
+CAMERA = CameraModel(
+    np.array([[3580.0, 0, 1224], [0, 3580, 995], [0, 0, 1]]),
+    np.array([-0.07, 0.17, 4e-4, -3e-4, 0.0]),
+)
+BOARD_M = np.array([[x, y, 0.0] for y in range(8) for x in range(11)]) * 0.015 - [0.075, 0.052, 0]
+FLANGE_T_CAMERA = pose_from_xyzabc([60, -20, 90, 10, 5, -3])
+BASE_T_BOARD = pose_from_xyzabc([1500, 100, 200, 20, 0, 0])
+NOISE = RobotNoise(5e-5, float(np.radians(0.005)))
+SIGMA_PX = 0.1
+
+
+def small(rng: np.random.Generator, position_m: float, rotation_rad: float) -> RigidTransform:
+    turn = Rotation.from_rotvec(rng.normal(0, rotation_rad, 3))
+    return RigidTransform.from_components(rng.normal(0, position_m, 3), turn)
+
+
+def random_view(rng: np.random.Generator) -> RigidTransform:
+    """Board about 500 mm ahead, z towards the camera, tilted up to 30°."""
+    tilt = Rotation.from_euler("xyz", rng.uniform(-30, 30, 3), degrees=True)
+    facing = Rotation.from_euler("x", 180, degrees=True)
+    shift = [*rng.uniform(-0.05, 0.05, 2), rng.uniform(0.45, 0.55)]
+    return RigidTransform.from_components(np.array(shift), tilt * facing)
+
+
+def disturbed(rng: np.random.Generator, base_T_flange: RigidTransform) -> RigidTransform:
+    """What the robot reports: errors of position and angle in the axes of its base."""
+    error = small(rng, NOISE.position_m, NOISE.rotation_rad)
+    return RigidTransform.from_components(
+        base_T_flange.translation + error.translation, error.rotation * base_T_flange.rotation
+    )
+
+
+def make_poses(seed: int, setup: Setup, count: int = 20) -> list[HandEyePose]:
+    """X = FLANGE_T_CAMERA, Z = BASE_T_BOARD, or the same numbers for the other setup."""
+    rng = np.random.default_rng(seed)
+    poses = []
+    for number in range(count):
+        seen = random_view(rng)
+        if setup is Setup.EYE_IN_HAND:
+            base_T_flange = BASE_T_BOARD * seen.inv() * FLANGE_T_CAMERA.inv()
+        else:
+            base_T_flange = FLANGE_T_CAMERA * seen * BASE_T_BOARD.inv()
+        pixels = project(CAMERA, seen.apply(BOARD_M)) + rng.normal(0, SIGMA_PX, (88, 2))
+        measured, _ = board_in_camera(CAMERA, BOARD_M, pixels, SIGMA_PX)
+        poses.append(HandEyePose(f"pose {number}", disturbed(rng, base_T_flange), measured))
+    return poses
+
+
+def errors(result: HandEyeResult) -> Array:
+    return np.concatenate(pose_error(FLANGE_T_CAMERA, result.camera.pose))
+
+
+@pytest.fixture(scope="module")
+def in_hand() -> list[HandEyeResult]:
+    return [
+        calibrate_hand_eye(make_poses(seed, Setup.EYE_IN_HAND), Setup.EYE_IN_HAND, noise=NOISE)
+        for seed in range(12)
+    ]
+
+
+def rms(values: Array) -> tuple[float, float]:
+    """3-D rms: metres, radians."""
+    squares = (values**2).mean(axis=0)
+    return float(np.sqrt(squares[:3].sum())), float(np.sqrt(squares[3:].sum()))
+
+
+def test_accuracy_against_the_closed_form(in_hand: list[HandEyeResult]) -> None:
+    position_m, rotation_rad = rms(np.stack([errors(result) for result in in_hand]))
+    assert position_m < 8e-5
+    assert np.degrees(rotation_rad) < 0.01
+    closed = []
+    for seed in range(12):
+        poses = make_poses(seed, Setup.EYE_IN_HAND)
+        x, _, _ = closed_form(
+            [pose.base_T_flange for pose in poses], [pose.camera_T_board.pose for pose in poses]
+        )
+        closed.append(np.concatenate(pose_error(FLANGE_T_CAMERA, x)))
+    assert position_m < rms(np.stack(closed))[0]
+
+
+def test_covariance_is_honest(in_hand: list[HandEyeResult]) -> None:
+    total = sum(
+        float(errors(result) @ np.linalg.solve(result.camera.covariance, errors(result)))
+        for result in in_hand
+    )
+    band = chi2(6 * len(in_hand)).interval(0.999)
+    assert 0.7 * band[0] < total < band[1]
+    assert all(result.passed and not result.warnings for result in in_hand)
+
+
+def test_eye_to_hand() -> None:
+    results = [
+        calibrate_hand_eye(make_poses(seed, Setup.EYE_TO_HAND), Setup.EYE_TO_HAND, noise=NOISE)
+        for seed in range(3)
+    ]
+    for result in results:
+        assert np.abs(errors(result)[:3]).max() < 3e-4
+        board = np.concatenate(pose_error(BASE_T_BOARD, result.board.pose))
+        assert np.degrees(np.abs(board[3:]).max()) < 0.03
+        assert result.chi2_ratio == pytest.approx(1, abs=0.5)
+
+
+def test_wrong_setup_is_told_from_the_right_one() -> None:
+    poses = make_poses(0, Setup.EYE_TO_HAND)
+    with pytest.raises(RobotCameraMismatch, match="the data fit eye-to-hand"):
+        calibrate_hand_eye(poses, Setup.EYE_IN_HAND)
+
+
+def test_wrong_angle_convention() -> None:
+    poses = [
+        HandEyePose(
+            pose.name,
+            RigidTransform.from_components(
+                pose.base_T_flange.translation,
+                Rotation.from_euler("xyz", pose.base_T_flange.rotation.as_euler("ZYX")),
+            ),
+            pose.camera_T_board,
+        )
+        for pose in make_poses(0, Setup.EYE_IN_HAND)
+    ]
+    with pytest.raises(RobotCameraMismatch, match="off by"):
+        calibrate_hand_eye(poses, Setup.EYE_IN_HAND)
+
+
+def test_gross_error_is_named_and_left_out() -> None:
+    poses = make_poses(0, Setup.EYE_IN_HAND)
+    wrong = poses[4].base_T_flange * small(np.random.default_rng(9), 2e-3, 2e-3)
+    poses[4] = HandEyePose(poses[4].name, wrong, poses[4].camera_T_board)
+    result = calibrate_hand_eye(poses, Setup.EYE_IN_HAND, noise=NOISE)
+    assert result.rejected == ("pose 4",)
+    assert any("pose 4" in warning for warning in result.warnings)
+    assert np.abs(errors(result)[:3]).max() < 3e-4
+
+
+def test_poses_must_differ() -> None:
+    poses = make_poses(0, Setup.EYE_IN_HAND)
+    with pytest.raises(PosesNotDiverse, match="3 poses"):
+        calibrate_hand_eye(poses[:3], Setup.EYE_IN_HAND)
+    with pytest.raises(PosesNotDiverse, match="turn by 3°"):
+        calibrate_hand_eye([poses[0]] * 8, Setup.EYE_IN_HAND)
+    about_z = []
+    for angle in np.linspace(-40, 40, 10):
+        turn = pose_from_xyzabc([0, 0, 0, angle, 0, 0])
+        base_T_flange = turn * poses[0].base_T_flange
+        seen = FLANGE_T_CAMERA.inv() * base_T_flange.inv() * BASE_T_BOARD
+        exact = UncertainPose(seen, poses[0].camera_T_board.covariance)
+        about_z.append(HandEyePose(f"{angle:.0f}°", base_T_flange, exact))
+    with pytest.raises(PosesNotDiverse, match="one direction only"):
+        calibrate_hand_eye(about_z, Setup.EYE_IN_HAND)
+
+
+def test_record_and_picture(in_hand: list[HandEyeResult]) -> None:
+    result = in_hand[0]
+    again = HandEyeResult.from_record(json.loads(json.dumps(result.to_record())))
+    np.testing.assert_allclose(
+        again.camera.pose.as_matrix(), result.camera.pose.as_matrix(), atol=1e-12
+    )
+    assert again.setup is result.setup
+    assert again.checks == result.checks
+    assert hand_eye_picture(again).startswith(b"\x89PNG")
+
+
+def test_pnp_covariance_matches_its_scatter() -> None:
+    rng = np.random.default_rng(1)
+    truth = random_view(rng)
+    clean = project(CAMERA, truth.apply(BOARD_M))
+    total = 0.0
+    for _ in range(100):
+        pose, residual = board_in_camera(CAMERA, BOARD_M, clean + rng.normal(0, 0.2, clean.shape))
+        error = np.concatenate(pose_error(truth, pose.pose))
+        total += float(error @ np.linalg.solve(pose.covariance, error))
+        assert residual == pytest.approx(0.2 * np.sqrt(2), rel=0.3)
+    band = chi2(600).interval(0.999)
+    assert band[0] < total < band[1] * 1.02  # the noise is estimated, so the tail is a bit longer
+    with pytest.raises(BoardPoseInvalid):
+        board_in_camera(CAMERA, BOARD_M[:5], clean[:5])

@@ -1,0 +1,253 @@
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+from scipy.stats import chi2
+
+from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, Corners
+from cellctl.calibration.boards.projection import camera_vector
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.solvers.stereo.stereo_validation import intersect_rays
+from cellctl.errors.calibration import (
+    CalibrationCamerasSwapped,
+    CalibrationCameraUpsideDown,
+    PairsInconsistent,
+    PoorCoverage,
+    TooFewViews,
+)
+from cellctl.geometry.pose import Array
+from cellctl.vision.camera import project, undistort
+from cellctl.vision.stereo_head import StereoHead
+from tests.unit.calibration.solvers.stereo.synthetic import (
+    BOARD,
+    IMAGE_SIZE,
+    make_views,
+    table_1_head,
+    volume_points,
+)
+
+SEEDS = range(4)
+TRUTH = table_1_head()
+
+
+def errors_m(head: StereoHead) -> tuple[float, float]:
+    """Rms error of points in the working volume: absolute, and without the common offset."""
+    points = volume_points()
+    right_points = points @ TRUTH.rotation.T + TRUTH.translation_m
+    left = undistort(head.left, project(TRUTH.left, points))
+    right = undistort(head.right, project(TRUTH.right, right_points))
+    off = intersect_rays(left, right, head.rotation, head.translation_m) - points
+    relative = off - off.mean(axis=0)
+    return tuple(float(np.sqrt((e**2).sum(axis=1).mean())) for e in (off, relative))  # type: ignore[return-value]
+
+
+def parameter_errors(head: StereoHead) -> Array:
+    turn = Rotation.from_matrix(head.rotation @ TRUTH.rotation.T).as_rotvec()
+    left = camera_vector(head.left) - camera_vector(TRUTH.left)
+    right = camera_vector(head.right) - camera_vector(TRUTH.right)
+    return np.concatenate([left, right, turn, head.translation_m - TRUTH.translation_m])
+
+
+def calibrations(sag_m: float, shape: BoardShape) -> list[StereoResult]:
+    return [
+        calibrate_stereo(
+            make_views(np.random.default_rng(seed), 30, sag_m=sag_m), BOARD, IMAGE_SIZE, shape=shape
+        )
+        for seed in SEEDS
+    ]
+
+
+@pytest.fixture(scope="module")
+def flat() -> list[StereoResult]:
+    return calibrations(0.0, BoardShape.BENT)
+
+
+@pytest.fixture(scope="module")
+def bowed() -> list[StereoResult]:
+    return calibrations(5e-5, BoardShape.BENT)
+
+
+def rms(results: list[StereoResult]) -> Array:
+    return np.sqrt(np.mean([np.square(errors_m(result.head)) for result in results], axis=0))
+
+
+def test_bow_costs_nothing_when_the_board_is_released(
+    flat: list[StereoResult], bowed: list[StereoResult]
+) -> None:
+    rigid_flat = calibrations(0.0, BoardShape.RIGID)
+    assert (rms(bowed) < 1.3 * rms(flat)).all()
+    assert (rms(bowed) < 1.3 * rms(rigid_flat)).all(), "nor against a board known to be flat"
+    assert rms(flat)[1] < 6e-6
+
+
+def test_bow_ruins_a_rigid_board_without_showing_in_the_residuals(
+    bowed: list[StereoResult],
+) -> None:
+    rigid = calibrations(5e-5, BoardShape.RIGID)
+    assert rms(rigid)[0] > 5 * rms(bowed)[0]
+    assert all(result.head.rms_px < 0.1 and result.passed for result in rigid)
+
+
+def test_flatness_of_the_board_is_found(
+    flat: list[StereoResult], bowed: list[StereoResult]
+) -> None:
+    for result in flat:
+        assert result.flatness_m < 8e-6
+    for result in bowed:
+        assert result.flatness_m == pytest.approx(5e-5, abs=5e-6)
+
+
+def test_covariance_matches_the_scatter(
+    flat: list[StereoResult], bowed: list[StereoResult]
+) -> None:
+    total = 0.0
+    for result in (*flat, *bowed):
+        assert result.head.covariance is not None
+        error = parameter_errors(result.head)
+        scale = np.sqrt(np.diag(result.head.covariance))
+        scaled = result.head.covariance / np.outer(scale, scale)
+        total += float((error / scale) @ np.linalg.solve(scaled, error / scale))
+    # The two sets share seeds, so only half of the freedom is independent.
+    band = chi2(24 * len(SEEDS)).interval(0.999)
+    assert band[0] < total / 2 < band[1]
+
+
+def test_noise_and_residuals_are_reported(bowed: list[StereoResult]) -> None:
+    for result in bowed:
+        assert result.sigma_px == pytest.approx(0.05, rel=0.05)
+        assert result.head.rms_px == pytest.approx(0.05 * np.sqrt(2), rel=0.05)
+        assert result.passed
+        assert result.validation is not None
+        # One corner triangulated from two views with 0.05 px: 20 to 30 µm, mostly in depth.
+        assert 1.5e-5 < result.validation.held_out_m < 4e-5
+        assert result.validation.difference_m < 8e-6
+
+
+def test_print_with_another_aspect_ratio_needs_the_free_board() -> None:
+    flat_m = BOARD.corners_m
+    views = make_views(np.random.default_rng(3), 30)
+    wrong = [_stretch(view, flat_m, 1e-4) for view in views]
+    bent = calibrate_stereo(wrong, BOARD, IMAGE_SIZE)
+    free = calibrate_stereo(wrong, BOARD, IMAGE_SIZE, shape=BoardShape.FREE)
+    aspect = np.ptp(free.board_m[:, 0]) / np.ptp(flat_m[:, 0]) - np.ptp(
+        free.board_m[:, 1]
+    ) / np.ptp(flat_m[:, 1])
+    assert aspect == pytest.approx(1e-4, abs=2e-5)
+    assert free.sigma_px < bent.sigma_px
+
+
+def _stretch(view: BoardView, flat_m: Array, ratio: float) -> BoardView:
+    """Move the corners as if the board were longer by ``ratio`` along x."""
+
+    def moved(corners: Corners) -> Corners:
+        homography, *_ = np.linalg.lstsq(
+            np.column_stack([_cubic(flat_m[corners.ids])]), corners.pixels, rcond=None
+        )
+        longer = flat_m[corners.ids] * [1 + ratio, 1, 1]
+        shift = _cubic(longer) @ homography - _cubic(flat_m[corners.ids]) @ homography
+        return Corners(corners.ids, corners.pixels + shift)
+
+    return BoardView(view.name, moved(view.left), moved(view.right))
+
+
+def _cubic(points: Array) -> Array:
+    x, y = points[:, 0] / 0.1, points[:, 1] / 0.1
+    return np.column_stack([x**i * y**j for i in range(4) for j in range(4 - i)])
+
+
+def test_bad_view_is_named_and_left_out() -> None:
+    rng = np.random.default_rng(11)
+    views = make_views(rng, 24)
+    noisy = views[7].left.pixels + rng.normal(0, 0.5, views[7].left.pixels.shape)
+    views[7] = replace(views[7], left=Corners(views[7].left.ids, noisy))
+    result = calibrate_stereo(views, BOARD, IMAGE_SIZE)
+    assert [view.name for view in result.views if not view.used] == ["view-07"]
+    assert any("view-07" in warning for warning in result.warnings)
+    assert result.sigma_px == pytest.approx(0.05, rel=0.1)
+
+
+def test_record_survives_json(bowed: list[StereoResult]) -> None:
+    result = bowed[0]
+    again = StereoResult.from_record(json.loads(json.dumps(result.to_record())))
+    np.testing.assert_allclose(again.head.translation_m, result.head.translation_m, rtol=1e-12)
+    np.testing.assert_allclose(again.head.covariance, result.head.covariance, rtol=1e-9)
+    np.testing.assert_allclose(again.board_m, result.board_m, rtol=1e-12, atol=1e-15)
+    assert again.checks == result.checks
+    assert again.views == result.views
+    assert again.board == result.board
+
+
+def test_swapped_cameras() -> None:
+    views = make_views(np.random.default_rng(0), 12)
+    swapped = [BoardView(view.name, view.right, view.left) for view in views]
+    with pytest.raises(CalibrationCamerasSwapped, match="left of the left one"):
+        calibrate_stereo(swapped, BOARD, IMAGE_SIZE)
+
+
+def test_one_camera_upside_down() -> None:
+    views = make_views(np.random.default_rng(0), 12)
+    turned = [replace(v, right=_turned_image(v.right)) for v in views]
+    with pytest.raises(CalibrationCameraUpsideDown, match=r"turned by 1[5-9]"):
+        calibrate_stereo(turned, BOARD, IMAGE_SIZE)
+
+
+def _turned_image(corners: Corners) -> Corners:
+    return Corners(corners.ids, np.array(IMAGE_SIZE) - 1 - corners.pixels)
+
+
+def test_mixed_up_pairs() -> None:
+    views = make_views(np.random.default_rng(0), 12)
+    mixed = [
+        replace(view, right=other.right)
+        for view, other in zip(views, [*views[1:], views[0]], strict=True)
+    ]
+    with pytest.raises(PairsInconsistent, match="view-00"):
+        calibrate_stereo(mixed, BOARD, IMAGE_SIZE)
+
+
+def test_too_few_views() -> None:
+    views = make_views(np.random.default_rng(0), 5)
+    with pytest.raises(TooFewViews, match=r"5 usable views, at least 8 needed: view-00"):
+        calibrate_stereo(views, BOARD, IMAGE_SIZE)
+
+
+def test_views_that_leave_the_borders_out() -> None:
+    small = CalibrationBoard(5, 4, 0.006)
+    views = [
+        view
+        for view in make_views(np.random.default_rng(0), 60, board=small)
+        if (np.abs(view.left.pixels.mean(axis=0) - np.array(IMAGE_SIZE) / 2) < 500).all()
+    ]
+    with pytest.raises(PoorCoverage, match="image cells"):
+        calibrate_stereo(views[:12], small, IMAGE_SIZE)
+
+
+def test_boards_that_always_face_the_camera() -> None:
+    head = table_1_head()
+    flat = BOARD.corners_m
+    views = []
+    for number, x in enumerate(np.linspace(-0.04, 0.04, 12)):
+        points = flat + np.array([x, x / 2, 0.45 + 0.008 * number])
+        sides = []
+        for model, inside in (
+            (head.left, points),
+            (head.right, points @ head.rotation.T + head.translation_m),
+        ):
+            sides.append(Corners(np.arange(len(flat)), project(model, inside)))
+        views.append(BoardView(f"view-{number}", *sides))
+    with pytest.raises(PoorCoverage, match="tilt of the board"):
+        calibrate_stereo(views, BOARD, IMAGE_SIZE)
+
+
+def test_symmetric_board_is_matched_between_the_cameras() -> None:
+    board = CalibrationBoard(12, 10, 0.016)
+    views = make_views(np.random.default_rng(2), 16, board=board)
+    last = board.columns * board.rows - 1
+    flipped = [
+        replace(v, right=Corners((last - v.right.ids)[::-1], v.right.pixels[::-1])) for v in views
+    ]
+    result = calibrate_stereo(flipped, board, IMAGE_SIZE)
+    assert result.sigma_px == pytest.approx(0.05, rel=0.1)

@@ -1,0 +1,116 @@
+"""One file of the folder: what is written is what is read, and nothing that was changed."""
+
+import json
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.errors.calibration import (
+    CalibrationExpired,
+    CalibrationMissing,
+    CalibrationRecordInvalid,
+)
+from cellctl.processes.deck_to_frame.calibrations import (
+    BASE_FRAME,
+    BOARD_TRANSFER,
+    CALIBRATIONS,
+    STEREO_HEAD_1,
+    STEREO_HEAD_2,
+)
+from cellctl.processes.deck_to_frame.geometry import CalibrationSet
+from tests.unit.calibration.solvers.base_frame import test_base_frame
+from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
+from tests.unit.calibration.solvers.transfer import test_board_transfer
+
+MADE = datetime(2026, 11, 21, 8, tzinfo=UTC)
+UNTIL = MADE + timedelta(days=180)
+GEOMETRY = (STEREO_HEAD_1, STEREO_HEAD_2, BASE_FRAME, BOARD_TRANSFER)
+
+
+def read_all(folder: Path, until: datetime = MADE) -> CalibrationSnapshot:
+    return CalibrationStore(folder, CALIBRATIONS, lambda: MADE).read_all(GEOMETRY, until)
+
+
+@pytest.fixture(scope="module")
+def head() -> StereoResult:
+    return calibrate_stereo(make_views(np.random.default_rng(0), 10), BOARD, IMAGE_SIZE)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, head: StereoResult) -> Path:
+    results = (head, head, test_base_frame.calibrate(0), test_board_transfer.calibrate(0))
+    for kind, result in zip(GEOMETRY, results, strict=True):
+        record, serial = result.to_record(), f"SN-{kind.name}"
+        write_stored(tmp_path, StoredCalibration(kind.name, record, MADE, UNTIL, "cellctl", serial))
+    return tmp_path
+
+
+def test_what_is_written_is_what_production_reads(folder: Path, head: StereoResult) -> None:
+    snapshot = read_all(folder)
+    found = CalibrationSet.of(snapshot)
+    first, second = found.heads
+    np.testing.assert_allclose(first.translation_m, head.head.translation_m, rtol=1e-12)
+    np.testing.assert_allclose(second.covariance, head.head.covariance, rtol=1e-9)
+    transfer = test_board_transfer.calibrate(0)
+    np.testing.assert_allclose(
+        found.c1_T_c2.pose.as_matrix(), transfer.c1_T_c2.pose.as_matrix(), atol=1e-12
+    )
+    np.testing.assert_allclose(found.base_T_c1.covariance, transfer.base_T_c1.covariance, rtol=1e-9)
+    np.testing.assert_allclose(found.base_T_c2.covariance, transfer.base_T_c2.covariance, rtol=1e-9)
+    assert found.c_T_base.sigma.shape == (6,)
+    assert set(snapshot.ids) == {kind.name for kind in GEOMETRY}
+    assert all(len(one) == 64 for one in snapshot.ids.values())
+
+
+def test_envelope(folder: Path) -> None:
+    stored = read_calibration(folder, "head_1")
+    assert stored.made == MADE
+    assert stored.valid_until == UNTIL
+    assert stored.software == "cellctl"
+    assert stored.serial_number == "SN-head_1"
+    assert STEREO_HEAD_1.accepted(stored.record)
+    assert not list(folder.glob(".*")), "no draft is left behind"
+
+
+def test_same_result_has_the_same_identity(folder: Path) -> None:
+    assert read_calibration(folder, "head_1").id == read_calibration(folder, "head_2").id
+
+
+def test_changed_file_is_refused(folder: Path) -> None:
+    path = folder / "base_frame.json"
+    data = json.loads(path.read_text())
+    data["record"]["c_T_base"]["matrix_mm"][0][3] += 1e-6
+    path.write_text(json.dumps(data))
+    with pytest.raises(CalibrationRecordInvalid, match="does not match its id"):
+        read_all(folder)
+
+
+def test_file_under_another_name_is_refused(folder: Path) -> None:
+    (folder / "board_transfer.json").write_text((folder / "base_frame.json").read_text())
+    with pytest.raises(CalibrationRecordInvalid):
+        read_all(folder)
+
+
+@pytest.mark.parametrize("content", ["", "{}", "[1]", '{"kind": "head_1"'])
+def test_damaged_file(folder: Path, content: str) -> None:
+    (folder / "head_1.json").write_text(content)
+    with pytest.raises(CalibrationRecordInvalid, match=r"head_1\.json"):
+        read_all(folder)
+
+
+def test_missing_file(folder: Path) -> None:
+    (folder / "head_2.json").unlink()
+    with pytest.raises(CalibrationMissing, match="head_2"):
+        read_all(folder)
+
+
+def test_expired(folder: Path) -> None:
+    with pytest.raises(CalibrationExpired, match=r"head_1 \(2027-05-20\)"):
+        read_all(folder, UNTIL)

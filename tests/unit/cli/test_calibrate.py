@@ -1,0 +1,279 @@
+"""`cellctl calibrate …` from files, as a user would call it."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+from click.testing import Result
+from scipy.spatial.transform import RigidTransform
+from typer.testing import CliRunner
+
+from cellctl.calibration.pose_record import covariance_to_written
+from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
+from cellctl.cli.calibrate import app
+from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
+from cellctl.errors.config import FileInvalid
+from cellctl.geometry.pose import MM, pose_to_xyzabc
+from cellctl.vision.stereo_head import read_stereo_head
+from fakes.render import api
+from fakes.world.scene import LensTruth, SceneChessboard, StereoTruth
+from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case
+from tests.unit.calibration.solvers.hand_eye import test_hand_eye as hand_eye_case
+from tests.unit.calibration.solvers.tool import test_tool as tool_case
+from tests.unit.calibration.solvers.transfer import test_board_transfer as transfer_case
+
+
+def call(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def written(pose: RigidTransform) -> list[float]:
+    return pose_to_xyzabc(pose).tolist()
+
+
+def save(path: Path, data: object) -> Path:
+    path.write_text(json.dumps(data))
+    return path
+
+
+def hand_eye_file(folder: Path, **extra: Any) -> Path:
+    poses = hand_eye_case.make_poses(0, hand_eye_case.Setup.EYE_IN_HAND)
+    entries = [
+        {
+            "base_T_flange": written(pose.base_T_flange),
+            "camera_T_board": written(pose.camera_T_board.pose),
+            "covariance_mm_deg": covariance_to_written(pose.camera_T_board.covariance).tolist(),
+        }
+        for pose in poses
+    ]
+    return save(folder / "he.json", {"setup": "eye-in-hand", "poses": entries, **extra})
+
+
+def test_hand_eye(tmp_path: Path) -> None:
+    out, picture = tmp_path / "out.json", tmp_path / "he.png"
+    result = call("hand-eye", "--in", hand_eye_file(tmp_path), "--out", out, "--picture", picture)
+    assert result.exit_code == 0, result.output
+    assert "flange_T_camera: X 6" in result.output
+    matrix = np.array(json.loads(out.read_text())["flange_T_camera"]["matrix_mm"])
+    truth = hand_eye_case.FLANGE_T_CAMERA
+    assert np.abs(matrix[:3, 3] - truth.translation / MM).max() < 0.3
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_hand_eye_from_corners(tmp_path: Path) -> None:
+    rng = np.random.default_rng(5)
+    entries = []
+    for _ in range(12):
+        seen = hand_eye_case.random_view(rng)
+        flange = hand_eye_case.BASE_T_BOARD * seen.inv() * hand_eye_case.FLANGE_T_CAMERA.inv()
+        pixels = hand_eye_case.project(hand_eye_case.CAMERA, seen.apply(hand_eye_case.BOARD_M))
+        noisy = pixels + rng.normal(0, 0.1, pixels.shape)
+        matrix = flange.as_matrix()
+        matrix[:3, 3] /= MM
+        entries.append({"base_T_flange": matrix.tolist(), "corners_px": noisy.tolist()})
+    camera = hand_eye_case.CAMERA
+    data = {
+        "setup": "eye-in-hand",
+        "camera": {
+            "camera_matrix": camera.camera_matrix.tolist(),
+            "distortion": camera.distortion.tolist(),
+        },
+        "board_points_mm": (hand_eye_case.BOARD_M / MM).tolist(),
+        "poses": entries,
+    }
+    result = call("hand-eye", "--in", save(tmp_path / "he.json", data))
+    assert result.exit_code == 0, result.output
+
+
+def test_setup_option_overrides_the_file(tmp_path: Path) -> None:
+    result = call("hand-eye", "--in", hand_eye_file(tmp_path), "--setup", "eye-to-hand")
+    assert result.exit_code == 1
+    assert "the data fit eye-in-hand" in str(result.exception)
+
+
+def stops(axis: list[AxisStop]) -> list[dict[str, Any]]:
+    return [
+        {
+            "joints_deg": np.degrees(stop.joints_rad).tolist(),
+            "targets": [
+                {"name": t.name, "position_mm": (t.position_m / MM).tolist(), "sigma_mm": 0.05}
+                for t in stop.targets
+            ],
+        }
+        for stop in axis
+    ]
+
+
+def base_frame_file(folder: Path, **extra: Any) -> Path:
+    rng = np.random.default_rng(0)
+    first, second = (stops(base_frame_case.sweep(rng, joint, 100)) for joint in (0, 1))
+    data = {"d1_mm": 1045, "a1_mm": 500, "a1": first, "a2": second, **extra}
+    return save(folder / "bf.json", data)
+
+
+def test_base_frame(tmp_path: Path) -> None:
+    out = tmp_path / "out.json"
+    result = call("base-frame", "--in", base_frame_file(tmp_path), "--out", out)
+    assert result.exit_code == 0, result.output
+    assert json.loads(out.read_text())["verdict"] == "pass"
+
+
+def test_result_beyond_its_limits_is_written_with_exit_code_3(tmp_path: Path) -> None:
+    out = tmp_path / "out.json"
+    result = call("base-frame", "--in", base_frame_file(tmp_path, a1_mm=450), "--out", out)
+    assert result.exit_code == 3
+    assert "FAIL  a1 against D-H 50" in result.output
+    assert json.loads(out.read_text())["verdict"] == "fail"
+
+
+def discs(rng: np.random.Generator, pose: RigidTransform, sigma_m: float) -> list[dict[str, Any]]:
+    points = transfer_case.board_points(rng, pose, np.full(3, sigma_m))
+    return [
+        {
+            "name": point.name,
+            "position_mm": (point.position_m / MM).tolist(),
+            "sigma_mm": sigma_m / MM,
+        }
+        for point in points
+    ]
+
+
+def test_transfer(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    case = transfer_case
+    data: dict[str, Any] = {"c_T_base": written(case.C_T_BASE)}
+    for key, base_T_head, seen in (
+        ("head_1", case.BASE_T_C1, case.C1_T_BOARD),
+        ("head_2", case.BASE_T_C2, case.C2_T_BOARD),
+    ):
+        large = discs(rng, case.C_T_BASE * base_T_head * seen, 1e-5)
+        data[key] = [{"large_field": large, "head": discs(rng, seen, 2e-6)}]
+    result = call("transfer", "--in", save(tmp_path / "t.json", data))
+    assert result.exit_code == 0, result.output
+    assert "C1_T_C2: X" in result.output
+
+
+def test_tool(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    data = {
+        "touching": [written(pose) for pose in tool_case.touching(rng, 5, 5e-5)],
+        "orienting": [written(pose) for pose in tool_case.orienting(rng, 5e-5)],
+    }
+    picture = tmp_path / "tool.png"
+    result = call("tool", "--in", save(tmp_path / "tool.json", data), "--picture", picture)
+    assert result.exit_code == 0, result.output
+    assert picture.exists()
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ("{", "is not JSON"),
+        ("[]", "one object"),
+        ("{}", "missing 'poses'"),
+        ('{"poses": 3}', "has no len"),
+        ('{"setup": "hand-in-eye", "poses": []}', "hand-in-eye"),
+        ('{"poses": [{"camera_T_board": [1]}]}', "poses, entry 1: missing 'base_T_flange'"),
+        ('{"poses": [{"base_T_flange": [1, 2]}]}', "entry 1: a pose is a 4 x 4 matrix"),
+        ('{"poses": []}', "--setup"),
+    ],
+)
+def test_files_that_are_wrong(tmp_path: Path, content: str, reason: str) -> None:
+    path = tmp_path / "he.json"
+    path.write_text(content)
+    result = call("hand-eye", "--in", path)
+    assert isinstance(result.exception, FileInvalid)
+    assert reason in str(result.exception)
+
+
+def test_file_that_is_not_there(tmp_path: Path) -> None:
+    result = call("tool", "--in", tmp_path / "none.json")
+    assert isinstance(result.exception, FileInvalid)
+    assert "No such file" in str(result.exception)
+
+
+def test_stereo_without_images(tmp_path: Path) -> None:
+    pattern = tmp_path / "left-*.png"
+    result = call("stereo", "--left", pattern, "--right", pattern, "--board", "9x6",
+                  "--square-mm", 25, "--out", tmp_path / "o.json")  # fmt: skip
+    assert isinstance(result.exception, FileInvalid)
+    assert "no file matches" in str(result.exception)
+
+
+@pytest.mark.parametrize("board", ["9", "9x", "axb", "2x2"])
+def test_stereo_with_an_impossible_board(tmp_path: Path, board: str) -> None:
+    result = call("stereo", "--left", "x", "--right", "x", "--board", board,
+                  "--square-mm", 25, "--out", tmp_path / "o.json")  # fmt: skip
+    assert result.exit_code == 2
+    assert "board" in result.output
+
+
+def half_size_head() -> StereoTruth:
+    """The nominal head with every second pixel: quick to render."""
+    full = api.nominal_head()
+    left, right = (
+        LensTruth(
+            (lens.focal_px[0] / 2, lens.focal_px[1] / 2),
+            (lens.centre_px[0] / 2, lens.centre_px[1] / 2),
+            lens.distortion,
+            lens.blur_px,
+            lens.gain,
+        )
+        for lens in (full.left, full.right)
+    )
+    return StereoTruth((1224, 1024), left, right, full.right_T_left)
+
+
+@pytest.fixture(scope="module")
+def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Twelve rendered pairs of a bowed 9 x 6 board."""
+    folder = tmp_path_factory.mktemp("stereo")
+    head, rng = half_size_head(), np.random.default_rng(4)
+    for number in range(12):
+        pose = api.facing_pose(
+            shift_m=(*rng.uniform(-0.04, 0.04, 2), rng.uniform(-0.03, 0.06)),
+            tilt_deg=(*rng.uniform(-25, 25, 2), rng.uniform(-180, 180)),
+        )
+        board = SceneChessboard(pose, (9, 6), 0.02, (0.22, 0.16), (5e-5, 3e-5), 1)
+        for side, image in zip(("l", "r"), api.render_pair(head, [board], rng=rng), strict=True):
+            cv2.imwrite(str(folder / f"{side}-{number:02d}.png"), image)
+    return folder
+
+
+def stereo(images: Path, out: Path, *more: object, board: str = "9x6") -> Result:
+    return call("stereo", "--left", images / "l-*.png", "--right", images / "r-*.png",
+                "--board", board, "--square-mm", 20, "--out", out, *more)  # fmt: skip
+
+
+def test_stereo_from_images(images: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "head.json", tmp_path / "head.png"
+    result = stereo(images, out, "--picture", picture)
+    assert result.exit_code == 0, result.output
+    head, truth = read_stereo_head(out), half_size_head()
+    assert head.image_size == (1224, 1024)
+    assert head.rms_px < 0.08
+    off = head.translation_m - truth.right_T_left.translation
+    assert np.abs(off).max() < 1e-4
+    assert head.covariance is not None
+    assert np.sqrt(np.diag(head.covariance)[21:]).max() < 1e-4
+    assert head.left.camera_matrix[0, 0] == pytest.approx(truth.left.focal_px[0], abs=2)
+    data = json.loads(out.read_text())
+    assert len(data["views"]) == 12
+    assert data["board_flatness_mm"] < 0.15
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_stereo_with_wrong_inputs(images: Path, tmp_path: Path) -> None:
+    out = tmp_path / "head.json"
+    result = stereo(images, out, board="8x6")
+    assert isinstance(result.exception, WrongBoard)
+    result = call("stereo", "--left", images / "r-*.png", "--right", images / "l-*.png",
+                  "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
+    assert isinstance(result.exception, CalibrationCamerasSwapped)
+    result = call("stereo", "--left", images / "l-0*.png", "--right", images / "r-*.png",
+                  "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
+    assert "10 left but 12 right images" in str(result.exception)
+    assert not out.exists()
