@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 
+_NOT_A_POSE = "a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C"
 _WRITTEN_UNITS = np.array([MM] * 3 + [np.pi / 180] * 3)
 
 
@@ -44,11 +45,14 @@ def covariance_from_written(covariance: Array) -> Array:
 
 def matrix_mm_to_pose(values: Any) -> RigidTransform:
     """A 4x4 matrix in mm, or X, Y, Z, A, B, C in mm and degrees; raises ``ValueError``."""
-    array = np.asarray(values, dtype=float)
+    try:
+        array = np.asarray(values, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(_NOT_A_POSE) from error
     if array.shape == (6,):
         return pose_from_xyzabc(array)
     if array.shape != (4, 4) or not np.isfinite(array).all():
-        raise ValueError("a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C")
+        raise ValueError(_NOT_A_POSE)
     rotation = array[:3, :3]
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0:
         raise ValueError("the rotation part of a pose is not a rotation")

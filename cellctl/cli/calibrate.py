@@ -16,22 +16,21 @@ from rich.console import Console
 from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charuco
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.checks import Checks
-from cellctl.calibration.input_files import (
-    read_base_frame,
-    read_hand_eye,
-    read_tool,
-    read_transfer,
-)
+from cellctl.calibration.input_file import read_input
 from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
+from cellctl.calibration.solvers.base_frame.base_frame_input import BaseFrameFile
 from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
 from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
+from cellctl.calibration.solvers.tool.tool_input import ToolFile
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
+from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.invalidate import invalidate
 from cellctl.cli.measure import read_image
@@ -108,11 +107,11 @@ def hand_eye(
     picture: Picture = None,
 ) -> None:
     """Camera on the flange (AX = XB) or beside the robot (CG = GD), from poses."""
-    data = read_hand_eye(file)
+    data = read_input(file, HandEyeFile)
     chosen = setup or data.setup
     if chosen is None:
         raise FileInvalid(f"{file}: missing 'setup'; give --setup eye-in-hand or eye-to-hand")
-    result = calibrate_hand_eye(data.poses, chosen, noise=data.noise)
+    result = calibrate_hand_eye(data.stops(), chosen, noise=data.robot_noise())
     in_hand = chosen is Setup.EYE_IN_HAND
     _show("flange_T_camera" if in_hand else "base_T_camera", result.camera)
     _show("base_T_board" if in_hand else "flange_T_board", result.board)
@@ -122,8 +121,9 @@ def hand_eye(
 @app.command("base-frame")
 def base_frame(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
     """Base of the robot in the large-field head, from turning A1 and A2."""
-    data = read_base_frame(file)
-    result = calibrate_base_frame(data.a1, data.a2, data.arm)
+    data = read_input(file, BaseFrameFile)
+    a1_stops, a2_stops = ([entry.stop() for entry in axis] for axis in (data.a1, data.a2))
+    result = calibrate_base_frame(a1_stops, a2_stops, data.arm())
     _show("C_T_B", result.c_T_base)
     _finish(result, result.warnings, out, picture, lambda: base_frame_picture(result))
 
@@ -131,8 +131,9 @@ def base_frame(file: InFile, out: OutFile = None, picture: Picture = None) -> No
 @app.command("transfer")
 def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
     """Heads I and II in the base by the target board (equations 1 to 3)."""
-    data = read_transfer(file)
-    result = calibrate_board_transfer(data.c_T_base, data.before_head_1, data.before_head_2)
+    data = read_input(file, TransferFile)
+    before_head_1, before_head_2 = (data.placements(one) for one in (data.head_1, data.head_2))
+    result = calibrate_board_transfer(data.base(), before_head_1, before_head_2)
     _show("B_T_C1", result.base_T_c1)
     _show("B_T_C2", result.base_T_c2)
     _show("C1_T_C2", result.c1_T_c2)
@@ -142,8 +143,8 @@ def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None
 @app.command("tool")
 def tool(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
     """Tool on the flange: four-point method, and three-point method if the file has it."""
-    data = read_tool(file)
-    result = calibrate_tool(data.touching, data.orienting, touch_sigma_m=data.touch_sigma_m)
+    data = read_input(file, ToolFile)
+    result = calibrate_tool(data.touching, data.orienting or (), touch_sigma_m=data.touch_sigma_m)
     _show("flange_T_tool", result.flange_T_tool)
     _finish(result, (), out, picture, lambda: tool_picture(result))
 

@@ -174,7 +174,7 @@ def test_tool(tmp_path: Path) -> None:
         ("{", "is not JSON"),
         ("[]", "one object"),
         ("{}", "missing 'poses'"),
-        ('{"poses": 3}', "has no len"),
+        ('{"poses": 3}', "should be a valid array, got 3 (key 'poses')"),
         ('{"setup": "hand-in-eye", "poses": []}', "hand-in-eye"),
         ('{"poses": [{"camera_T_board": [1]}]}', "poses, entry 1: missing 'base_T_flange'"),
         ('{"poses": [{"base_T_flange": [1, 2]}]}', "entry 1: a pose is a 4 x 4 matrix"),

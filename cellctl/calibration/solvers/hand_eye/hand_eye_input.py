@@ -1,0 +1,110 @@
+"""The input file of a hand-eye calibration."""
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Field, PlainValidator, model_validator
+
+from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.input_file import (
+    InputFile,
+    InputPoints,
+    InputPose,
+    InputPoseCovariance,
+    numbers,
+)
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
+from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.vision.stereo_head import CameraModel
+
+
+def _camera_matrix(values: Any) -> Array:
+    return numbers(values, (3, 3), "camera_matrix must be 3 x 3")
+
+
+def _distortion(values: Any) -> Array:
+    return numbers(values, (None,), "distortion must be a list of numbers")
+
+
+def _pixels(values: Any) -> Array:
+    return numbers(values, (None, 2), "corners_px must be a list of [u, v]")
+
+
+class HandEyeCamera(InputFile):
+    """The camera that saw the corners."""
+
+    camera_matrix: Annotated[Array, PlainValidator(_camera_matrix)]
+    distortion: Annotated[Array, PlainValidator(_distortion)] = Field(
+        default_factory=lambda: np.zeros(5)
+    )
+
+
+class HandEyeEntry(InputFile):
+    """One stop: the robot, and the board as a pose or by its corners."""
+
+    name: str | None = None
+    base_T_flange: InputPose
+    camera_T_board: InputPose | None = None
+    covariance_mm_deg: InputPoseCovariance | None = None
+    corners_px: Annotated[Array, PlainValidator(_pixels)] | None = None
+    board_points_mm: InputPoints | None = None
+
+    @model_validator(mode="after")
+    def _has_the_board(self) -> "HandEyeEntry":
+        if self.camera_T_board is None and self.corners_px is None:
+            raise ValueError("missing 'camera_T_board'")
+        return self
+
+
+class HandEyeFile(InputFile):
+    """The whole file."""
+
+    setup: Setup | None = None
+    poses: tuple[HandEyeEntry, ...]
+    robot_sigma_mm: float = 0.05
+    robot_sigma_deg: float = 0.005
+    camera_sigma_mm: float = 0.02
+    """For poses of the board without a covariance."""
+    camera_sigma_deg: float = 0.005
+    camera_sigma_px: float | None = None
+    """For corners; without it the noise that their residuals show."""
+    camera: HandEyeCamera | None = None
+    board_points_mm: InputPoints | None = None
+    """For entries without points of their own."""
+
+    @model_validator(mode="after")
+    def _corners_have_camera_and_board(self) -> "HandEyeFile":
+        for number, entry in enumerate(self.poses, start=1):
+            if entry.corners_px is None:
+                continue
+            if self.camera is None:
+                raise ValueError(f"poses, entry {number}: corners_px, but missing 'camera'")
+            if entry.board_points_mm is None and self.board_points_mm is None:
+                raise ValueError(f"poses, entry {number}: missing 'board_points_mm'")
+        return self
+
+    def robot_noise(self) -> RobotNoise:
+        """Of the reported flange poses."""
+        return RobotNoise(self.robot_sigma_mm * MM, float(np.radians(self.robot_sigma_deg)))
+
+    def stops(self) -> tuple[HandEyePose, ...]:
+        """What the solver takes; raises ``BoardPoseInvalid`` when corners give no pose."""
+        return tuple(
+            HandEyePose(entry.name or f"pose {number}", entry.base_T_flange, self._board(entry))
+            for number, entry in enumerate(self.poses, start=1)
+        )
+
+    def _board(self, entry: HandEyeEntry) -> UncertainPose:
+        """camera_T_board as given, or from corners."""
+        points_m = self.board_points_mm if entry.board_points_mm is None else entry.board_points_mm
+        if entry.corners_px is not None and self.camera is not None and points_m is not None:
+            camera = CameraModel(self.camera.camera_matrix, self.camera.distortion)
+            return board_in_camera(camera, points_m, entry.corners_px, self.camera_sigma_px)[0]
+        if entry.camera_T_board is None:
+            raise ValueError("an entry without pose and corners is no valid file")
+        covariance = entry.covariance_mm_deg
+        if covariance is None:
+            sigma_m, sigma_rad = self.camera_sigma_mm * MM, np.radians(self.camera_sigma_deg)
+            covariance = np.diag([sigma_m**2] * 3 + [sigma_rad**2] * 3)
+        return UncertainPose(entry.camera_T_board, covariance)
