@@ -1,0 +1,1 @@
+"""A camera on or beside a robot: closed form, then maximum likelihood."""

@@ -1,0 +1,1 @@
+"""A tool on a flange, from poses that touch points."""
