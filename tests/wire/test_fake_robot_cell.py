@@ -48,7 +48,7 @@ async def ask(port: int, **request: Any) -> dict[str, Any]:
     return reply
 
 
-async def test_cell_from_start_to_end():
+async def test_cell_from_start_to_end() -> None:
     async with running() as (process, ready):
         assert ready["ready"] is True
         ports = ready["ports"]
@@ -83,13 +83,13 @@ async def test_cell_from_start_to_end():
     assert process.returncode == 0
 
 
-async def test_shutdown_by_the_control_port():
+async def test_shutdown_by_the_control_port() -> None:
     async with running() as (process, ready):
         assert (await ask(ready["ports"]["control"], cmd="shutdown"))["status"] == "ok"
         assert await asyncio.wait_for(process.wait(), 15) == 0
 
 
-async def test_taken_port_is_said_and_ends_with_an_error():
+async def test_taken_port_is_said_and_ends_with_an_error() -> None:
     server = await asyncio.start_server(lambda _reader, writer: writer.close(), "127.0.0.1", 0)
     port = server.sockets[0].getsockname()[1]
     async with running(f"control={port}") as (process, ready):

@@ -35,7 +35,7 @@ def measuring(scenario: Scenario, seed: int) -> World:
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int):
+def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int) -> None:
     world = measuring(scenario, seed)
     for head in HEADS:
         scene = world.camera_scene(head)
@@ -57,7 +57,7 @@ def seen_holes(scenario: Scenario, head: HeadName, plate) -> np.ndarray:
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadName):
+def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadName) -> None:
     world = measuring(scenario, 1)
     board = scenario.chessboard
     half = (np.array(board.inner_corners) - 1) * board.square_mm / 2000
@@ -73,7 +73,9 @@ def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadN
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_all_discs_are_in_both_images_and_seen_from_above(scenario: Scenario, head: HeadName):
+def test_all_discs_are_in_both_images_and_seen_from_above(
+    scenario: Scenario, head: HeadName
+) -> None:
     world = measuring(scenario, 2)
     for number in range(10):
         world.place_target_board(head, number)
@@ -86,7 +88,7 @@ def test_all_discs_are_in_both_images_and_seen_from_above(scenario: Scenario, he
         assert names >= {f"P{index}" for index in range(1, 10)}
 
 
-def test_boards_stay_where_they_were_put(scenario: Scenario):
+def test_boards_stay_where_they_were_put(scenario: Scenario) -> None:
     world = measuring(scenario, 1)
     world.place_target_board("head_1", 0)
     before = world.placed.target_board
@@ -96,7 +98,7 @@ def test_boards_stay_where_they_were_put(scenario: Scenario):
     assert world.camera_scene("head_1").target_board is None
 
 
-def test_unmoved_scene_differs_in_noise_only(scenario: Scenario):
+def test_unmoved_scene_differs_in_noise_only(scenario: Scenario) -> None:
     world = measuring(scenario, 1)
     world.advance(world.time_s + 3)
     one, other = world.camera_scene("head_1"), world.camera_scene("head_1")
@@ -110,7 +112,7 @@ def same(one: RigidTransform, other: RigidTransform) -> bool:
     return bool((one.as_matrix() == other.as_matrix()).all())
 
 
-def test_nominal_rig_has_the_geometry_of_table_1(scenario: Scenario):
+def test_nominal_rig_has_the_geometry_of_table_1(scenario: Scenario) -> None:
     stereo = World(scenario, 1).truth.heads["head_1"].stereo
     assert np.linalg.norm(stereo.right_T_left.translation) == pytest.approx(0.179, abs=6e-4)
     angle_deg = np.rad2deg(stereo.right_T_left.rotation.magnitude())
