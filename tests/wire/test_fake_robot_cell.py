@@ -41,7 +41,7 @@ async def running(
 async def ask(port: int, **request: Any) -> dict[str, Any]:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     writer.write(json.dumps({"id": 7, **request}).encode() + b"\n")
-    reply = json.loads(await asyncio.wait_for(reader.readline(), 10))
+    reply: dict[str, Any] = json.loads(await asyncio.wait_for(reader.readline(), 10))
     writer.close()
     await writer.wait_closed()
     assert reply["id"] == 7
@@ -103,7 +103,7 @@ async def test_taken_port_is_said_and_ends_with_an_error() -> None:
 @pytest.mark.parametrize(
     "line", [b"not json\n", b"[1]\n", b'{"id": 1}\n', b'{"id": 1, "cmd": "measure", "frames": 0}\n']
 )
-async def test_target_server_answers_nonsense_with_an_error(line: bytes):
+async def test_target_server_answers_nonsense_with_an_error(line: bytes) -> None:
     from fakes.wire.target_server import TargetServer
 
     async def measure(frames: int) -> tuple[()]:

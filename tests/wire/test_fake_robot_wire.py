@@ -2,11 +2,12 @@
 
 import asyncio
 import time
+from types import CoroutineType
 
 import pytest
 
 from fakes.wire.sjl_controller_records import encode
-from tests.wire.fake_robot_pc import Pc, controller
+from tests.wire.fake_robot_pc import Line, Pc, controller
 
 WORK = (0, -85, 95, 0, 85, 90)
 
@@ -124,15 +125,17 @@ async def test_corrupt_record_keeps_its_old_sum() -> None:
             await asyncio.wait_for(_spoiled(sta), 2)
 
 
-async def _spoiled(line) -> None:
+async def _spoiled(line: Line) -> None:
     """Raises what the collector of the line met."""
     await next(task for task in asyncio.all_tasks() if _collects(task, line))
 
 
-def _collects(task: asyncio.Task, line) -> bool:
-    frame = task.get_coro().cr_frame
-    coroutine = task.get_coro().__qualname__
-    return coroutine == "Line.collect" and frame is not None and frame.f_locals["self"] is line
+def _collects(task: asyncio.Task[None], line: Line) -> bool:
+    coroutine = task.get_coro()
+    if not isinstance(coroutine, CoroutineType) or coroutine.__qualname__ != "Line.collect":
+        return False
+    frame = coroutine.cr_frame
+    return frame is not None and frame.f_locals["self"] is line
 
 
 @pytest.mark.parametrize("fault", ["silent", "half_open"])

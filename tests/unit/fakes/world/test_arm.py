@@ -2,16 +2,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Scenario
+from fakes.scenario import RobotName, Scenario
 from fakes.world.arm import OutOfReachError, forward, inverse, nominal_links, singular
 from fakes.world.frames import distance, from_written, to_written
 from fakes.world.truth import draw
 
-ROBOTS = ("main", "aux_1", "aux_2")
+ROBOTS: tuple[RobotName, ...] = ("main", "aux_1", "aux_2")
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_inverse_undoes_forward_over_the_whole_joint_space(scenario: Scenario, name: str) -> None:
+def test_inverse_undoes_forward_over_the_whole_joint_space(
+    scenario: Scenario, name: RobotName
+) -> None:
     chain, rng = scenario.robots[name].chain_mm, np.random.default_rng(1)
     low, high = np.deg2rad(np.array(scenario.robots[name].limits_deg)).T
     for _ in range(200):
@@ -21,7 +23,7 @@ def test_inverse_undoes_forward_over_the_whole_joint_space(scenario: Scenario, n
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_inverse_from_elsewhere_still_reaches_the_pose(scenario: Scenario, name: str) -> None:
+def test_inverse_from_elsewhere_still_reaches_the_pose(scenario: Scenario, name: RobotName) -> None:
     chain, rng = scenario.robots[name].chain_mm, np.random.default_rng(2)
     low, high = np.deg2rad(np.array(scenario.robots[name].limits_deg)).T
     for _ in range(100):

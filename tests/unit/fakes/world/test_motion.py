@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.scenario import Scenario
 from fakes.world.arm import forward, inverse, nominal_links
@@ -82,7 +82,5 @@ def test_joint_path_moves_all_joints_together() -> None:
     np.testing.assert_allclose(path.joints(1.0), [0.5, 1, 0, 0, 0, -0.5])
 
 
-def _turn(angle_rad: float):
-    from scipy.spatial.transform import Rotation
-
+def _turn(angle_rad: float) -> Rotation:
     return Rotation.from_euler("z", angle_rad)

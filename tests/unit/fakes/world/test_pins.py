@@ -61,7 +61,8 @@ def test_the_wall_holds_what_lies_beyond_the_clearance(
 ) -> None:
     payload = hanging(scenario)
     along = np.array([np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))])
-    force = settled(payload, at(*(0.08 * along), 1.0))[:3]
+    x_mm, y_mm = 0.08 * along
+    force = settled(payload, at(x_mm, y_mm, 1.0))[:3]
     expected_n = ARM_N_M * 0.03e-3
     assert force[:2] @ along == pytest.approx(-expected_n, rel=0.07)
     assert abs(force[2]) < 0.1

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import HeadName, Scenario
-from fakes.world.scene import LensTruth, StereoTruth
+from fakes.scenario import HeadName, RobotName, Scenario
+from fakes.world.scene import LensTruth, ScenePlate, StereoTruth
 from fakes.world.world import World
 from tests.unit.fakes.world.driving import to_taught
 
@@ -13,7 +13,7 @@ HEADS: tuple[HeadName, ...] = ("head_1", "head_2")
 
 
 def project(lens: LensTruth, points: np.ndarray) -> np.ndarray:
-    return points[:, :2] / points[:, 2:] * lens.focal_px + lens.centre_px
+    return np.asarray(points[:, :2] / points[:, 2:] * lens.focal_px + lens.centre_px)
 
 
 def in_both(stereo: StereoTruth, points: np.ndarray, margin_px: float) -> bool:
@@ -29,7 +29,12 @@ def in_both(stereo: StereoTruth, points: np.ndarray, margin_px: float) -> bool:
 
 def measuring(scenario: Scenario, seed: int) -> World:
     world = World(scenario, seed)
-    for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
+    stations: tuple[tuple[RobotName, str], ...] = (
+        ("aux_1", "measure"),
+        ("aux_2", "measure"),
+        ("main", "clear"),
+    )
+    for robot, pose in stations:
         to_taught(world, robot, pose)
     return world
 
@@ -50,10 +55,10 @@ def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int) -> Non
         assert in_both(scene.stereo, seen_holes(scenario, head, scene.deck), 150)
 
 
-def seen_holes(scenario: Scenario, head: HeadName, plate) -> np.ndarray:
+def seen_holes(scenario: Scenario, head: HeadName, plate: ScenePlate) -> np.ndarray:
     names = scenario.heads[head].sees
     places = [[*hole.position_m, 0.0] for hole in plate.holes if hole.name in names]
-    return plate.camera_T_part.apply(np.array(places))
+    return np.asarray(plate.camera_T_part.apply(np.array(places)))
 
 
 @pytest.mark.parametrize("head", HEADS)
