@@ -55,7 +55,7 @@ def _sensor(kind: str, phase: MatingPhase) -> Hook:
 
 def _world_fault(name: str, **parameters: float) -> Callable[[MatingCell], None]:
     def prepare(cell: MatingCell) -> None:
-        cell.world.faults.inject(name, **parameters)
+        cell.world.faults.inject(name, count=None, **parameters)
         cell.world.rebuild()
 
     return prepare

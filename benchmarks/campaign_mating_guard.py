@@ -78,7 +78,7 @@ class WorldGuard:
 
     def _sample(self, time_s: float, raw: Array, saturated: bool) -> None:  # noqa: FBT001
         self._number += 1
-        sample = WrenchSample(time_s, time_s, self._number, *raw.tolist(), saturated)
+        sample = WrenchSample._make((time_s, time_s, self._number, *raw.tolist(), saturated))
         wrench = np.array(self._monitor.sample(sample))
         self._last = GuardSample(time_s, time_s, self._number, wrench, raw, 0.0)
         self._kept[self._number - 1] = (time_s, *wrench, *raw)

@@ -9,13 +9,14 @@ from cellctl.errors.link import LinkLost, StaleData
 from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, StopFailed
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import Robot, RobotMode, RobotState
+from fakes.scenario import Channel
 from fakes.wire.sjl_controller_logic import Controller, Record
 
 SESSION = 1
 REPORT_S = 0.02
 POLL_S = 0.005
 MOVE_TIMEOUT_S = 120.0
-CHANNELS = ("CMD", "STA", "GRD")
+CHANNELS: tuple[Channel, ...] = ("CMD", "STA", "GRD")
 
 
 class WorldRobot(Robot):

@@ -87,7 +87,9 @@ async def _guard_process(pipe: Connection, sensor_port: int, guard_port: int, lo
         client.newest()
     ends.set()
     stop.set()
-    for worker in (*threads, *pool):
+    for thread in threads:
+        thread.join(10)
+    for worker in pool:
         worker.join(10)
     await client.stop()
 

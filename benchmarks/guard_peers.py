@@ -8,7 +8,7 @@ import random
 import select
 import socket
 import time
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, wait
 
 import numpy as np
 
@@ -37,7 +37,7 @@ def box(pipe: Connection) -> None:
         while True:
             due_s = session.due_s
             wait_s = 0.1 if due_s is None else max(0.0, due_s - time.monotonic())
-            ready = select.select([client, pipe], [], [], wait_s)[0]
+            ready = wait([client, pipe], wait_s)
             if pipe in ready:
                 word = pipe.recv()
                 if word == "end":
@@ -66,7 +66,7 @@ def robot(pipe: Connection, port: int) -> None:
     with link:
         while True:
             wait_s = max(0.0, report_s - time.monotonic())
-            ready = select.select([link, pipe], [], [], wait_s)[0]
+            ready = wait([link, pipe], wait_s)
             if link in ready:
                 data = link.recv(4096)
                 now_s = time.monotonic()

@@ -101,7 +101,9 @@ class StallMonitor:
         return np.array(sorted(rows)).reshape(-1, 2)
 
 
-def touched(begin_s: NDArray[np.float64], end_s: NDArray[np.float64], stalls: Stalls) -> NDArray:
+def touched(
+    begin_s: NDArray[np.float64], end_s: NDArray[np.float64], stalls: Stalls
+) -> NDArray[np.bool_]:
     """Which intervals overlap a stall."""
     if len(stalls) == 0:
         return np.zeros(len(begin_s), bool)

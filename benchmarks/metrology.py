@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import islice
+from typing import Literal
 
 import cv2
 from rich.console import Console
@@ -114,7 +115,7 @@ def add_holes(
 
 
 def both(
-    kind: str,
+    kind: Literal["frame", "deck"],
     options: api.RenderOptions,
     arguments: argparse.Namespace,
     contrast: dict[str, float],
@@ -227,7 +228,8 @@ def main() -> int:
     verdicts = Verdicts(table)
     clean = api.RenderOptions.clean(noise_grey=NOISE_GREY)
     judge_clean(both("deck", clean, arguments, CLEAN_GREY), verdicts)
-    for kind in ("deck", "frame"):
+    kinds: tuple[Literal["frame", "deck"], ...] = ("deck", "frame")
+    for kind in kinds:
         machined = both(kind, api.RenderOptions(), arguments, MACHINED_GREY)
         judge_machined(f"machined {kind}", machined, verdicts)
     judge_times(next(parts("deck", clean, 1, 1)), verdicts)

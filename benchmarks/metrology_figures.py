@@ -60,7 +60,7 @@ class HoleErrors:
 
     @property
     def norms_px(self) -> Array:
-        return np.linalg.norm(self.along_px, axis=1)
+        return np.asarray(np.linalg.norm(self.along_px, axis=1))
 
     def median_ratio(self) -> float:
         """Median error over the median that the bound allows for two coordinates."""
@@ -97,11 +97,11 @@ class PoseErrors:
 
     def position_um(self) -> Array:
         """Rms by axis at the part's origin, the middle between the heads."""
-        return np.sqrt(np.mean(np.square(self.translation_m), axis=0)) * 1e6
+        return np.asarray(np.sqrt(np.mean(np.square(self.translation_m), axis=0)) * 1e6)
 
     def rotation_deg(self) -> Array:
         """Rms by axis."""
-        return np.degrees(np.sqrt(np.mean(np.square(self.rotation_rad), axis=0)))
+        return np.asarray(np.degrees(np.sqrt(np.mean(np.square(self.rotation_rad), axis=0))))
 
 
 def _squared(error: Array, covariance: Array) -> float:

@@ -1,6 +1,7 @@
 """Rendered parts with known truth, seen by one or two heads, for the metrology benchmark."""
 
 from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 
@@ -12,28 +13,34 @@ from cellctl.vision.stereo_head import CameraModel, StereoHead
 from fakes.render import api
 from fakes.world.scene import LensTruth, ScenePlate, StereoTruth
 
+HEADS: tuple[Literal[1, 2], ...] = (1, 2)
 HEAD_HOLES = (("P1", "P2", "P3"), ("P4", "P5", "P6"))
 
 
 def parts(
-    kind: str, options: api.RenderOptions, plates: int, exposures: int, *, seed: int = 0
+    kind: Literal["frame", "deck"],
+    options: api.RenderOptions,
+    plates: int,
+    exposures: int,
+    *,
+    seed: int = 0,
 ) -> Iterator[PartView]:
     """Plates at random poses within the cell's tolerance, each exposed several times."""
     for number in range(plates):
         rng = np.random.default_rng([seed, number])
         blur_px = float(rng.uniform(0.95, 1.05))
         stereo = api.nominal_head(blur_px=blur_px)
-        tilt_deg = tuple(rng.uniform([-2.0, -2.0, -3.0], [2.0, 2.0, 3.0]))
-        shift_m = tuple(rng.uniform(-6e-3, 6e-3, 3))
+        tilt_x_deg, tilt_y_deg, tilt_z_deg = rng.uniform([-2.0, -2.0, -3.0], [2.0, 2.0, 3.0])
+        x_m, y_m, z_m = rng.uniform(-6e-3, 6e-3, 3)
         plates_seen = [
             api.nominal_plate(
-                kind,  # type: ignore[arg-type]
-                head=head,  # type: ignore[arg-type]
-                tilt_deg=tilt_deg,  # type: ignore[arg-type]
-                shift_m=shift_m,  # type: ignore[arg-type]
+                kind,
+                head=head,
+                tilt_deg=(tilt_x_deg, tilt_y_deg, tilt_z_deg),
+                shift_m=(x_m, y_m, z_m),
                 seed=number + 1,
             )
-            for head in (1, 2)
+            for head in HEADS
         ]
         clean = [
             api.clean_pair(stereo, [plate], options, light_seed=2 * number + head)

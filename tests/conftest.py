@@ -26,7 +26,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("cell")
 
 
-class CellsOneByOne(LoadScopeScheduling):
+class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no types
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
     This matters when pytest is called by hand with several workers; `make test` gives them one.

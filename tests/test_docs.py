@@ -5,6 +5,7 @@ import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import click
 import pytest
@@ -177,7 +178,7 @@ def test_cheap_commands_run() -> None:
     "app", [cellctl_app, fakes_app, demo_app, plc_app], ids=["cellctl", "fakes", "demo", "plc"]
 )
 def test_every_command_explains_itself(app: typer.Typer) -> None:
-    def explain(command: click.Command, path: list[str]) -> None:
+    def explain(command: Any, path: list[str]) -> None:
         for child, inner in getattr(command, "commands", {}).items():
             explain(inner, [*path, child])
         if "help_option_names" not in command.context_settings:  # those hand on to another program

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Channel, Scenario, load
-from fakes.wire.sjl_controller_logic import Controller, Outbox
+from fakes.wire.sjl_controller_logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.wire.scenarios import as_on_a_real_cell
@@ -28,7 +28,9 @@ class Bench:
         self.controller.opened("CMD", 11, 0.0)
         self.controller.opened("STA", 12, 0.0)
 
-    def send(self, word: str, values: str = "", *, seq: int | None = None, session: int = 11):
+    def send(
+        self, word: str, values: str = "", *, seq: int | None = None, session: int = 11
+    ) -> list[Record]:
         if seq is None:
             self.seq += 1
             seq = self.seq

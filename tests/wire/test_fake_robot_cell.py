@@ -41,14 +41,14 @@ async def running(
 async def ask(port: int, **request: Any) -> dict[str, Any]:
     reader, writer = await asyncio.open_connection("127.0.0.1", port)
     writer.write(json.dumps({"id": 7, **request}).encode() + b"\n")
-    reply = json.loads(await asyncio.wait_for(reader.readline(), 10))
+    reply: dict[str, Any] = json.loads(await asyncio.wait_for(reader.readline(), 10))
     writer.close()
     await writer.wait_closed()
     assert reply["id"] == 7
     return reply
 
 
-async def test_cell_from_start_to_end():
+async def test_cell_from_start_to_end() -> None:
     async with running() as (process, ready):
         assert ready["ready"] is True
         ports = ready["ports"]
@@ -83,13 +83,13 @@ async def test_cell_from_start_to_end():
     assert process.returncode == 0
 
 
-async def test_shutdown_by_the_control_port():
+async def test_shutdown_by_the_control_port() -> None:
     async with running() as (process, ready):
         assert (await ask(ready["ports"]["control"], cmd="shutdown"))["status"] == "ok"
         assert await asyncio.wait_for(process.wait(), 15) == 0
 
 
-async def test_taken_port_is_said_and_ends_with_an_error():
+async def test_taken_port_is_said_and_ends_with_an_error() -> None:
     server = await asyncio.start_server(lambda _reader, writer: writer.close(), "127.0.0.1", 0)
     port = server.sockets[0].getsockname()[1]
     async with running(f"control={port}") as (process, ready):
@@ -103,7 +103,7 @@ async def test_taken_port_is_said_and_ends_with_an_error():
 @pytest.mark.parametrize(
     "line", [b"not json\n", b"[1]\n", b'{"id": 1}\n', b'{"id": 1, "cmd": "measure", "frames": 0}\n']
 )
-async def test_target_server_answers_nonsense_with_an_error(line: bytes):
+async def test_target_server_answers_nonsense_with_an_error(line: bytes) -> None:
     from fakes.wire.target_server import TargetServer
 
     async def measure(frames: int) -> tuple[()]:

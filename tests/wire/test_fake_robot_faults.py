@@ -22,7 +22,7 @@ def bench() -> Bench:
 )
 def test_panel_aborts_a_motion_and_keeps_out_the_next(
     bench: Bench, fault: str, reason: str, panel: str
-):
+) -> None:
     bench.send("MOVL", f"{bench.pose(-100)},20,200")
     bench.run(0.5)
     bench.faults.inject(fault)
@@ -33,7 +33,7 @@ def test_panel_aborts_a_motion_and_keeps_out_the_next(
     assert bench.send("REARM")[0] == ["ACK", "5"]
 
 
-def test_emergency_stop_mid_move(bench: Bench):
+def test_emergency_stop_mid_move(bench: Bench) -> None:
     bench.faults.inject("emergency_stop_mid_move", after_s=0.3)
     bench.send("MOVL", f"{bench.pose(-100)},20,200")
     assert words(bench.run(1.0))[0] == ("CMD", "ABRT", "2", "ESTOP")
@@ -41,7 +41,7 @@ def test_emergency_stop_mid_move(bench: Bench):
     assert bench.send("REARM") == [["REJ", "3", "ESTOP"]]
 
 
-def test_injected_rejects_and_aborts_act_as_often_as_told(bench: Bench):
+def test_injected_rejects_and_aborts_act_as_often_as_told(bench: Bench) -> None:
     bench.faults.inject("reject", count=1, reason="LOAD")
     assert bench.send("MOVL", f"{bench.pose(-1)},20,200") == [["REJ", "2", "LOAD"]]
     bench.faults.inject("abort", count=1, reason="ERROR", after_s=0.1)
@@ -49,7 +49,7 @@ def test_injected_rejects_and_aborts_act_as_often_as_told(bench: Bench):
     assert words(bench.run(1.0))[0] == ("CMD", "ABRT", "3", "ERROR")
 
 
-def test_stop_request_overheard_once(bench: Bench):
+def test_stop_request_overheard_once(bench: Bench) -> None:
     bench.faults.inject("ignore_stop", count=1)
     bench.send("MOVL", f"{bench.pose(-100)},20,200")
     bench.run(0.5)
@@ -59,7 +59,7 @@ def test_stop_request_overheard_once(bench: Bench):
     assert words(bench.run(0.5))[0] == ("CMD", "ABRT", "2", "STOP")
 
 
-def test_slow_stop(bench: Bench):
+def test_slow_stop(bench: Bench) -> None:
     bench.faults.inject("stop_latency", latency_s=0.5)
     bench.send("MOVL", f"{bench.pose(-100)},20,200")
     bench.run(0.5)
@@ -68,7 +68,7 @@ def test_slow_stop(bench: Bench):
     assert len(bench.run(0.2)) == 2
 
 
-def test_swallowed_command_moves_nothing(bench: Bench):
+def test_swallowed_command_moves_nothing(bench: Bench) -> None:
     bench.faults.inject("never_ack", count=1)
     before = bench.pose(0)
     assert bench.send("MOVL", f"{bench.pose(-10)},50,200") == []
@@ -76,18 +76,18 @@ def test_swallowed_command_moves_nothing(bench: Bench):
     assert bench.pose(0) == before
 
 
-def test_unreported_end(bench: Bench):
+def test_unreported_end(bench: Bench) -> None:
     bench.faults.inject("never_done", count=1)
     assert bench.send("MOVL", f"{bench.pose(-1)},50,200") == [["ACK", "2"]]
     assert bench.run(2.0) == []
     assert bench.send("MOVL", f"{bench.pose(-1)},50,200") == [["ACK", "3"]]
 
 
-def test_no_motion_at_override_zero(bench: Bench):
+def test_no_motion_at_override_zero(bench: Bench) -> None:
     bench.faults.inject("override_zero")
     assert bench.send("MOVL", f"{bench.pose(-1)},50,200") == [["REJ", "2", "SPEED"]]
 
 
-def test_unknown_fault_names_are_refused():
+def test_unknown_fault_names_are_refused() -> None:
     with pytest.raises(ValueError, match="knows no fault"):
         FaultBoard("main").inject("gremlins")

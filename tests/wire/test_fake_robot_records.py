@@ -27,17 +27,17 @@ GOLDEN = [
 ]
 
 
-def test_document_has_golden_records():
+def test_document_has_golden_records() -> None:
     assert len(GOLDEN) == 14
 
 
 @pytest.mark.parametrize("record", GOLDEN)
-def test_golden_records_both_ways(record: str):
+def test_golden_records_both_ways(record: str) -> None:
     fields = decode(record.encode())
     assert encode(fields) == record.encode() + b"\n"
 
 
-def test_golden_pose_and_joints():
+def test_golden_pose_and_joints() -> None:
     pose = from_written([1900, -0.125, 927, 90, 0, 180])
     assert (
         ",".join(pose_fields(pose.as_matrix()))
@@ -60,12 +60,12 @@ def test_golden_pose_and_joints():
         b"ACK,1*2C ",
     ],
 )
-def test_spoiled_records_are_refused(line: bytes):
+def test_spoiled_records_are_refused(line: bytes) -> None:
     with pytest.raises(RecordError):
         decode(line)
 
 
-def test_carriage_return_is_ignored():
+def test_carriage_return_is_ignored() -> None:
     assert decode(b"ACK,1*2C\r") == ["ACK", "1"]
 
 
@@ -73,24 +73,24 @@ def test_carriage_return_is_ignored():
     ("value", "text"),
     [(-0.00001, "0.0000"), (0.0, "0.0000"), (-0.00006, "-0.0001"), (12, "12.0000")],
 )
-def test_no_negative_zero(value: float, text: str):
+def test_no_negative_zero(value: float, text: str) -> None:
     assert fixed(value, 4) == text
 
 
 @pytest.mark.parametrize("text", ["1e3", "+1", "nan", "inf", "", "-", ".", "1.2.3", "0x1", "1 "])
-def test_numbers_are_plain_fixed_point(text: str):
+def test_numbers_are_plain_fixed_point(text: str) -> None:
     with pytest.raises(RecordError):
         number(text)
 
 
 @pytest.mark.parametrize("text", ["-1", "1.0", "", "²"])
-def test_integers_are_plain(text: str):
+def test_integers_are_plain(text: str) -> None:
     with pytest.raises(RecordError):
         integer(text)
 
 
 @given(st.binary(max_size=300))
-def test_any_bytes_are_a_record_or_an_error(line: bytes):
+def test_any_bytes_are_a_record_or_an_error(line: bytes) -> None:
     try:
         fields = decode(line)
     except RecordError:
@@ -98,6 +98,6 @@ def test_any_bytes_are_a_record_or_an_error(line: bytes):
     assert encode(fields)[:-1] == line.removesuffix(b"\r")
 
 
-def test_record_longer_than_255_bytes_is_refused():
+def test_record_longer_than_255_bytes_is_refused() -> None:
     with pytest.raises(RecordError):
         encode(["X" * 252])

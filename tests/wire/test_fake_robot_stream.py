@@ -62,7 +62,7 @@ def stream() -> StreamBench:
     return StreamBench()
 
 
-def test_ticks_come_at_their_period_from_the_beginning(stream: StreamBench):
+def test_ticks_come_at_their_period_from_the_beginning(stream: StreamBench) -> None:
     ticks = stream.run(5)
     assert [tick[1] for tick in ticks] == ["1", "2", "3", "4", "5"]
     times = np.diff([int(tick[2]) for tick in ticks])
@@ -72,7 +72,7 @@ def test_ticks_come_at_their_period_from_the_beginning(stream: StreamBench):
     assert distance(stream.start, reached)[0] < 2e-7
 
 
-def test_the_arm_follows_at_most_a_step_a_tick(stream: StreamBench):
+def test_the_arm_follows_at_most_a_step_a_tick(stream: StreamBench) -> None:
     heights = []
     stream.run()
     for number in range(1, 21):
@@ -86,7 +86,7 @@ def test_the_arm_follows_at_most_a_step_a_tick(stream: StreamBench):
     assert stream.height_mm() == pytest.approx(2.0, abs=1e-4)
 
 
-def test_a_lost_setpoint_is_counted_and_its_way_is_never_run_faster(stream: StreamBench):
+def test_a_lost_setpoint_is_counted_and_its_way_is_never_run_faster(stream: StreamBench) -> None:
     stream.run()
     stream.set(0.1)
     stream.run(3)  # two ticks without a setpoint
@@ -100,7 +100,7 @@ def test_a_lost_setpoint_is_counted_and_its_way_is_never_run_faster(stream: Stre
     assert stream.height_mm() == pytest.approx(0.3, abs=1e-4)
 
 
-def test_late_and_repeated_setpoints_are_counted(stream: StreamBench):
+def test_late_and_repeated_setpoints_are_counted(stream: StreamBench) -> None:
     stream.run(3)
     stream.set(0.1, number=2)  # its tick has passed
     (tick,) = stream.run()
@@ -113,14 +113,14 @@ def test_late_and_repeated_setpoints_are_counted(stream: StreamBench):
     assert tick[3:5] == ["6", "2"]
 
 
-def test_a_setpoint_for_a_later_tick_is_a_violation(stream: StreamBench):
+def test_a_setpoint_for_a_later_tick_is_a_violation(stream: StreamBench) -> None:
     stream.run(2)
     with pytest.raises(RecordError):
         stream.set(0.1, number=4)
 
 
 @pytest.mark.parametrize(("dz_mm", "number"), [(0.11, 2), (-0.11, 2), (0.32, 4), (40.0, 4)])
-def test_a_setpoint_too_far_away_ends_the_stream(dz_mm: float, number: int):
+def test_a_setpoint_too_far_away_ends_the_stream(dz_mm: float, number: int) -> None:
     stream = StreamBench()
     stream.run(number - 1)
     stream.set(dz_mm, number)
@@ -129,7 +129,7 @@ def test_a_setpoint_too_far_away_ends_the_stream(dz_mm: float, number: int):
     assert stream.controller.latched
 
 
-def test_a_setpoint_that_turns_too_far_ends_the_stream(stream: StreamBench):
+def test_a_setpoint_that_turns_too_far_ends_the_stream(stream: StreamBench) -> None:
     stream.run()
     x, y, z = stream.start.translation * 1000
     fields = f"SET,11,2,{x:.4f},{y:.4f},{z:.4f},90.06,0,180".split(",")
@@ -137,7 +137,7 @@ def test_a_setpoint_that_turns_too_far_ends_the_stream(stream: StreamBench):
     assert stream.end() == ["ABRT", "2", "STEP"]
 
 
-def test_travel_is_limited():
+def test_travel_is_limited() -> None:
     stream = StreamBench("0.1,0.05,0.25,5,200")
     stream.run()
     for dz_mm in (0.1, 0.2):
@@ -148,7 +148,7 @@ def test_travel_is_limited():
     assert stream.height_mm() == pytest.approx(0.2, abs=1e-3)
 
 
-def test_out_of_reach_ends_the_stream():
+def test_out_of_reach_ends_the_stream() -> None:
     stream = StreamBench()
     stream.start = from_written([5000, 0, 900, 90, 0, 180])
     stream.controller._motion.stream._setpoint = stream.start  # type: ignore[union-attr]
@@ -158,7 +158,7 @@ def test_out_of_reach_ends_the_stream():
     assert far.end() == ["ABRT", "2", "REACH"]
 
 
-def test_without_setpoints_the_stream_ends_in_its_time(stream: StreamBench):
+def test_without_setpoints_the_stream_ends_in_its_time(stream: StreamBench) -> None:
     stream.run()
     stream.set(0.1)
     stream.run()
@@ -170,7 +170,7 @@ def test_without_setpoints_the_stream_ends_in_its_time(stream: StreamBench):
     assert stream.bench.send("REARM")[0] == ["ACK", "4"]
 
 
-def test_finish_ends_without_a_latch(stream: StreamBench):
+def test_finish_ends_without_a_latch(stream: StreamBench) -> None:
     stream.run()
     stream.set(0.1)
     stream.run(2)
@@ -185,7 +185,7 @@ def test_finish_ends_without_a_latch(stream: StreamBench):
 
 
 @pytest.mark.parametrize("channel", ["STA", "GRD"])
-def test_a_stop_ends_the_stream_after_the_dead_time_of_the_controller(channel: str):
+def test_a_stop_ends_the_stream_after_the_dead_time_of_the_controller(channel: str) -> None:
     stream = StreamBench()
     stream.controller.opened("GRD", 13, stream.bench.time_s)
     stream.bench.beating.add("GRD")
@@ -208,7 +208,7 @@ def test_a_stop_ends_the_stream_after_the_dead_time_of_the_controller(channel: s
     assert stream.controller.latched
 
 
-def test_a_missed_heartbeat_ends_the_stream(stream: StreamBench):
+def test_a_missed_heartbeat_ends_the_stream(stream: StreamBench) -> None:
     stream.run()
     stream.bench.beating.clear()
     for _ in range(100):
@@ -219,7 +219,7 @@ def test_a_missed_heartbeat_ends_the_stream(stream: StreamBench):
     assert stream.ended[0][:3] == ["ABRT", "2", "DEADMAN"]
 
 
-def test_emergency_stop_ends_the_stream(stream: StreamBench):
+def test_emergency_stop_ends_the_stream(stream: StreamBench) -> None:
     stream.run()
     stream.bench.faults.inject("emergency_stop")
     assert stream.end() == ["ABRT", "2", "ESTOP"]
@@ -230,7 +230,7 @@ def test_emergency_stop_ends_the_stream(stream: StreamBench):
     ["0.11,0.05,30,5,200", "0.1,0.06,30,5,200", "0.1,0.05,31,5,200", "0.1,0.05,30,6,200",
      "0.1,0.05,30,5,201", "0,0.05,30,5,200", "0.1,0.05,30,5,0"],
 )  # fmt: skip
-def test_more_than_is_offered_is_rejected(asked: str):
+def test_more_than_is_offered_is_rejected(asked: str) -> None:
     bench = at_work()
     bench.controller.offer = StreamOffer()
     assert bench.send("STREAM", asked) == [["REJ", "2", "STREAM"]]
@@ -238,11 +238,11 @@ def test_more_than_is_offered_is_rejected(asked: str):
     assert bench.send("MOVL", f"{bench.pose(-5)},50,200") == [["REJ", "4", "BUSY"]]
 
 
-def test_a_job_program_without_the_option_rejects():
+def test_a_job_program_without_the_option_rejects() -> None:
     assert at_work().send("STREAM", ASKED) == [["REJ", "2", "STREAM"]]
 
 
-def test_setpoints_without_a_stream_are_passed_over():
+def test_setpoints_without_a_stream_are_passed_over() -> None:
     bench = at_work()
     for word, values in (("SET", "1,2,3,4,5,6"), ("FINISH", "")):
         fields = [word, "11", "2", *(values.split(",") if values else [])]
@@ -255,10 +255,10 @@ def test_setpoints_without_a_stream_are_passed_over():
 
 
 @pytest.mark.parametrize("fields", [["SET", "11", "2"], ["STREAM", "11", "2"], ["FINISH", "11"]])
-def test_records_of_the_wrong_length_are_violations(fields: list[str]):
+def test_records_of_the_wrong_length_are_violations(fields: list[str]) -> None:
     with pytest.raises(RecordError):
         Bench().controller.command(fields, 0.0)
 
 
-def test_the_option_of_the_hello():
+def test_the_option_of_the_hello() -> None:
     assert StreamOffer().option() == "STREAM=8/0.1000/0.0500/30.0000/5.0000/200"

@@ -2,16 +2,17 @@
 
 import asyncio
 import time
+from types import CoroutineType
 
 import pytest
 
 from fakes.wire.sjl_controller_records import encode
-from tests.wire.fake_robot_pc import Pc, controller
+from tests.wire.fake_robot_pc import Line, Pc, controller
 
 WORK = (0, -85, 95, 0, 85, 90)
 
 
-async def test_hello_names_everything_that_must_agree():
+async def test_hello_names_everything_that_must_agree() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA", "GRD"):
         for channel in ("CMD", "STA", "GRD"):
@@ -22,7 +23,7 @@ async def test_hello_names_everything_that_must_agree():
             ]  # fmt: skip
 
 
-async def test_joint_motion_from_command_to_done_with_state_on_the_way():
+async def test_joint_motion_from_command_to_done_with_state_on_the_way() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA"):
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -38,7 +39,7 @@ async def test_joint_motion_from_command_to_done_with_state_on_the_way():
         assert [float(angle) for angle in state[16:]] == pytest.approx(WORK, abs=1e-4)
 
 
-async def test_state_comes_at_50_hz_and_counts_up():
+async def test_state_comes_at_50_hz_and_counts_up() -> None:
     pc = Pc()
     async with controller(pc, "STA"):
         sta = await pc.accepted("STA")
@@ -49,7 +50,7 @@ async def test_state_comes_at_50_hz_and_counts_up():
         assert numbers == list(range(numbers[0], numbers[0] + 25))
 
 
-async def test_refused_hello_is_tried_again():
+async def test_refused_hello_is_tried_again() -> None:
     pc = Pc()
     pc.answer = lambda session: ["NO", "HELLO", "VERSION"]
     async with controller(pc, "CMD") as device:
@@ -62,7 +63,7 @@ async def test_refused_hello_is_tried_again():
         assert await second.next("REJ", "ACK") == ["ACK", "1"]
 
 
-async def test_lost_channel_comes_back_latched_with_a_new_session():
+async def test_lost_channel_comes_back_latched_with_a_new_session() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA"):
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -80,7 +81,7 @@ async def test_lost_channel_comes_back_latched_with_a_new_session():
     "record",
     [b"MOVJ,1,1*00\n", b"nonsense\n", encode(["JUMP", "1", "1"]), b"x" * 400, b"\xff\xfe\n"],
 )
-async def test_protocol_violation_drops_all_channels_and_latches(record: bytes):
+async def test_protocol_violation_drops_all_channels_and_latches(record: bytes) -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA") as device:
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -92,7 +93,7 @@ async def test_protocol_violation_drops_all_channels_and_latches(record: bytes):
         assert device.logic.latched
 
 
-async def test_silence_of_the_pc_stops_a_motion():
+async def test_silence_of_the_pc_stops_a_motion() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA"):
         cmd, _ = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -103,7 +104,7 @@ async def test_silence_of_the_pc_stops_a_motion():
 
 
 @pytest.mark.parametrize("fault", ["split", "merged", "dribbled"])
-async def test_records_survive_an_odd_stream(fault: str):
+async def test_records_survive_an_odd_stream(fault: str) -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA") as device:
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -114,7 +115,7 @@ async def test_records_survive_an_odd_stream(fault: str):
         assert await cmd.next("ACK") == ["ACK", "1"]
 
 
-async def test_corrupt_record_keeps_its_old_sum():
+async def test_corrupt_record_keeps_its_old_sum() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA") as device:
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")
@@ -124,19 +125,21 @@ async def test_corrupt_record_keeps_its_old_sum():
             await asyncio.wait_for(_spoiled(sta), 2)
 
 
-async def _spoiled(line) -> None:
+async def _spoiled(line: Line) -> None:
     """Raises what the collector of the line met."""
     await next(task for task in asyncio.all_tasks() if _collects(task, line))
 
 
-def _collects(task: asyncio.Task, line) -> bool:
-    frame = task.get_coro().cr_frame
-    coroutine = task.get_coro().__qualname__
-    return coroutine == "Line.collect" and frame is not None and frame.f_locals["self"] is line
+def _collects(task: asyncio.Task[None], line: Line) -> bool:
+    coroutine = task.get_coro()
+    if not isinstance(coroutine, CoroutineType) or coroutine.__qualname__ != "Line.collect":
+        return False
+    frame = coroutine.cr_frame
+    return frame is not None and frame.f_locals["self"] is line
 
 
 @pytest.mark.parametrize("fault", ["silent", "half_open"])
-async def test_silent_line_stays_open(fault: str):
+async def test_silent_line_stays_open(fault: str) -> None:
     pc = Pc()
     async with controller(pc, "STA") as device:
         sta = await pc.accepted("STA")
@@ -150,7 +153,7 @@ async def test_silent_line_stays_open(fault: str):
         assert not sta.ended.is_set()
 
 
-async def test_frozen_state_repeats_its_last_record():
+async def test_frozen_state_repeats_its_last_record() -> None:
     pc = Pc()
     async with controller(pc, "STA") as device:
         sta = await pc.accepted("STA")
@@ -169,7 +172,7 @@ async def test_frozen_state_repeats_its_last_record():
         ("wrong_name", 4, "NOBODY"),
     ],
 )
-async def test_wrong_hello(fault: str, index: int, text: str):
+async def test_wrong_hello(fault: str, index: int, text: str) -> None:
     pc = Pc()
     async with controller(pc, "CMD") as device:
         line = await pc.accepted("CMD")
@@ -178,7 +181,7 @@ async def test_wrong_hello(fault: str, index: int, text: str):
         assert (await pc.accepted("CMD")).hello[index] == text
 
 
-async def test_reboot_brings_new_sessions_and_no_latch():
+async def test_reboot_brings_new_sessions_and_no_latch() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA") as device:
         cmd, sta = await pc.accepted("CMD"), await pc.accepted("STA")

@@ -18,6 +18,7 @@ from cellctl.errors.robot import (
     RobotNotReady,
 )
 from cellctl.interfaces.robot import RobotState
+from fakes.scenario import Channel
 from tests.wire.sjl_rig import Rig, sjl_rig
 
 Value = TypeVar("Value")
@@ -92,7 +93,7 @@ async def test_a_late_answer_is_waited_for(rig: Rig) -> None:
 
 
 @pytest.mark.parametrize("channel", ["CMD", "STA"])
-async def test_reset_fails_the_move_at_once_and_never_resumes(rig: Rig, channel: str) -> None:
+async def test_reset_fails_the_move_at_once_and_never_resumes(rig: Rig, channel: Channel) -> None:
     moving = move(rig)
     await until_moving(rig)
     rig.wires[channel].reset()
@@ -130,7 +131,7 @@ async def test_a_digit_that_changes_on_the_way_out_never_moves_the_arm(rig: Rig)
 
 @pytest.mark.parametrize("direction", ["forth", "back"])
 @pytest.mark.parametrize("channel", ["CMD", "STA"])
-async def test_half_open(rig: Rig, channel: str, direction: str) -> None:
+async def test_half_open(rig: Rig, channel: Channel, direction: str) -> None:
     """Nothing arrives any more, but the socket stands: the move ends in bounded time."""
     wire = rig.wires[channel]
     target = above(rig, 100.0)

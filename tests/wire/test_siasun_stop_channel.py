@@ -49,8 +49,10 @@ async def polled(channel: SiasunStopChannel, until_s: float = 1.0) -> FlangeStat
     deadline_s = time.monotonic() + until_s
     while (state := channel.poll()) is None:
         left_s = deadline_s - time.monotonic()
-        readable = await asyncio.to_thread(select.select, [channel], [], [], max(left_s, 0.0))
-        assert readable[0], "no report in time"
+        readable, _, _ = await asyncio.to_thread(
+            select.select, [channel.fileno()], [], [], max(left_s, 0.0)
+        )
+        assert readable, "no report in time"
     return state
 
 
@@ -74,7 +76,7 @@ async def test_only_the_newest_report_counts(pair: tuple[SiasunStopChannel, Peer
     peer.stat("REM,0,1,0,1,0,100")
     peer.send(f"STOPD,1,{POSE}")
     await peer.writer.drain()
-    states = []
+    states: list[FlangeState] = []
     while not (states and states[-1].stop_latched):
         states.append(await polled(channel))
     assert len(states) <= 6

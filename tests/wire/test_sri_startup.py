@@ -1,5 +1,7 @@
 """The start-up's own words, against a box that is a script: literal commands, literal answers."""
 
+from collections.abc import Mapping
+
 import pytest
 
 from cellctl.errors.force import SensorSetupWrong
@@ -22,7 +24,7 @@ ANSWERS = {
 }
 
 
-def talk(answers: dict[str, str | None], **settings: object) -> list[str]:
+def talk(answers: Mapping[str, str | None], **settings: object) -> list[str]:
     """What the driver says when a key missing here is an error and None is silence."""
     config = SriConfig.model_validate({"transport": "tcp", **settings})
     start_up = AtStartUp(config).run()

@@ -15,23 +15,25 @@ tilt = st.floats(-89, 89)
 
 
 @given(mm, mm, mm, angle, tilt, angle)
-def test_written_form_round_trips(x: float, y: float, z: float, a: float, b: float, c: float):
+def test_written_form_round_trips(
+    x: float, y: float, z: float, a: float, b: float, c: float
+) -> None:
     written = [x, y, z, a, b, c]
     assert pose_to_xyzabc(pose_from_xyzabc(written)) == pytest.approx(written, abs=1e-6)
 
 
-def test_a_turns_about_z_then_b_about_the_new_y():
+def test_a_turns_about_z_then_b_about_the_new_y() -> None:
     pose = pose_from_xyzabc([0, 0, 0, 90, 90, 0])
     assert pose.apply([1, 0, 0]) == pytest.approx([0, 0, -1], abs=1e-12)
 
 
 @pytest.mark.parametrize("bad", [[1, 2, 3], [0, 0, 0, 0, 0, float("nan")]])
-def test_a_pose_is_six_finite_numbers(bad: list[float]):
+def test_a_pose_is_six_finite_numbers(bad: list[float]) -> None:
     with pytest.raises(ValueError, match="six finite numbers"):
         pose_from_xyzabc(bad)
 
 
-def test_pose_error_is_in_the_parent_axes():
+def test_pose_error_is_in_the_parent_axes() -> None:
     expected = pose_from_xyzabc([100, 0, 0, 90, 0, 0])
     turn = RigidTransform.from_rotation(Rotation.from_rotvec([0.01, 0, 0]))
     measured = RigidTransform.from_translation([0.001, 0, 0]) * turn * expected
@@ -50,7 +52,7 @@ def scatter(nominal: RigidTransform, drawn: list[RigidTransform]) -> np.ndarray:
     return np.cov(np.array([np.concatenate(pose_error(nominal, pose)) for pose in drawn]).T)
 
 
-def test_covariances_of_products_and_inverses_match_the_scatter():
+def test_covariances_of_products_and_inverses_match_the_scatter() -> None:
     rng = np.random.default_rng(7)
     first = pose_from_xyzabc([300, -200, 500, 30, 20, -60])
     second = pose_from_xyzabc([-100, 400, 900, -70, 10, 40])
@@ -70,6 +72,6 @@ def test_covariances_of_products_and_inverses_match_the_scatter():
         assert np.diag(scatter(nominal, drawn)) / np.diag(expected) == pytest.approx(1, abs=0.12)
 
 
-def test_skew_is_the_cross_product():
+def test_skew_is_the_cross_product() -> None:
     a, b = np.array([1.0, -2.0, 3.0]), np.array([0.5, 4.0, -1.0])
     assert skew(a) @ b == pytest.approx(np.cross(a, b))

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import cv2
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 from scipy.spatial.transform import RigidTransform
 
@@ -21,7 +22,10 @@ LIMIT = 3e-3
 
 
 def brute_force(
-    view: View, pose: RigidTransform, inside: Callable[[Array, Array], Array], margin: int = 6
+    view: View,
+    pose: RigidTransform,
+    inside: Callable[[Array, Array], NDArray[np.bool_]],
+    margin: int = 6,
 ) -> Array:
     """Share of the region, blurred, of each pixel but for a margin."""
     width, height = view.size_px
@@ -44,7 +48,7 @@ def brute_force(
     return np.asarray(share[margin:-margin, margin:-margin])
 
 
-def share_of(picture: Array, low: float, high: float, margin: int = 6) -> Array:
+def share_of(picture: NDArray[np.floating], low: float, high: float, margin: int = 6) -> Array:
     inner = np.asarray(picture, dtype=float)[margin:-margin, margin:-margin]
     return (high - inner) / (high - low)
 
@@ -90,7 +94,7 @@ def test_chessboard_corner(seed: int, blur_px: float) -> None:
         clean_picture(view, (board,), options, 0), options.white_grey, options.black_grey
     )
 
-    def white(x: Array, y: Array) -> Array:
+    def white(x: Array, y: Array) -> NDArray[np.bool_]:
         # corners at whole multiples of the square on both axes; ten and eight fields
         return np.asarray((np.floor(x / 8e-3 + 5) + np.floor(y / 8e-3 + 4)) % 2 == 1)
 

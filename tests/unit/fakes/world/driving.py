@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from fakes.scenario import RobotName
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
 from fakes.world.world import World
@@ -10,7 +11,7 @@ from fakes.world.world import World
 SETTLE_S = 1.5
 
 
-def to_taught(world: World, robot: str, name: str) -> None:
+def to_taught(world: World, robot: RobotName, name: str) -> None:
     arm = world.arms[robot]
     cell_T_base = from_written(arm.settings.base_mm_deg)
     pose = cell_T_base.inv() * from_written(world.scenario.taught[robot][name])
@@ -61,4 +62,5 @@ def hovering(world: World, gap_m: float = 2e-3) -> World:
 
 def mean_reading(world: World, samples: int = 500) -> np.ndarray:
     start = world.time_s
-    return np.mean([world.sensor_wrench(start + 1e-3 * k) for k in range(samples)], axis=0)
+    readings = [world.sensor_wrench(start + 1e-3 * k) for k in range(samples)]
+    return np.asarray(np.mean(readings, axis=0))

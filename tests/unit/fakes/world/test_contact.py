@@ -14,7 +14,7 @@ from tests.unit.fakes.world.driving import (
 )
 
 
-def test_static_force_is_springs_in_series_times_depth(scenario: Scenario):
+def test_static_force_is_springs_in_series_times_depth(scenario: Scenario) -> None:
     world = hovering(World(scenario, 1))
     deck_to(world, above(world, -40e-6), 1e-3, 0.02, settle_s=3.0)
     parts = world.placed.parts
@@ -27,7 +27,7 @@ def test_static_force_is_springs_in_series_times_depth(scenario: Scenario):
     assert world.payload.peak_contact_force_n >= world.payload.contact_force_n
 
 
-def test_sensor_feels_what_the_frame_pushes(scenario: Scenario):
+def test_sensor_feels_what_the_frame_pushes(scenario: Scenario) -> None:
     world = hovering(World(scenario, 2))
     tare = mean_reading(world)
     deck_to(world, above(world, -50e-6), 1e-3, 0.02, settle_s=3.0)
@@ -36,7 +36,7 @@ def test_sensor_feels_what_the_frame_pushes(scenario: Scenario):
     assert np.abs(change[:2]).max() < 4
 
 
-def test_speed_makes_the_peak(scenario: Scenario):
+def test_speed_makes_the_peak(scenario: Scenario) -> None:
     peaks = []
     for speed in (0.3e-3, 2e-3):
         world = hovering(World(scenario, 1), 0.5e-3)
@@ -45,7 +45,7 @@ def test_speed_makes_the_peak(scenario: Scenario):
     assert peaks[1] > 3 * peaks[0] > 0
 
 
-def test_no_force_before_contact_and_none_after_it(scenario: Scenario):
+def test_no_force_before_contact_and_none_after_it(scenario: Scenario) -> None:
     world = hovering(World(scenario, 3))
     assert world.payload.peak_contact_force_n == 0
     deck_to(world, above(world, -30e-6), 1e-3, 0.02)
@@ -54,7 +54,7 @@ def test_no_force_before_contact_and_none_after_it(scenario: Scenario):
     assert world.payload.contact_force_n == 0
 
 
-def test_foreign_body_is_met_early(scenario: Scenario):
+def test_foreign_body_is_met_early(scenario: Scenario) -> None:
     world = hovering(World(scenario, 4))
     world.faults.inject("foreign_body", height_mm=1.0, x_mm=-480.0, y_mm=0.0)
     world.rebuild()
@@ -62,7 +62,7 @@ def test_foreign_body_is_met_early(scenario: Scenario):
     assert world.payload.contact_force_n > 3
 
 
-def test_caught_chamfer_pushes_aside(scenario: Scenario):
+def test_caught_chamfer_pushes_aside(scenario: Scenario) -> None:
     world = hovering(World(scenario, 4))
     tare = mean_reading(world)
     world.faults.inject("pin_catch", height_mm=1.0)
@@ -73,21 +73,21 @@ def test_caught_chamfer_pushes_aside(scenario: Scenario):
     assert np.hypot(change[0], change[1]) > 0.3 * world.payload.contact_force_n
 
 
-def test_without_a_frame_there_is_nothing_to_touch(scenario: Scenario):
+def test_without_a_frame_there_is_nothing_to_touch(scenario: Scenario) -> None:
     world = hovering(World(scenario, 1))
     world.set_present(frame=False)
     deck_to(world, above(world, -2e-3), 0.01, 0.1)
     assert world.payload.peak_contact_force_n == 0
 
 
-def test_deck_beside_the_frame_touches_nothing(scenario: Scenario):
+def test_deck_beside_the_frame_touches_nothing(scenario: Scenario) -> None:
     world = hovering(World(scenario, 1), 30e-3)
     deck_to(world, above(world, 30e-3, x_m=1.2), 0.2, 1.0)
     deck_to(world, above(world, -5e-3, x_m=1.2), 0.05, 0.5)
     assert world.payload.peak_contact_force_n == 0
 
 
-def test_gauges_show_a_lateral_offset(scenario: Scenario):
+def test_gauges_show_a_lateral_offset(scenario: Scenario) -> None:
     world = hovering(World(scenario, 5))
     deck_to(world, above(world, 0.5e-3, x_m=0.1e-3), 0.01, 0.1)
     for pin in world.report()["pins"].values():

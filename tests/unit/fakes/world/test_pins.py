@@ -56,23 +56,26 @@ def settled(payload: Payload, flange: np.ndarray, steps: int = 3000) -> np.ndarr
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 11.25, 45.0, 200.0])
-def test_the_wall_holds_what_lies_beyond_the_clearance(scenario: Scenario, angle_deg: float):
+def test_the_wall_holds_what_lies_beyond_the_clearance(
+    scenario: Scenario, angle_deg: float
+) -> None:
     payload = hanging(scenario)
     along = np.array([np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))])
-    force = settled(payload, at(*(0.08 * along), 1.0))[:3]
+    x_mm, y_mm = 0.08 * along
+    force = settled(payload, at(x_mm, y_mm, 1.0))[:3]
     expected_n = ARM_N_M * 0.03e-3
     assert force[:2] @ along == pytest.approx(-expected_n, rel=0.07)
     assert abs(force[2]) < 0.1
     assert abs(along[0] * force[1] - along[1] * force[0]) < 0.05 * expected_n
 
 
-def test_within_the_clearance_nothing_is_felt(scenario: Scenario):
+def test_within_the_clearance_nothing_is_felt(scenario: Scenario) -> None:
     payload = hanging(scenario)
     assert np.abs(settled(payload, at(0.03, -0.03, 0.5))).max() < 1e-6
     assert payload.peak_contact_force_n == 0.0
 
 
-def test_a_turned_deck_is_turned_back_by_both_pins(scenario: Scenario):
+def test_a_turned_deck_is_turned_back_by_both_pins(scenario: Scenario) -> None:
     payload = hanging(scenario)
     yaw_deg = np.degrees(0.10e-3 / 0.5126)  # pins are 0.5126 m from the middle
     wrench = settled(payload, at(0.0, 0.0, 1.0, yaw_deg))
@@ -80,7 +83,7 @@ def test_a_turned_deck_is_turned_back_by_both_pins(scenario: Scenario):
     assert np.hypot(*wrench[:2]) < 3.0
 
 
-def test_the_chamfer_pushes_up_and_in(scenario: Scenario):
+def test_the_chamfer_pushes_up_and_in(scenario: Scenario) -> None:
     """Frictionless: the force stands on the cone, and gap and springs agree."""
     payload = hanging(scenario)
     force = settled(payload, at(0.3, 0.0, 2.3))[:3]
@@ -90,14 +93,14 @@ def test_the_chamfer_pushes_up_and_in(scenario: Scenario):
     assert np.linalg.norm(force) == pytest.approx(ARM_N_M * depth_m, rel=0.06)
 
 
-def test_beyond_the_chamfer_the_deck_stands_on_the_pins(scenario: Scenario):
+def test_beyond_the_chamfer_the_deck_stands_on_the_pins(scenario: Scenario) -> None:
     payload = hanging(scenario)
     force = settled(payload, at(1.5, 0.0, 2.98))[:3]
     assert force[2] == pytest.approx(ARM_N_M * 0.02e-3, rel=0.06)
     assert np.hypot(*force[:2]) < 0.1
 
 
-def test_friction_holds_the_deck_back_on_its_way_in(scenario: Scenario):
+def test_friction_holds_the_deck_back_on_its_way_in(scenario: Scenario) -> None:
     payload = hanging(scenario, friction=0.15)
     settled(payload, at(0.08, 0.0, 1.5))
     forces = []
@@ -108,7 +111,7 @@ def test_friction_holds_the_deck_back_on_its_way_in(scenario: Scenario):
     assert up_n == pytest.approx(0.15 * abs(sideways_n), rel=0.2)
 
 
-def test_free_motion_beside_a_pin_makes_no_energy(scenario: Scenario):
+def test_free_motion_beside_a_pin_makes_no_energy(scenario: Scenario) -> None:
     payload = hanging(scenario)
     flange = at(0.06, 0.0, 1.0)
     payload.advance(flange, moving=False)

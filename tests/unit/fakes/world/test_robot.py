@@ -23,7 +23,7 @@ def shifted(arm: RobotArm, time_s: float, z_m: float) -> RigidTransform:
     return RigidTransform.from_translation([0, 0, z_m]) * arm.encoder_pose(time_s)
 
 
-def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario):
+def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     speed, settings = 0.01, scenario.robots["main"]
     arm.start_linear(t, shifted(arm, t, -0.05), speed, 0.2)
@@ -38,7 +38,7 @@ def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario):
     assert arm.cut_short
 
 
-def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenario):
+def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     target = shifted(arm, t, -0.001)
     arm.start_linear(t, target, 0.05, 0.2)
@@ -49,7 +49,7 @@ def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenar
     )
 
 
-def test_repeatability_over_long_ways(scenario: Scenario):
+def test_repeatability_over_long_ways(scenario: Scenario) -> None:
     """The stated ±0.05 mm is three standard deviations of what a long way leaves behind."""
     arm, t = at_work(scenario)
     here = arm.joints(t)
@@ -64,7 +64,7 @@ def test_repeatability_over_long_ways(scenario: Scenario):
     np.testing.assert_allclose(sigma_mm, 0.05 / 3, rtol=0.4)
 
 
-def test_small_step_has_a_small_error(scenario: Scenario):
+def test_small_step_has_a_small_error(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     errors = []
     for index in range(100):
@@ -76,7 +76,7 @@ def test_small_step_has_a_small_error(scenario: Scenario):
     assert 1e-6 < np.std(errors) < 4e-6
 
 
-def test_target_beyond_reach_is_refused(scenario: Scenario):
+def test_target_beyond_reach_is_refused(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError, match="REACH"):
         arm.start_linear(t, from_written([3900, 0, 967, 90, 0, 180]), 0.05, 0.2)
@@ -89,7 +89,7 @@ def test_target_beyond_reach_is_refused(scenario: Scenario):
 )
 def test_target_that_the_joints_cannot_take_is_refused(
     scenario: Scenario, joints_deg: list[float], reason: str
-):
+) -> None:
     arm, t = at_work(scenario)
     chain = nominal_links(scenario.robots["main"].chain_mm)
     target = forward(chain, np.deg2rad(joints_deg))
@@ -97,7 +97,7 @@ def test_target_that_the_joints_cannot_take_is_refused(
         arm.start_linear(t, target, 0.05, 0.2)
 
 
-def test_joint_limits_and_percent_are_checked(scenario: Scenario):
+def test_joint_limits_and_percent_are_checked(scenario: Scenario) -> None:
     arm = arm_of(scenario)
     with pytest.raises(RefusedMotionError, match="LIMIT"):
         arm.start_joint(0.0, np.deg2rad([0, 30, 0, 0, 0, 0]), 10)
@@ -105,28 +105,28 @@ def test_joint_limits_and_percent_are_checked(scenario: Scenario):
         arm.start_joint(0.0, np.zeros(6), 0)
 
 
-def test_step_limits(scenario: Scenario):
+def test_step_limits(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     arm.check_step(t, shifted(arm, t, 0.5e-3))
     with pytest.raises(RefusedMotionError, match="STEP"):
         arm.check_step(t, shifted(arm, t, 0.51e-3))
 
 
-def test_override_slows_down(scenario: Scenario):
+def test_override_slows_down(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     arm.override_percent = 50
     arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 10.0)
     assert arm.standstill_s - t == pytest.approx(2.0, abs=0.05)
 
 
-def test_true_pose_does_not_jump_when_a_motion_begins(scenario: Scenario):
+def test_true_pose_does_not_jump_when_a_motion_begins(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     before = arm.flange(t).translation
     arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 0.2)
     np.testing.assert_allclose(arm.flange(t).translation, before, atol=1e-9)
 
 
-def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario):
+def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     for number in range(1, 51):
         target = shifted(arm, t, -5e-5)
@@ -138,7 +138,7 @@ def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario):
         assert arm.flange(t).translation[2] < arm.flange(t - 0.004).translation[2], number
 
 
-def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario):
+def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
     """The settling error belongs to a motion, and a stream is one: its steps are as even as those
     of a spline."""
     arm, t = at_work(scenario)
@@ -151,20 +151,20 @@ def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario):
     assert np.std(np.diff(steps)) < 1e-6
 
 
-def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario):
+def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     arm.follow(t, arm.encoder_pose(t), 0.008)
     assert not arm.moving(t + 1e-6)
 
 
-def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario):
+def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError) as refusal:
         arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]), 0.008)
     assert refusal.value.reason == "REACH"
 
 
-def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario):
+def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     speed = 5e-5 / 0.008
     arm.follow(t, shifted(arm, t, -5e-5), 0.008)

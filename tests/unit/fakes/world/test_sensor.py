@@ -24,7 +24,7 @@ def quiet(scenario: Scenario) -> Scenario:
     return scenario.model_copy(update={"force_sensor": sensor})
 
 
-def test_ideal_sensor_reads_weight_and_its_moment(scenario: Scenario):
+def test_ideal_sensor_reads_weight_and_its_moment(scenario: Scenario) -> None:
     world = World(quiet(scenario), 1)
     to_taught(world, "main", "deck_measure")
     world.advance(world.time_s + 3)
@@ -36,14 +36,14 @@ def test_ideal_sensor_reads_weight_and_its_moment(scenario: Scenario):
     np.testing.assert_allclose([mx, my, mz], np.cross(com, [fx, fy, fz]), atol=1e-6)
 
 
-def test_less_weight_without_the_deck(scenario: Scenario):
+def test_less_weight_without_the_deck(scenario: Scenario) -> None:
     world = World(quiet(scenario), 1)
     world.set_present(deck=False)
     world.advance(1.0)
     assert np.linalg.norm(world.sensor_wrench(1.0)[:3]) == pytest.approx(150 * 9.80665, rel=1e-6)
 
 
-def test_acceleration_is_felt(scenario: Scenario):
+def test_acceleration_is_felt(scenario: Scenario) -> None:
     world = hovering(World(quiet(scenario), 1))
     rest = world.sensor_wrench(world.time_s)
     arm = world.arms["main"]
@@ -55,7 +55,7 @@ def test_acceleration_is_felt(scenario: Scenario):
     assert (readings - rest)[:, 2].mean() == pytest.approx(200 * 0.5, rel=0.25)
 
 
-def test_noise_has_its_size_and_is_the_same_again(scenario: Scenario):
+def test_noise_has_its_size_and_is_the_same_again(scenario: Scenario) -> None:
     truth = draw(scenario, 3).sensor
     reading, again = (ForceReading(scenario.force_sensor, truth, 3) for _ in range(2))
     times = np.arange(0, 8, 1e-3)
@@ -66,7 +66,7 @@ def test_noise_has_its_size_and_is_the_same_again(scenario: Scenario):
     np.testing.assert_allclose(rows[:, :3].std(axis=0), expected, rtol=0.05)
 
 
-def test_saturates_at_its_range(scenario: Scenario):
+def test_saturates_at_its_range(scenario: Scenario) -> None:
     reading = ForceReading(scenario.force_sensor, draw(scenario, 3).sensor, 3)
     rows = reading.read(np.array([1e5, -1e5, 0, 0, 0, 1e4]), 1.0)
     assert rows[0] == 5000
@@ -74,7 +74,7 @@ def test_saturates_at_its_range(scenario: Scenario):
     assert rows[5] == 1000
 
 
-def test_standing_world_costs_almost_nothing(scenario: Scenario):
+def test_standing_world_costs_almost_nothing(scenario: Scenario) -> None:
     world = World(quiet(scenario), 1)
     world.advance(2.0)
     began_s = time.process_time()

@@ -6,7 +6,7 @@ from fakes.world.world import World
 from tests.unit.fakes.world.driving import to_taught
 
 
-def test_flange_targets_lie_on_their_ring(scenario: Scenario):
+def test_flange_targets_lie_on_their_ring(scenario: Scenario) -> None:
     world = World(scenario, 1)
     to_taught(world, "main", "clear")
     places = np.array([target.position_m for target in world.targets(100)])
@@ -15,7 +15,7 @@ def test_flange_targets_lie_on_their_ring(scenario: Scenario):
     np.testing.assert_allclose(radius, 0.2, atol=1.5e-3)
 
 
-def test_noise_averages_out_over_frames(scenario: Scenario):
+def test_noise_averages_out_over_frames(scenario: Scenario) -> None:
     world = World(scenario, 1)
     for frames in (1, 25):
         rows = np.array([world.targets(frames)[0].position_m for _ in range(200)])
@@ -24,7 +24,7 @@ def test_noise_averages_out_over_frames(scenario: Scenario):
         np.testing.assert_allclose(rows.std(axis=0), sigma, rtol=0.2)
 
 
-def test_flange_turned_away_is_not_seen(scenario: Scenario):
+def test_flange_turned_away_is_not_seen(scenario: Scenario) -> None:
     world = World(scenario, 1)
     world.arms["main"].start_joint(0.0, np.deg2rad([0, -60, 0, 0, -60, 0]), 100)
     world.advance(world.arms["main"].standstill_s)
@@ -34,7 +34,7 @@ def test_flange_turned_away_is_not_seen(scenario: Scenario):
 @pytest.mark.parametrize(("axis", "arc_deg"), [(0, (-50, 50)), (1, (-125, -35))])
 def test_targets_stay_in_view_over_the_calibration_arcs(
     scenario: Scenario, axis: int, arc_deg: tuple[int, int]
-):
+) -> None:
     world = World(scenario, 1)
     arm, joints = world.arms["main"], np.deg2rad([0, -80.0, 110, 0, 60, 90])
     for angle in np.linspace(*arc_deg, 7):

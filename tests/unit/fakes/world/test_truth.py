@@ -17,14 +17,14 @@ def frozen(value: object) -> bytes:
     return pickle.dumps(value)
 
 
-def test_seed_reproduces_the_cell_and_another_seed_does_not(scenario: Scenario):
+def test_seed_reproduces_the_cell_and_another_seed_does_not(scenario: Scenario) -> None:
     assert frozen(draw(scenario, 7)) == frozen(draw(scenario, 7))
     assert frozen(draw(scenario, 7)) != frozen(draw(scenario, 8))
     assert frozen(draw_parts(scenario, 7, 1)) == frozen(draw_parts(scenario, 7, 1))
     assert frozen(draw_parts(scenario, 7, 1)) != frozen(draw_parts(scenario, 7, 2))
 
 
-def test_seed_reproduces_a_run(scenario: Scenario):
+def test_seed_reproduces_a_run(scenario: Scenario) -> None:
     reports = []
     for _ in range(2):
         world = hovering(World(scenario, 11))
@@ -33,7 +33,7 @@ def test_seed_reproduces_a_run(scenario: Scenario):
     assert reports[0] == reports[1]
 
 
-def test_run_does_not_depend_on_the_size_of_the_time_steps(scenario: Scenario):
+def test_run_does_not_depend_on_the_size_of_the_time_steps(scenario: Scenario) -> None:
     reports = []
     for step_s in (0.5, 0.0017):
         world = World(scenario, 11)
@@ -45,7 +45,7 @@ def test_run_does_not_depend_on_the_size_of_the_time_steps(scenario: Scenario):
     assert reports[0] == reports[1]
 
 
-def test_parts_are_displaced_within_their_bounds(scenario: Scenario):
+def test_parts_are_displaced_within_their_bounds(scenario: Scenario) -> None:
     nominal = np.array(scenario.parts.frame_mm_deg)
     offsets = np.array(
         [to_written(draw_parts(scenario, seed, 1).cell_T_frame) - nominal for seed in range(100)]
@@ -55,14 +55,14 @@ def test_parts_are_displaced_within_their_bounds(scenario: Scenario):
     assert 0.4 < np.abs(offsets[:, 3]).max() <= 0.51
 
 
-def test_contact_stiffness_covers_its_range(scenario: Scenario):
+def test_contact_stiffness_covers_its_range(scenario: Scenario) -> None:
     drawn = [draw_parts(scenario, seed, 1).contact_stiffness_n_m for seed in range(100)]
     low, high = scenario.contact.stiffness_n_m
     assert low <= min(drawn) < 1.2 * low
     assert high >= max(drawn) > 0.8 * high
 
 
-def test_unknown_keys_and_missing_ones_are_errors(scenario: Scenario):
+def test_unknown_keys_and_missing_ones_are_errors(scenario: Scenario) -> None:
     values = scenario.model_dump()
     with pytest.raises(ValidationError, match="colour"):
         Scenario.model_validate(values | {"colour": "blue"})
@@ -74,11 +74,11 @@ def test_unknown_keys_and_missing_ones_are_errors(scenario: Scenario):
 @pytest.mark.parametrize(
     ("opening_mm", "gauge_mm"), [(6.0, 6.0), (5.999, 5.99), (5.85, 5.85), (-3.0, 0.0)]
 )
-def test_gauges_come_in_hundredths(opening_mm: float, gauge_mm: float):
+def test_gauges_come_in_hundredths(opening_mm: float, gauge_mm: float) -> None:
     assert largest_gauge_mm(opening_mm) == gauge_mm
 
 
-def test_taught_poses_name_all_robots_and_heads(scenario: Scenario):
+def test_taught_poses_name_all_robots_and_heads(scenario: Scenario) -> None:
     poses = taught(scenario)
     assert set(poses["robots"]["main"]["poses"]) == {"home", "clear", "deck_measure"}
     assert set(poses["robots"]["aux_2"]["poses"]) == {"home", "measure", "retracted"}

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import HeadName, Scenario
-from fakes.world.scene import LensTruth, StereoTruth
+from fakes.scenario import HeadName, RobotName, Scenario
+from fakes.world.scene import LensTruth, ScenePlate, StereoTruth
 from fakes.world.world import World
 from tests.unit.fakes.world.driving import to_taught
 
@@ -13,7 +13,7 @@ HEADS: tuple[HeadName, ...] = ("head_1", "head_2")
 
 
 def project(lens: LensTruth, points: np.ndarray) -> np.ndarray:
-    return points[:, :2] / points[:, 2:] * lens.focal_px + lens.centre_px
+    return np.asarray(points[:, :2] / points[:, 2:] * lens.focal_px + lens.centre_px)
 
 
 def in_both(stereo: StereoTruth, points: np.ndarray, margin_px: float) -> bool:
@@ -29,13 +29,18 @@ def in_both(stereo: StereoTruth, points: np.ndarray, margin_px: float) -> bool:
 
 def measuring(scenario: Scenario, seed: int) -> World:
     world = World(scenario, seed)
-    for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
+    stations: tuple[tuple[RobotName, str], ...] = (
+        ("aux_1", "measure"),
+        ("aux_2", "measure"),
+        ("main", "clear"),
+    )
+    for robot, pose in stations:
         to_taught(world, robot, pose)
     return world
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int):
+def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int) -> None:
     world = measuring(scenario, seed)
     for head in HEADS:
         scene = world.camera_scene(head)
@@ -50,14 +55,14 @@ def test_holes_are_well_inside_both_images(scenario: Scenario, seed: int):
         assert in_both(scene.stereo, seen_holes(scenario, head, scene.deck), 150)
 
 
-def seen_holes(scenario: Scenario, head: HeadName, plate) -> np.ndarray:
+def seen_holes(scenario: Scenario, head: HeadName, plate: ScenePlate) -> np.ndarray:
     names = scenario.heads[head].sees
     places = [[*hole.position_m, 0.0] for hole in plate.holes if hole.name in names]
-    return plate.camera_T_part.apply(np.array(places))
+    return np.asarray(plate.camera_T_part.apply(np.array(places)))
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadName):
+def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadName) -> None:
     world = measuring(scenario, 1)
     board = scenario.chessboard
     half = (np.array(board.inner_corners) - 1) * board.square_mm / 2000
@@ -73,7 +78,9 @@ def test_all_of_the_chessboard_is_in_both_images(scenario: Scenario, head: HeadN
 
 
 @pytest.mark.parametrize("head", HEADS)
-def test_all_discs_are_in_both_images_and_seen_from_above(scenario: Scenario, head: HeadName):
+def test_all_discs_are_in_both_images_and_seen_from_above(
+    scenario: Scenario, head: HeadName
+) -> None:
     world = measuring(scenario, 2)
     for number in range(10):
         world.place_target_board(head, number)
@@ -86,7 +93,7 @@ def test_all_discs_are_in_both_images_and_seen_from_above(scenario: Scenario, he
         assert names >= {f"P{index}" for index in range(1, 10)}
 
 
-def test_boards_stay_where_they_were_put(scenario: Scenario):
+def test_boards_stay_where_they_were_put(scenario: Scenario) -> None:
     world = measuring(scenario, 1)
     world.place_target_board("head_1", 0)
     before = world.placed.target_board
@@ -96,7 +103,7 @@ def test_boards_stay_where_they_were_put(scenario: Scenario):
     assert world.camera_scene("head_1").target_board is None
 
 
-def test_unmoved_scene_differs_in_noise_only(scenario: Scenario):
+def test_unmoved_scene_differs_in_noise_only(scenario: Scenario) -> None:
     world = measuring(scenario, 1)
     world.advance(world.time_s + 3)
     one, other = world.camera_scene("head_1"), world.camera_scene("head_1")
@@ -110,7 +117,7 @@ def same(one: RigidTransform, other: RigidTransform) -> bool:
     return bool((one.as_matrix() == other.as_matrix()).all())
 
 
-def test_nominal_rig_has_the_geometry_of_table_1(scenario: Scenario):
+def test_nominal_rig_has_the_geometry_of_table_1(scenario: Scenario) -> None:
     stereo = World(scenario, 1).truth.heads["head_1"].stereo
     assert np.linalg.norm(stereo.right_T_left.translation) == pytest.approx(0.179, abs=6e-4)
     angle_deg = np.rad2deg(stereo.right_T_left.rotation.magnitude())

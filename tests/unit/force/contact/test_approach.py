@@ -1,4 +1,5 @@
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -53,7 +54,8 @@ def test_the_speed_of_the_fake_cell() -> None:
     ],
 )
 def test_every_figure_that_grows_makes_it_slower(field: str, value: float) -> None:
-    worse = replace(FIGURES, **{field: value})
+    change: dict[str, Any] = {field: value}
+    worse = replace(FIGURES, **change)
     usual = approach_speed(FIGURES, allowed_peak_n=35.0).speed_m_s
     assert approach_speed(worse, allowed_peak_n=35.0).speed_m_s < usual
 

@@ -5,7 +5,7 @@ from cellctl.force.contact.curve import curve_statistics, moving_average
 
 
 def test_figures_of_a_push() -> None:
-    time_s = 100.0 + np.arange(3000) * 1e-3
+    time_s = 100.0 + np.arange(3000, dtype=np.float64) * 1e-3
     wrench = np.zeros((3000, 6))
     wrench[:, 2] = np.clip((time_s - 101.0) * 40.0, 0.0, 38.0)
     wrench[1500, 2] = 60.0

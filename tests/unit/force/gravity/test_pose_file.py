@@ -23,7 +23,7 @@ def test_columns_may_come_in_any_order_with_comments_and_a_byte_order_mark() -> 
     text = "\ufeff# a comment\nfx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm,qw,qx,qy,qz\n1,2,3,4,5,6,1,0,0,0\n"
     found = parse_pose_file(text)
     np.testing.assert_array_equal(found.wrenches, [[1, 2, 3, 4, 5, 6]])
-    assert found.base_R_sensor.magnitude()[0] == 0.0
+    np.testing.assert_array_equal(found.base_R_sensor.magnitude(), [0.0])
     assert found.roles == (PoseRole.FIT,)
 
 

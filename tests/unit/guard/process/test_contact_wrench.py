@@ -1,5 +1,7 @@
 """The guard's plain floats against the arrays of the rest of the code."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -48,10 +50,11 @@ def test_equals_the_formulas_on_arrays(seed: int) -> None:
 
 def test_a_new_frame_or_load_drops_the_tare() -> None:
     model = ContactWrenchModel()
-    for change in (
+    changes: tuple[Callable[[], None], ...] = (
         lambda: model.set_wrench_frame(nine(Rotation.identity()), (0.0, 0.0, 0.0)),
         lambda: model.set_gravity_compensation([(0.0, 0.0, 0.0)] * 6, (0.0,) * 6, (0.0, 0.0, -1.0)),
-    ):
+    )
+    for change in changes:
         model.set_tare((1.0,) * 6)
         change()
         assert model.apply((0.0,) * 6) == (0.0,) * 6

@@ -60,7 +60,7 @@ def test_one_raw_sample_beyond_trips() -> None:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_every_component_and_both_signs(component: str, sign: float) -> None:
     monitor = armed()
-    monitor.sample(sample(0.001, **{component: 51.0 * sign}))
+    monitor.sample(sample(0.001, saturated=False, **{component: 51.0 * sign}))
     assert reason(monitor) is TripReason.RAW_LIMIT
 
 
@@ -131,9 +131,9 @@ def test_saturation() -> None:
 def test_a_burst_of_damaged_frames(counter: str) -> None:
     monitor = armed()
     for k in range(1, 3):
-        monitor.sensor_health(FtHealth(**{counter: k}), k * 1e-3)  # type: ignore[arg-type]
+        monitor.sensor_health(FtHealth(**{counter: k}), k * 1e-3)
         assert monitor.trip is None
-    monitor.sensor_health(FtHealth(**{counter: 3}), 3e-3)  # type: ignore[arg-type]
+    monitor.sensor_health(FtHealth(**{counter: 3}), 3e-3)
     assert reason(monitor) is TripReason.SENSOR_INVALID
 
 
