@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import Rotation
 
 from fakes.wire.sjl_controller_records import RecordError, fixed, pose_fields
-from fakes.world.frames import MM, distance, from_written
+from fakes.world.frames import MM, Array, matrix_distance, written_matrix
 from fakes.world.robot import RefusedMotionError, RobotArm
 
 _ROUNDING_MM, _ROUNDING_DEG = 0.0005, 0.0005
@@ -59,8 +59,8 @@ class Stream:
         self._limits = limits
         self._period_s = offer.period_ms / 1000
         self._due_s = time_s + self._period_s
-        self._start = self._command = self._setpoint = arm.encoder_pose(time_s)
-        """Poses of the flange: at the beginning, where the arm was sent last, where it is to go."""
+        self._start = self._command = self._setpoint = arm.encoder_matrix(time_s)
+        """base_T_flange at the beginning, where the arm was sent last, and where it is to go."""
         self._tick = 0
         self._set_number = 0
         self._fresh = False
@@ -75,7 +75,7 @@ class Stream:
             self._late += 1
             return
         self._late += number <= self._tick
-        setpoint = from_written(values)
+        setpoint = written_matrix(values)
         steps = number - last_number
         limits = self._limits
         if _exceeds(self._setpoint, setpoint, steps * limits.step_mm, steps * limits.step_deg):
@@ -88,9 +88,10 @@ class Stream:
         """True when a tick was due and has been carried out; raises ``RefusedMotionError``."""
         if time_s < self._due_s:
             return False
-        # A computer that was late for several ticks lets them slip: this controller's clock stood
-        # still meanwhile, because a real one is never late for its own ticks.
-        self._due_s = max(self._due_s + self._period_s, time_s)
+        # Ticks keep their time on average. A computer that was late by more than half a period lets
+        # them slip: a real controller is never late for its own ticks, nor hurries afterwards.
+        slipped = time_s - self._due_s > self._period_s / 2
+        self._due_s = (time_s if slipped else self._due_s) + self._period_s
         self._tick += 1
         self._silent_ticks = 0 if self._fresh else self._silent_ticks + 1
         self._lost += self._tick > 1 and not self._fresh
@@ -107,24 +108,24 @@ class Stream:
         pose = pose_fields(self._arm.encoder_matrix(time_s))
         return ["TICK", *(str(count) for count in counts), *pose]
 
-    def _stepped(self) -> RigidTransform:
+    def _stepped(self) -> Array:
         """From where the arm was sent last towards the setpoint, by at most one step."""
-        way = self._setpoint.translation - self._command.translation
-        turn = self._command.rotation.inv() * self._setpoint.rotation
+        distance_m, angle_rad = matrix_distance(self._command, self._setpoint)
         ratio = min(
             1.0,
-            self._limits.step_mm * MM / max(float(np.linalg.norm(way)), 1e-12),
-            np.deg2rad(self._limits.step_deg) / max(float(turn.magnitude()), 1e-12),
+            self._limits.step_mm * MM / max(distance_m, 1e-12),
+            np.deg2rad(self._limits.step_deg) / max(angle_rad, 1e-12),
         )
         if ratio == 1.0:
             return self._setpoint
-        rotation = self._command.rotation * Rotation.from_rotvec(ratio * turn.as_rotvec())
-        return RigidTransform.from_components(self._command.translation + ratio * way, rotation)
+        command = Rotation.from_matrix(self._command[:3, :3])
+        turn = command.inv() * Rotation.from_matrix(self._setpoint[:3, :3])
+        stepped: Array = self._command + ratio * (self._setpoint - self._command)
+        stepped[:3, :3] = (command * Rotation.from_rotvec(ratio * turn.as_rotvec())).as_matrix()
+        return stepped
 
 
-def _exceeds(
-    start: RigidTransform, end: RigidTransform, allowed_mm: float, allowed_deg: float
-) -> bool:
-    distance_m, angle_rad = distance(start, end)
+def _exceeds(start: Array, end: Array, allowed_mm: float, allowed_deg: float) -> bool:
+    distance_m, angle_rad = matrix_distance(start, end)
     too_far = distance_m / MM > allowed_mm + _ROUNDING_MM
     return too_far or bool(np.rad2deg(angle_rad) > allowed_deg + _ROUNDING_DEG)

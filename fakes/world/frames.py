@@ -1,7 +1,7 @@
 """Poses of the world: the written form, small displacements, seeded random streams."""
 
 from collections.abc import Sequence
-from math import atan2, degrees, hypot
+from math import asin, atan2, cos, degrees, hypot, radians, sin, sqrt
 from zlib import crc32
 
 import numpy as np
@@ -18,6 +18,21 @@ def from_written(xyz_mm_abc_deg: Sequence[float]) -> RigidTransform:
     x, y, z, a, b, c = xyz_mm_abc_deg
     rotation = Rotation.from_euler("ZYX", [a, b, c], degrees=True)
     return RigidTransform.from_components(np.array([x, y, z]) * MM, rotation)
+
+
+def written_matrix(xyz_mm_abc_deg: Sequence[float]) -> Array:
+    """The same as a 4x4 matrix, in plain floats because a stream brings hundreds a second."""
+    x, y, z, *angles_deg = xyz_mm_abc_deg
+    ca, cb, cc = (cos(radians(angle)) for angle in angles_deg)
+    sa, sb, sc = (sin(radians(angle)) for angle in angles_deg)
+    return np.array(
+        [
+            [ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc, x * MM],
+            [sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc, y * MM],
+            [-sb, cb * sc, cb * cc, z * MM],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
 
 
 def to_written(pose: RigidTransform) -> list[float]:
@@ -46,6 +61,14 @@ def distance(one: RigidTransform, other: RigidTransform) -> tuple[float, float]:
     """Distance (m) and angle (rad) between two poses of one parent frame."""
     delta = one.inv() * other
     return float(np.linalg.norm(delta.translation)), float(delta.rotation.magnitude())
+
+
+def matrix_distance(one: Array, other: Array) -> tuple[float, float]:
+    """The same between two 4x4 matrices."""
+    difference = one - other
+    # Two rotations that differ by an angle have matrices that differ by sqrt(8) sin(angle / 2).
+    chord = float(np.linalg.norm(difference[:3, :3])) / sqrt(8.0)
+    return float(np.linalg.norm(difference[:3, 3])), 2.0 * asin(min(chord, 1.0))
 
 
 def stream(seed: int, *names: str | int) -> np.random.Generator:

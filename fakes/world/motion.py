@@ -119,7 +119,7 @@ class LinearPath:
     """The flange in a straight line; the length is metres. Raises ``OutOfReachError``."""
 
     def __init__(self, chain: Chain, start: RigidTransform, target: RigidTransform, near: Array):
-        self.length = way_m(start, target)
+        self.length = way_m(*distance(start, target))
         self.travel_m = self.length
         ratios = np.linspace(0, 1, max(4, int(np.ceil(self.length / _KNOT_M)) + 1))
         ends = Rotation.concatenate([start.rotation, target.rotation])
@@ -158,7 +158,6 @@ class StreamSegment:
         return StreamSegment(start_rad, start_rad + self._rate * length_m, length_m)
 
 
-def way_m(start: RigidTransform, target: RigidTransform) -> float:
-    """Distance between two poses, or their angle as a distance, whichever is longer."""
-    distance_m, angle_rad = distance(start, target)
+def way_m(distance_m: float, angle_rad: float) -> float:
+    """Length of a motion: the distance, or the angle as a distance, whichever is longer."""
     return max(distance_m, angle_rad * _M_PER_RAD)

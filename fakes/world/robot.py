@@ -12,7 +12,7 @@ from fakes.world.arm import (
     nominal_links,
     singular,
 )
-from fakes.world.frames import MM, Array, distance, stream
+from fakes.world.frames import MM, Array, distance, matrix_distance, stream
 from fakes.world.motion import JointPath, LinearPath, Path, Profile, StreamSegment, way_m
 from fakes.world.truth import RobotTruth
 from fakes.world.wander import Wander, small_displacement
@@ -92,15 +92,15 @@ class RobotArm:
         if distance_m > limit_m + 1e-9 or angle_rad > STEP_ANGLE_MAX_RAD:
             raise RefusedMotionError("STEP")
 
-    def follow(self, time_s: float, target: RigidTransform, period_s: float) -> None:
-        """Go to a streamed setpoint within one period, without ramps; raises
-        ``RefusedMotionError``."""
-        length_m = way_m(self.encoder_pose(time_s), target)
+    def follow(self, time_s: float, target: Array, period_s: float) -> None:
+        """Go to a streamed setpoint, base_T_flange as a 4x4 matrix, within one period and without
+        ramps; raises ``RefusedMotionError``."""
+        length_m = way_m(*matrix_distance(self.encoder_matrix(time_s), target))
         if length_m < _STILL_M:
             return
         near = self.joints(time_s)
         try:
-            joints = inverse(self.settings.chain_mm, target, near)
+            joints = inverse(self.settings.chain_mm, RigidTransform.from_matrix(target), near)
         except OutOfReachError as error:
             raise RefusedMotionError("REACH") from error
         if singular(joints) or np.abs(joints - near).max() > _JUMP_RAD:

@@ -1,4 +1,6 @@
-"""docs/writing-a-driver.md is true: its files are written out, checked and put to the contract."""
+"""docs/writing-a-driver.md is true: its files are written out, installed as the package that they
+describe, and put to the contract; and this repository's own tests still pass beside it.
+"""
 
 import os
 import re
@@ -11,64 +13,86 @@ import pytest
 ROOT = Path(__file__).parents[2]
 GUIDE = ROOT / "docs" / "writing-a-driver.md"
 FILE = re.compile(
-    r"^`(?P<path>[\w/]+\.py)`\n```python\n(?P<code>.*?)^```$", re.MULTILINE | re.DOTALL
+    r"^`(?P<path>[\w/]+\.\w+)`\n```(?:python|toml|markdown)\n(?P<code>.*?)^```$",
+    re.MULTILINE | re.DOTALL,
 )
-
-GRAFT = '''
-"""Lets the packages of the guide be found inside the real ones."""
-
-from pathlib import Path
-
-import drivers.camera
-import fakes.wire
-
-HERE = Path(__file__).parent
-drivers.camera.__path__.append(str(HERE / "drivers" / "camera"))
-fakes.wire.__path__.append(str(HERE / "fakes" / "wire"))
-'''
+FOLDER = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
 
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """All files of the guide in a folder of their own."""
-    folder = tmp_path_factory.mktemp("guide")
-    for match in FILE.finditer(GUIDE.read_text()):
+    """All files of the guide in a folder of their own, outside this repository."""
+    folder = tmp_path_factory.mktemp("cellctl-acme")
+    for match in FILE.finditer(GUIDE.read_text(encoding="utf-8")):
         path = folder / match["path"]
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(match["code"])
-    (folder / "drivers/camera/acme/__init__.py").touch()
-    (folder / "conftest.py").write_text(GRAFT)
+        path.write_text(match["code"], encoding="utf-8")
     return folder
 
 
-def run(*arguments: str) -> "subprocess.CompletedProcess[str]":
-    environment = os.environ | {"PYTHONPATH": str(ROOT), "PYTHONDONTWRITEBYTECODE": "1"}
+@pytest.fixture(scope="module")
+def installed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the package of the guide is installed, not in this environment."""
+    site = tmp_path_factory.mktemp("site")
+    offline = ["--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
+    done = run("pip", "install", "--quiet", *offline, "--target", str(site), str(written))
+    assert done.returncode == 0, done.stdout + done.stderr
+    return site
+
+
+def run(*arguments: str, path: tuple[Path, ...] = ()) -> "subprocess.CompletedProcess[str]":
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(str(entry) for entry in path),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
     return subprocess.run(
         [sys.executable, "-m", *arguments],
         cwd=ROOT,
         env=environment,
         capture_output=True,
         text=True,
-        timeout=60,
+        timeout=120,
         check=False,
     )
 
 
 def test_the_folder_is_complete(written: Path) -> None:
-    files = {path.name for path in (written / "drivers/camera/acme").iterdir()}
-    assert {"config.py", "protocol.py", "connection.py", "driver.py", "faults.py"} <= files
+    files = {path.name for path in (written / "acme3d").iterdir()}
+    assert files >= FOLDER
 
 
-def test_the_contract_holds(written: Path) -> None:
-    test = str(written / "tests/contracts/test_acme.py")
-    options = ["--import-mode=importlib", "-p", "no:cacheprovider", "-p", "no:xdist", "-q"]
-    done = run("pytest", "-c", "pyproject.toml", f"--confcutdir={written}", *options, test)
+def test_the_contract_holds(written: Path, installed: Path) -> None:
+    options = ["-c", str(written / "pyproject.toml"), "-p", "no:cacheprovider", "-p", "no:xdist"]
+    tests = str(written / "contract")
+    done = run("pytest", *options, "-q", "-W", "error", tests, path=(ROOT, installed))
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout
 
 
+def test_the_core_finds_the_driver(installed: Path) -> None:
+    script = "import cellctl.plugins as p; print(p.load(p.TARGET_TRACKER, 'acme').__name__)"
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        env=os.environ | {"PYTHONPATH": str(installed)},
+        cwd=installed,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.stdout == "AcmeTracker\n", done.stderr
+
+
+def test_our_own_tests_pass_beside_it(installed: Path) -> None:
+    registry = "tests/contracts/test_registry.py"
+    options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-v"]
+    done = run("pytest", *options, registry, path=(installed,))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "test_implements_its_interface[cellctl.target_tracker:acme] PASSED" in done.stdout
+
+
 def test_the_code_has_the_style_of_the_house(written: Path) -> None:
-    files = [str(path) for path in written.glob("[dft]*/**/*.py") if path.name != "__init__.py"]
+    files = [str(path) for path in written.glob("**/*.py")]
     elsewhere = "D1,INP,I001"  # tests need no docstrings; order of imports depends on the tree
     done = run("ruff", "check", "--config", "pyproject.toml", "--ignore", elsewhere, *files)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -76,6 +100,17 @@ def test_the_code_has_the_style_of_the_house(written: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+def test_every_interface_is_listed() -> None:
+    text = GUIDE.read_text(encoding="utf-8")
+    groups = re.findall(r'^\[project\.entry-points\."(cellctl\.\w+)"\]', _pyproject(), re.MULTILINE)
+    missing = [group for group in groups if f"| `{group}` |" not in text]
+    assert [group for group in missing if group != "cellctl.process"] == []
+
+
+def _pyproject() -> str:
+    return (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+
+
 def test_links_lead_somewhere() -> None:
-    for target in re.findall(r"\]\(([^)#]+)\)", GUIDE.read_text()):
+    for target in re.findall(r"\]\(([^)#]+)\)", GUIDE.read_text(encoding="utf-8")):
         assert (GUIDE.parent / target).exists(), target

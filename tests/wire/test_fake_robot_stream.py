@@ -150,12 +150,12 @@ def test_travel_is_limited() -> None:
 
 def test_out_of_reach_ends_the_stream() -> None:
     stream = StreamBench()
-    stream.start = from_written([5000, 0, 900, 90, 0, 180])
-    stream.controller._motion.stream._setpoint = stream.start  # type: ignore[union-attr]
-    assert stream.end() == ["ABRT", "2", "STALE"]
-    far = StreamBench()
-    far.controller._motion.stream._command = stream.start  # type: ignore[union-attr]
-    assert far.end() == ["ABRT", "2", "REACH"]
+    far = from_written([5000, 0, 900, 90, 0, 180]).as_matrix()
+    motion = stream.controller._motion
+    assert motion is not None
+    assert motion.stream is not None
+    motion.stream._command = motion.stream._setpoint = far
+    assert stream.end() == ["ABRT", "2", "REACH"]
 
 
 def test_without_setpoints_the_stream_ends_in_its_time(stream: StreamBench) -> None:

@@ -288,12 +288,12 @@ async def test_merged_ticks_are_skipped_not_replayed(rig: Rig) -> None:
 
 
 async def test_late_packets_are_waited_for(rig: Rig) -> None:
-    rig.wires["CMD"].back.delay_s = 0.02
+    rig.wires["CMD"].back.delay_s = 0.05
     async with asyncio.timeout(5.0):
         async with rig.robot.stream(rig.robot.stream_offer().limits) as stream:
             for _ in range(10):
                 report = await stream.advance(stream.report.base_T_flange)
-    assert report.lost > 5
+    assert report.late >= 5
 
 
 @pytest.mark.parametrize("direction", ["forth", "back"])

@@ -107,8 +107,6 @@ class Bounds:
     ) -> Array:
         """A streamed setpoint in its written form, if it lies close enough to the last one and to
         the start of the stream."""
-        if not np.isfinite(base_T_flange.as_matrix()).all():
-            self._refuse("streamed setpoint that is not a number")
         self._near("step", base_T_flange, last, (limits.step_m, limits.step_rad))
         self._near("travel", base_T_flange, start, (limits.travel_m, limits.travel_rad))
         return self.pose(base_T_flange)
@@ -116,11 +114,14 @@ class Bounds:
     def _near(
         self, what: str, pose: RigidTransform, other: RigidTransform, allowed: tuple[float, float]
     ) -> None:
-        delta = other.inv() * pose
-        distance_m = float(np.linalg.norm(delta.translation))
-        angle_rad = float(delta.rotation.magnitude())
-        # The tolerance is that of the arithmetic.
-        if distance_m > allowed[0] + 1e-9 or angle_rad > allowed[1] + 1e-9:
+        # Plain arrays instead of composed transforms, which would take half a millisecond a tick.
+        difference = pose.as_matrix() - other.as_matrix()
+        distance_m = float(np.linalg.norm(difference[:3, 3]))
+        # Two rotations that differ by an angle have matrices that differ by sqrt(8) sin(angle / 2).
+        chord = float(np.linalg.norm(difference[:3, :3])) / math.sqrt(8.0)
+        angle_rad = 2.0 * math.asin(min(chord, 1.0)) if math.isfinite(chord) else math.nan
+        # The tolerance is that of the arithmetic. Not a number fails the comparison, as it must.
+        if not (distance_m <= allowed[0] + 1e-9 and angle_rad <= allowed[1] + 1e-9):
             self._refuse(
                 f"streamed {what} of {distance_m / MM:.4f} mm and {math.degrees(angle_rad):.4f} deg"
             )

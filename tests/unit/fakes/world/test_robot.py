@@ -4,7 +4,7 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario import Scenario
 from fakes.world.arm import forward, nominal_links
-from fakes.world.frames import from_written
+from fakes.world.frames import distance, from_written, matrix_distance, written_matrix
 from fakes.world.robot import RefusedMotionError, RobotArm
 from fakes.world.truth import draw
 
@@ -130,7 +130,7 @@ def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) ->
     arm, t = at_work(scenario)
     for number in range(1, 51):
         target = shifted(arm, t, -5e-5)
-        arm.follow(t, target, 0.008)
+        arm.follow(t, target.as_matrix(), 0.008)
         assert arm.moving(t + 0.004)
         t += 0.008
         assert not arm.moving(t)
@@ -145,7 +145,7 @@ def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
     steps = []
     for _ in range(100):
         before = arm.flange(t).translation
-        arm.follow(t, shifted(arm, t, -5e-5), 0.008)
+        arm.follow(t, shifted(arm, t, -5e-5).as_matrix(), 0.008)
         t += 0.008
         steps.append(arm.flange(t).translation[2] - before[2])
     assert np.std(np.diff(steps)) < 1e-6
@@ -153,21 +153,21 @@ def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
 
 def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
-    arm.follow(t, arm.encoder_pose(t), 0.008)
+    arm.follow(t, arm.encoder_matrix(t), 0.008)
     assert not arm.moving(t + 1e-6)
 
 
 def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError) as refusal:
-        arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]), 0.008)
+        arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]).as_matrix(), 0.008)
     assert refusal.value.reason == "REACH"
 
 
 def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
     arm, t = at_work(scenario)
     speed = 5e-5 / 0.008
-    arm.follow(t, shifted(arm, t, -5e-5), 0.008)
+    arm.follow(t, shifted(arm, t, -5e-5).as_matrix(), 0.008)
     before = arm.encoder_pose(t + 0.004).translation[2]
     arm.stop(t + 0.004)
     arm.stop(t + 0.1)  # a second request puts nothing off
@@ -177,3 +177,18 @@ def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scena
     assert arm.standstill_s == pytest.approx(t + 0.004 + latency_s + speed / braking)
     over = before - arm.encoder_pose(arm.standstill_s).translation[2]
     assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), rel=0.01)
+
+
+def test_matrices_of_written_poses_are_those_of_the_poses(scenario: Scenario):
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        written = [*rng.uniform(-2000, 2000, 3), *rng.uniform(-180, 180, 3)]
+        near = [value + rng.normal(0, 1e-3) for value in written]
+        one, other = written_matrix(written), written_matrix(near)
+        np.testing.assert_allclose(one, from_written(written).as_matrix(), atol=1e-12)
+        np.testing.assert_allclose(
+            matrix_distance(one, other),
+            distance(from_written(written), from_written(near)),
+            rtol=1e-6,
+            atol=1e-12,
+        )
