@@ -1,4 +1,5 @@
 # mypy: ignore-errors
+# ruff: noqa: I001 - imports of modules that no longer exist cannot be sorted
 """Makes ``store-v1``: a store of schema 1, written by the steps of the assembly themselves.
 
 It needs the code that wrote such stores, commit 5ad746d, and cannot run with any later one, which

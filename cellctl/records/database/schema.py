@@ -1,28 +1,27 @@
-"""Tables of the run store. Times are UTC; lists and documents are JSON."""
+"""Tables of the run store. Times are UTC; lists and documents are JSON.
 
-from datetime import UTC, datetime
+A row that the store gives out has the columns of an entry of ``cellctl.records.entries``, with the
+same names, and ``run`` beside them. ``rows.py`` makes one of the other by those names.
+"""
+
+from collections.abc import Mapping
+from datetime import datetime
+from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import JSON, DateTime, Dialect, ForeignKey, String
+from sqlalchemy import Enum, ForeignKey, String
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
-from sqlalchemy.types import TypeDecorator
 
-SCHEMA_VERSION = 1
+from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
+from cellctl.records.entries import Matrix, PassComponent, PoseOrigin, Six, Verdict
+
+SCHEMA_VERSION = 2
+"""``PRAGMA user_version`` of the database; see ``migration.py`` for older ones."""
 
 
-class Utc(TypeDecorator[datetime]):
-    """Aware UTC on this side, naive in SQLite, which knows no zones."""
-
-    impl = DateTime
-    cache_ok = True
-
-    def process_bind_param(self, value: datetime | None, _dialect: Dialect) -> datetime | None:
-        """To the database."""
-        return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
-
-    def process_result_value(self, value: datetime | None, _dialect: Dialect) -> datetime | None:
-        """From the database."""
-        return None if value is None else value.replace(tzinfo=UTC)
+def _by_value(kind: type[StrEnum]) -> Enum:
+    """An enumeration kept as the text of its value, which is what other tools should read."""
+    return Enum(kind, native_enum=False, values_callable=list, length=16)
 
 
 class Base(DeclarativeBase):
@@ -30,8 +29,12 @@ class Base(DeclarativeBase):
 
     type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own name
         datetime: Utc,
-        list[float | None]: JSON,
-        dict[str, Any]: JSON,
+        Six: PlainJson,
+        Matrix: PlainJson,
+        Mapping[str, Any]: PlainJson,
+        tuple[PassComponent, ...]: PassComponents,
+        Verdict: _by_value(Verdict),
+        PoseOrigin: _by_value(PoseOrigin),
     }
 
 
@@ -45,7 +48,7 @@ class CalibrationRow(Base):
     software: Mapped[str]
     made: Mapped[datetime]
     valid_until: Mapped[datetime]
-    record: Mapped[dict[str, Any]]
+    record: Mapped[Mapping[str, Any]]
     invalidated: Mapped[datetime | None]
     invalidated_reason: Mapped[str | None]
 
@@ -55,6 +58,7 @@ class RunRow(Base):
 
     __tablename__ = "runs"
     number: Mapped[int] = mapped_column(primary_key=True)
+    process: Mapped[str]
     serial: Mapped[str]
     recipe_id: Mapped[int]
     recipe_name: Mapped[str]
@@ -64,45 +68,84 @@ class RunRow(Base):
     software: Mapped[str]
     config_hash: Mapped[str]
     simulated: Mapped[bool]
-    calibration_ids: Mapped[dict[str, Any]]
+    calibration_ids: Mapped[Mapping[str, Any]]
     started: Mapped[datetime]
     ended: Mapped[datetime | None]
     result: Mapped[str | None]
     fault_number: Mapped[int | None]
     fault: Mapped[str | None]
-    mating: Mapped[dict[str, Any] | None]
+    record_schema: Mapped[int]
+    """Schema of the tables that hold this run's details, and of the content that is sealed."""
 
 
-class MeasurementRow(Base):
-    """A measured pose."""
+class PhaseRow(Base):
+    """A phase of a run; a phase that begins again gets a row of its own."""
 
-    __tablename__ = "measurements"
+    __tablename__ = "phases"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    run: Mapped[int] = mapped_column(ForeignKey("runs.number"), index=True)
+    number: Mapped[int]
+    label: Mapped[str]
+    began: Mapped[datetime]
+    ended: Mapped[datetime | None]
+
+
+class DetailOfRun:
+    """Columns of every row that is a detail of a run and belongs to a phase."""
+
     id: Mapped[int] = mapped_column(primary_key=True)
     run: Mapped[int] = mapped_column(ForeignKey("runs.number"), index=True)
     time: Mapped[datetime]
-    kind: Mapped[str]
-    pose_mm_deg: Mapped[list[float | None]]
-    sigma_mm_deg: Mapped[list[float | None]]
+    phase: Mapped[int | None] = mapped_column(ForeignKey("phases.id"))
+
+
+class FigureRow(DetailOfRun, Base):
+    """A named figure with its unit, its limits and its verdict."""
+
+    __tablename__ = "figures"
+    key: Mapped[str]
+    label: Mapped[str]
+    value: Mapped[float | None]
+    unit: Mapped[str]
+    lower: Mapped[float | None]
+    upper: Mapped[float | None]
+    verdict: Mapped[Verdict | None]
+
+
+class PoseRow(DetailOfRun, Base):
+    """A pose ``parent_T_child``: measured, commanded, or reported by a robot."""
+
+    __tablename__ = "poses"
+    key: Mapped[str]
+    origin: Mapped[PoseOrigin]
+    parent: Mapped[str]
+    child: Mapped[str]
+    pose_mm_deg: Mapped[Six]
+    sigma_mm_deg: Mapped[Six | None]
+    covariance_mm_deg: Mapped[Matrix | None]
     residual_um: Mapped[float | None]
-    frames: Mapped[int]
-    detail: Mapped[dict[str, Any]]
+    frames: Mapped[int | None]
+    detail: Mapped[Mapping[str, Any]]
 
 
-class IterationRow(Base):
-    """One pass of the measure-compensate loop."""
+class PassRow(DetailOfRun, Base):
+    """One pass of a loop that measures and corrects."""
 
-    __tablename__ = "iterations"
-    id: Mapped[int] = mapped_column(primary_key=True)
-    run: Mapped[int] = mapped_column(ForeignKey("runs.number"), index=True)
-    time: Mapped[datetime]
-    iteration: Mapped[int]
-    error_mm_deg: Mapped[list[float | None]]
-    sigma_mm_deg: Mapped[list[float | None]]
-    threshold_mm_deg: Mapped[list[float | None]]
-    frames: Mapped[int]
-    residual_um: Mapped[float | None]
+    __tablename__ = "passes"
+    loop: Mapped[str]
+    number: Mapped[int]
+    components: Mapped[tuple[PassComponent, ...]]
     converged: Mapped[bool]
-    correction_mm_deg: Mapped[list[float | None]]
+    residual_um: Mapped[float | None]
+    frames: Mapped[int | None]
+
+
+class DocumentRow(DetailOfRun, Base):
+    """What a process knows of a run besides figures and poses, as plain data."""
+
+    __tablename__ = "documents"
+    key: Mapped[str]
+    content: Mapped[Mapping[str, Any]]
 
 
 class ArtefactRow(Base):
@@ -132,7 +175,7 @@ class AlarmRow(Base):
 
 
 class GaugeRow(Base):
-    """Plug-gauge result of a pin hole; may come after the run was closed, hence its own entry."""
+    """Plug-gauge result of a pin hole; may come after the run was closed, hence its own seal."""
 
     __tablename__ = "gauges"
     id: Mapped[int] = mapped_column(primary_key=True)
@@ -144,14 +187,14 @@ class GaugeRow(Base):
 
 
 class AuditRow(Base):
-    """Who did what. Only ever appended."""
+    """Who did what. Rows are only ever appended."""
 
     __tablename__ = "audit"
     id: Mapped[int] = mapped_column(primary_key=True)
     time: Mapped[datetime]
     actor: Mapped[str]
     action: Mapped[str]
-    detail: Mapped[dict[str, Any]]
+    detail: Mapped[Mapping[str, Any]]
 
 
 class LedgerRow(Base):

@@ -3,29 +3,36 @@
 Each entry hashes the content it seals together with the entry before it, so a change, a removal
 or an insertion breaks every later hash. A chain that somebody recomputes as a whole cannot be
 found out from the store alone; print the newest hash on the report, or keep it elsewhere.
+
+The content of a run depends on the schema that wrote it (``runs.record_schema``): an old run is
+sealed and verified over the tables of its own time, which a migration leaves as they are. That
+column needs no seal of its own, since with another value the content is another one too.
 """
 
-import hashlib
-import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from datetime import datetime
 from typing import Any
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from cellctl.records.schema import (
+from cellctl.records.database import schema_1
+from cellctl.records.database.canonical import columns, digest
+from cellctl.records.database.schema import (
     ArtefactRow,
+    DocumentRow,
+    FigureRow,
     GaugeRow,
-    IterationRow,
     LedgerRow,
-    MeasurementRow,
+    PassRow,
+    PhaseRow,
+    PoseRow,
     RunRow,
 )
 
 GENESIS = "0" * 64
 RUN, GAUGE = "run", "gauge"
-_DETAILS = (MeasurementRow, IterationRow, ArtefactRow)
+_DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
 
 
 def seal(session: Session, kind: str, subject: int, time: datetime) -> None:
@@ -62,16 +69,26 @@ def _content(session: Session, kind: str, subject: int) -> str:
     row = session.get(RunRow if kind == RUN else GaugeRow, subject)
     if row is None:
         return ""
-    document: dict[str, Any] = _columns(row)
-    if kind == RUN:
-        for table in _DETAILS:
-            rows = session.scalars(select(table).where(table.run == subject).order_by(table.id))
-            document[table.__tablename__] = [_columns(detail) for detail in rows]
-    return _digest(document)
+    if not isinstance(row, RunRow):
+        return digest(columns(row))
+    if row.record_schema == 1:
+        document = schema_1.sealed_content(session, subject)
+        return "" if document is None else digest(document)
+    return digest(columns(row) | _details(session, subject))
+
+
+def _details(session: Session, run: int) -> dict[str, Any]:
+    return {
+        table.__tablename__: [
+            columns(detail)
+            for detail in session.scalars(select(table).where(table.run == run).order_by(table.id))
+        ]
+        for table in _DETAILS
+    }
 
 
 def _entry_hash(row: LedgerRow) -> str:
-    return _digest(
+    return digest(
         {
             "time": row.time,
             "kind": row.kind,
@@ -80,18 +97,3 @@ def _entry_hash(row: LedgerRow) -> str:
             "previous": row.previous,
         }
     )
-
-
-def _columns(row: Any) -> dict[str, Any]:
-    return {column.key: getattr(row, column.key) for column in row.__table__.columns}
-
-
-def _digest(document: Mapping[str, Any]) -> str:
-    text = json.dumps(document, sort_keys=True, separators=(",", ":"), default=_plain)
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
-def _plain(value: Any) -> str:
-    if isinstance(value, datetime):
-        return value.isoformat()
-    raise TypeError(f"{type(value).__name__} has no canonical form")

@@ -5,17 +5,19 @@ commit in a power cut, NORMAL does; and after a failed fsync the next one may li
 failed once takes nothing more until it is opened anew.
 """
 
+import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, event, text
+from sqlalchemy import Engine, create_engine, event
 from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreUnavailable
-from cellctl.records.schema import SCHEMA_VERSION, Base
+from cellctl.records.database import migration
+from cellctl.records.database.schema import SCHEMA_VERSION
 
 _BUSY_TIMEOUT_S = 5
 _READS = "store_reads"
@@ -25,32 +27,38 @@ class Database:
     """Sessions on one file. Used from one thread at a time."""
 
     def __init__(self, file: Path, *, create: bool) -> None:
-        """Open, or create if allowed; raises ``StoreUnavailable``."""
+        """Open, or create if allowed; an older store is migrated (see ``migration``).
+
+        Readers migrate, too: an operator lists the runs of an old store before any daemon opens
+        it. Raises ``StoreUnavailable``, ``StoreTooNew``.
+        """
         self._failed: str | None = None
         if not (create or file.exists()):
             raise StoreUnavailable(f"there is no {file}")
         self._engine = _engine(file)
         try:
             file.parent.mkdir(parents=True, exist_ok=True)
-            self._prepare(file)
-        except (OSError, SQLAlchemyError) as error:
-            self.close()
-            raise StoreUnavailable(f"{file}: {_reason(error)}") from error
+            # A store of today is opened without a write, so without waiting for a writer's lock.
+            if not self._is_up_to_date():
+                with self._engine.begin() as connection:
+                    migration.bring_up_to_date(connection, file)
         except StoreUnavailable:
             self.close()
             raise
+        except (OSError, SQLAlchemyError, sqlite3.Error) as error:
+            self.close()
+            raise StoreUnavailable(f"{file}: {_reason(error)}") from error
+
+    def _is_up_to_date(self) -> bool:
+        with self._reader().connect() as connection:
+            return migration.schema_version(connection) == SCHEMA_VERSION
+
+    def _reader(self) -> Engine:
+        return self._engine.execution_options(**{_READS: True})
 
     def close(self) -> None:
         """Drop the connection."""
         self._engine.dispose()
-
-    def _prepare(self, file: Path) -> None:
-        with self._engine.begin() as connection:
-            version = connection.execute(text("PRAGMA user_version")).scalar_one()
-            if version not in (0, SCHEMA_VERSION):
-                raise StoreUnavailable(f"{file} has schema {version}, not {SCHEMA_VERSION}")
-            Base.metadata.create_all(connection)
-            connection.execute(text(f"PRAGMA user_version = {SCHEMA_VERSION}"))
 
     @contextmanager
     def write(self) -> Iterator[Session]:
@@ -75,7 +83,7 @@ class Database:
     def read(self) -> Iterator[Session]:
         """A consistent view; raises ``StoreUnavailable``."""
         try:
-            with Session(self._engine.execution_options(**{_READS: True})) as session:
+            with Session(self._reader()) as session:
                 yield session
         except DBAPIError as error:
             raise StoreUnavailable(_reason(error)) from error
