@@ -1,4 +1,4 @@
-"""The error of every component by iteration against its threshold (paper, figure 11)."""
+"""The error of every component by pass of the loop against its threshold (paper, figure 11)."""
 
 from collections.abc import Sequence
 
@@ -7,35 +7,30 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from cellctl.plot_style import ACCENT, GOOD, GOOD_FILL, LIMIT, MUTED, style, to_svg
-from cellctl.records.entries import Iteration
-
-_COMPONENTS = (
-    ("X", "mm"), ("Y", "mm"), ("Z", "mm"),
-    ("rx", "°"), ("ry", "°"), ("rz", "°"),
-)  # fmt: skip
+from cellctl.records.entries import LoopPass
 
 
-def errors_by_iteration(iterations: Sequence[Iteration]) -> str:
+def errors_by_pass(passes: Sequence[LoopPass]) -> str:
     """Six panels, linear within the threshold and logarithmic outside, bars of two sigma."""
     with style():
         figure = Figure(figsize=(7.2, 3.9), layout="constrained")
         axes = figure.subplots(2, 3, sharex=True)
         for index, panel in enumerate(axes.flat):
-            _panel(panel, iterations, index)
+            _panel(panel, passes, index)
         for panel in axes[1]:
             panel.set_xlabel("iteration")
         return to_svg(figure)
 
 
-def _panel(axes: Axes, iterations: Sequence[Iteration], index: int) -> None:
-    name, unit = _COMPONENTS[index]
+def _panel(axes: Axes, passes: Sequence[LoopPass], index: int) -> None:
     points = [
-        (entry.iteration, entry.error_mm_deg[index], entry.sigma_mm_deg[index] or 0.0)
-        for entry in iterations
-        if entry.error_mm_deg[index] is not None
+        (entry.number, entry.components[index].value, entry.components[index].sigma or 0.0)
+        for entry in passes
+        if entry.components[index].value is not None
     ]
-    threshold = iterations[-1].threshold_mm_deg[index] or 1.0
-    axes.set_title(f"{name}, {unit}")
+    last = passes[-1].components[index]
+    threshold = last.limit or 1.0
+    axes.set_title(f"{last.name}, {last.unit}")
     axes.axhspan(-threshold, threshold, color=GOOD_FILL, linewidth=0, zorder=0)
     for edge in (-threshold, threshold):
         axes.axhline(edge, color=GOOD, linewidth=0.8, linestyle=(0, (5, 3)))
