@@ -6,7 +6,7 @@ from typing import Any
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.record import covariance_to_written
+from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.units import in_mm_deg
