@@ -9,10 +9,11 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.process_pages import pages_of
 from cellctl.errors import CellError
-from cellctl.records.entries import RunHead, RunRecord
-from cellctl.records.report import export_run
-from cellctl.records.report.text import duration, fixed, number
+from cellctl.records.entries import Figure, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.report.export import export_run
+from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.store import RunStore
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
@@ -57,8 +58,11 @@ def show(run: Run, data_dir: DataDir = DEFAULT) -> None:
     console.print(_table([record.head]))
     if record.head.fault:
         console.print(record.head.fault, style="red", markup=False)
-    if record.iterations:
-        console.print(_iterations(record))
+    for loop in dict.fromkeys(entry.loop for entry in record.passes):
+        console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
+    judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
+    if judged:
+        console.print(_figures(judged))
     for gauge in record.gauges:
         console.print(f"pin hole {gauge.hole}: gauge {gauge.diameter_mm:.2f} mm ({gauge.source})")
     for alarm in record.alarms:
@@ -78,7 +82,9 @@ def export(
     """Write record, report, pictures and recordings of a run into a folder."""
     with _store(data_dir) as store:
         folder = out or Path(f"run-{run}")
-        typer.echo(export_run(store, run, folder, single_file=single_file))
+        pages = pages_of(store.run(run).head.process)
+        report = export_run(store, run, folder, pages=pages, single_file=single_file)
+    typer.echo(report)
 
 
 @app.command()
@@ -122,7 +128,8 @@ def _damaged(store: RunStore, record: RunRecord) -> list[str]:
 
 def _table(runs: Sequence[RunHead]) -> Table:
     table = Table(box=None)
-    for name in ("run", "serial", "recipe", "mode", "started (UTC)", "duration", "result"):
+    names = ("run", "serial", "process", "recipe", "mode", "started (UTC)", "duration", "result")
+    for name in names:
         table.add_column(name, no_wrap=name in {"run", "mode", "duration", "result"})
     for head in runs:
         table.add_row(*_row(head))
@@ -136,6 +143,7 @@ def _row(head: RunHead) -> tuple[str, ...]:
     return (
         str(head.number),
         head.serial + mark,
+        head.process,
         head.recipe_name,
         head.mode.lower(),
         f"{head.started:%Y-%m-%d %H:%M:%S}",
@@ -144,14 +152,25 @@ def _row(head: RunHead) -> tuple[str, ...]:
     )
 
 
-def _iterations(record: RunRecord) -> Table:
-    names = ("pass", "X mm", "Y mm", "Z mm", "rx °", "ry °", "rz °", "µm")
-    table = Table(*names, box=None)
-    for entry in record.iterations:
-        errors = entry.error_mm_deg
-        lengths = [fixed(error, 4, signed=True) for error in errors[:3]]
-        angles = [fixed(error, 5, signed=True) for error in errors[3:]]
-        table.add_row(str(entry.iteration), *lengths, *angles, fixed(entry.residual_um, 1))
-    thresholds = (f"± {number(value or 0.0)}" for value in record.iterations[-1].threshold_mm_deg)
-    table.add_row("limit", *thresholds, "", style="dim")
+def _passes(passes: Sequence[LoopPass]) -> Table:
+    last = passes[-1].components
+    names = (f"{component.name} {component.unit}".rstrip() for component in last)
+    table = Table("pass", *names, "µm", box=None)
+    for entry in passes:
+        errors = (
+            fixed(component.value, decimals(component.unit), signed=True)
+            for component in entry.components
+        )
+        table.add_row(str(entry.number), *errors, fixed(entry.residual_um, 1))
+    limits = (f"± {number(component.limit or 0.0)}" for component in last)
+    table.add_row("limit", *limits, "", style="dim")
+    return table
+
+
+def _figures(judged: Sequence[Figure]) -> Table:
+    table = Table("figure", "value", "at least", "at most", "verdict", box=None)
+    for entry in judged:
+        texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
+        style = "green" if entry.verdict is Verdict.PASS else "red"
+        table.add_row(entry.label, *texts, f"[{style}]{entry.verdict}[/]")
     return table

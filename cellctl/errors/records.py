@@ -16,6 +16,15 @@ class StoreUnavailable(RecordsError):
     remedy = "Check data_dir in the cell file and the disk; restore the store from its backup."
 
 
+class StoreTooNew(StoreUnavailable):
+    """The run store was written by a later version of cellctl."""
+
+    number = 810
+    text = "Run store was written by a later version of cellctl"
+    cause = "cellctl was replaced by an earlier version after the store had been migrated."
+    remedy = "Install the later version again, or go on in another data_dir."
+
+
 class StoreInUse(RecordsError):
     """Another daemon owns the run store."""
 

@@ -17,8 +17,8 @@ class AsyncRunStore:
     """Awaitable access to the run store; faults of the store come back unchanged."""
 
     def __init__(self, path: Path) -> None:
-        """Open the store; raises ``StoreUnavailable``."""
-        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="archive")
+        """Open the store; raises ``StoreUnavailable``, ``StoreTooNew``."""
+        self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="run-store")
         try:
             self._store: RunStore = self._thread.submit(RunStore, path).result()
         except BaseException:
@@ -32,7 +32,8 @@ class AsyncRunStore:
     ) -> R:
         """Call a method of the store: ``await store.do(RunStore.add_alarm, …)``.
 
-        Once begun it is carried out: cancelling the caller does not take back the write.
+        A call that has been handed over is carried out: cancelling the caller does not take back
+        the write. Half a record would be worse than one that nobody waits for.
         """
 
         def work() -> R:

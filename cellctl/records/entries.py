@@ -1,13 +1,21 @@
-"""What the store gives back: one run as frozen values."""
+"""What the store takes and gives back: frozen values.
+
+Fields have the names of the columns in ``schema.py``. ``time`` is UTC; ``phase`` is the ``id`` of a
+``Phase`` and is filled in by the store with the phase that the run is in.
+"""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
+from cellctl.clock import utc_now
+
 Six = tuple[float | None, ...]
 """x, y, z in mm, rx, ry, rz (or A, B, C of a pose) in degrees; None is unknown."""
+Matrix = tuple[tuple[float | None, ...], ...]
+"""6 x 6 covariance in the order of ``Six``, in mm and degrees."""
 
 PRODUCTION = "production"
 """Mode of the runs that make parts."""
@@ -24,34 +32,125 @@ class RunResult(StrEnum):
     """The daemon ended without closing it; found at the next start."""
 
 
-@dataclass(frozen=True, slots=True)
-class Measurement:
-    """A measured pose."""
+class Verdict(StrEnum):
+    """Whether a figure is within its limits."""
 
-    time: datetime
-    kind: str
+    PASS = "pass"
+    FAIL = "fail"
+
+
+class PoseOrigin(StrEnum):
+    """Where the knowledge of a pose comes from."""
+
+    MEASURED = "measured"
+    """By cameras or by touch."""
+    COMMANDED = "commanded"
+    """The target that a robot was given."""
+    REPORTED = "reported"
+    """By the robot, from its own encoders."""
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """A stretch of a run, usually one step of its process."""
+
+    id: int
+    number: int
+    """As the line sees it in the step register."""
+    label: str
+    began: datetime
+    ended: datetime | None
+    """None while it lasts, and for ever when the daemon died in it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A named figure; make one with ``cellctl.records.figures.figure``."""
+
+    key: str
+    """Stable name for evaluation, nested with dots: ``approach.speed``."""
+    label: str
+    """Words for people."""
+    value: float | None
+    """None is unknown."""
+    unit: str
+    lower: float | None = None
+    upper: float | None = None
+    verdict: Verdict | None = None
+    """None when it has no limit, PASS within its limits, FAIL beyond them or unknown."""
+    time: datetime = field(default_factory=utc_now)
+    phase: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedPose:
+    """A pose ``parent_T_child``."""
+
+    key: str
+    origin: PoseOrigin
+    parent: str
+    child: str
     pose_mm_deg: Six
-    sigma_mm_deg: Six
-    residual_um: float | None
-    """Rms over the holes."""
-    frames: int
-    detail: Mapping[str, Any]
+    """X, Y, Z, A, B, C."""
+    sigma_mm_deg: Six | None = None
+    """Standard deviations of x, y, z, rx, ry, rz in the axes of the parent."""
+    covariance_mm_deg: Matrix | None = None
+    """In the convention of ``cellctl.geometry.uncertain``. None for poses that are not measured,
+    and in runs of schema 1, which kept the standard deviations alone."""
+    residual_um: float | None = None
+    """Rms of the features that were fitted."""
+    frames: int | None = None
+    detail: Mapping[str, Any] = field(default_factory=dict)
+    time: datetime = field(default_factory=utc_now)
+    phase: int | None = None
 
 
 @dataclass(frozen=True, slots=True)
-class Iteration:
-    """One pass of the measure-compensate loop."""
+class PassComponent:
+    """One component of the error that a loop brings down."""
 
-    time: datetime
-    iteration: int
-    error_mm_deg: Six
-    sigma_mm_deg: Six
-    threshold_mm_deg: Six
-    frames: int
-    residual_um: float | None
-    """Rms over the holes."""
+    name: str
+    unit: str
+    value: float | None
+    sigma: float | None
+    limit: float | None
+    """Converged at or below this magnitude."""
+    correction: float | None = None
+    """What was corrected after this pass; None when nothing was."""
+
+
+@dataclass(frozen=True, slots=True)
+class LoopPass:
+    """One pass of a loop that measures and corrects."""
+
+    loop: str
+    number: int
+    components: tuple[PassComponent, ...]
     converged: bool
-    correction_mm_deg: Six
+    residual_um: float | None = None
+    """Rms of the features that were fitted."""
+    frames: int | None = None
+    time: datetime = field(default_factory=utc_now)
+    phase: int | None = None
+
+    @property
+    def worst_ratio(self) -> float:
+        """The greatest error as a share of its limit."""
+        return max(abs(c.value or 0.0) / (c.limit or 1.0) for c in self.components)
+
+
+@dataclass(frozen=True, slots=True)
+class Document:
+    """What a process knows of a run besides figures and poses, as plain data."""
+
+    key: str
+    content: Mapping[str, Any]
+    time: datetime = field(default_factory=utc_now)
+    phase: int | None = None
+
+
+RunDetail = Figure | RecordedPose | LoopPass | Document
+"""What a run takes while it is open."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +198,18 @@ class Calibration:
     made: datetime
     valid_until: datetime
     record: Mapping[str, Any]
+    invalidated: datetime | None = None
+    invalidated_reason: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """Who did what."""
+
+    time: datetime
+    actor: str
+    action: str
+    detail: Mapping[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +217,8 @@ class RunHead:
     """A run without its details."""
 
     number: int
+    process: str
+    """Name of the process (entry point ``cellctl.process``) that made the run."""
     serial: str
     recipe_id: int
     recipe_name: str
@@ -122,6 +235,8 @@ class RunHead:
     """A ``RunResult``, None while it is open."""
     fault_number: int | None
     fault: str | None
+    record_schema: int
+    """Schema of the store that wrote it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,15 +252,40 @@ class Seal:
 
 @dataclass(frozen=True, slots=True)
 class RunRecord:
-    """Everything about a run."""
+    """Everything about a run, each kind in the order in which it was written."""
 
     head: RunHead
-    measurements: tuple[Measurement, ...]
-    iterations: tuple[Iteration, ...]
-    mating: Mapping[str, Any] | None
+    phases: tuple[Phase, ...]
+    figures: tuple[Figure, ...]
+    poses: tuple[RecordedPose, ...]
+    passes: tuple[LoopPass, ...]
+    documents: tuple[Document, ...]
     artefacts: tuple[Artefact, ...]
     alarms: tuple[Alarm, ...]
     gauges: tuple[Gauge, ...]
     """The newest per hole."""
     seal: Seal | None
     """None while the run is open."""
+
+    @property
+    def measurements(self) -> tuple[RecordedPose, ...]:
+        """The measured poses alone."""
+        return tuple(pose for pose in self.poses if pose.origin is PoseOrigin.MEASURED)
+
+    @property
+    def newest_figures(self) -> Mapping[str, Figure]:
+        """The last figure of each key: a further attempt replaces what an earlier one found."""
+        return {entry.key: entry for entry in self.figures}
+
+    def value(self, key: str) -> float | None:
+        """The last value of a figure; None when it is unknown or was never recorded."""
+        found = self.newest_figures.get(key)
+        return None if found is None else found.value
+
+    def document(self, key: str) -> Mapping[str, Any]:
+        """All documents of a key as one, later entries first; empty when there is none."""
+        merged: dict[str, Any] = {}
+        for entry in self.documents:
+            if entry.key == key:
+                merged |= entry.content
+        return merged

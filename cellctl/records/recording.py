@@ -1,12 +1,12 @@
-"""Force curves as MCAP files: readable by common viewers, and up to a cut when cut off.
+"""Force curves as MCAP files, readable by common viewers.
 
-Small compressed chunks, each flushed to the disk, bound what a power cut can take. A recording
-under way is called ``*.part``; who finds one reads it like any other.
+A curve is encoded whole in memory when its contact is over and stored like any other file of the
+run; a daemon that dies before that leaves no file. Small compressed chunks with a checksum each
+let a damaged or shortened file be read up to the damage.
 """
 
 import io
 import json
-import os
 import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
 from zstandard import ZstdError
 
-from cellctl.errors.records import RecordingUnreadable, RecordNotWritten
+from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 
@@ -42,7 +42,7 @@ _RECORD_LIMIT = 16 * 1024 * 1024
 
 @dataclass(frozen=True, slots=True)
 class Recording:
-    """A curve read back."""
+    """A curve that was read from a file."""
 
     curve: ForceCurve
     facts: Mapping[str, str]
@@ -63,7 +63,6 @@ class CurveWriter:
         schema_id = self._writer.register_schema("mating.Force", "jsonschema", schema)
         self._channel = self._writer.register_channel(_TOPIC, "json", schema_id)
         self._writer.add_metadata(_FACTS, dict(facts))
-        self._count = 0
 
     def add(self, time_s: float, travel_m: float, wrench: Array) -> None:
         """One sample; travel may be NaN."""
@@ -73,16 +72,6 @@ class CurveWriter:
         values |= {name: round(float(v), 4) for name, v in zip(_FIELDS, wrench, strict=True)}
         time_ns = self._start_ns + int(time_s * 1e9)
         self._writer.add_message(self._channel, time_ns, json.dumps(values).encode(), time_ns)
-        self._count += 1
-
-    def sync(self) -> None:
-        """Everything so far on the disk; raises ``RecordNotWritten``."""
-        try:
-            self._writer.flush()
-            self._stream.flush()
-            os.fdatasync(self._stream.fileno())
-        except OSError as error:
-            raise RecordNotWritten(f"force recording: {error.strerror}") from error
 
     def __enter__(self) -> Self:
         return self

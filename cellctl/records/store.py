@@ -4,7 +4,7 @@ A folder with ``store.sqlite`` and ``files/``. All methods block, belong to one 
 8xx faults. A call that returns is on the disk.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -14,23 +14,39 @@ from sqlalchemy import select
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import ValueRefused
-from cellctl.records import ledger, reading
 from cellctl.records.artefacts import ArtefactFolder
-from cellctl.records.database import Database
-from cellctl.records.entries import Alarm, Calibration, RunHead, RunRecord, RunResult
-from cellctl.records.ownership import Ownership
-from cellctl.records.rows import active_alarm_rows, close, existing_run, floats, open_run
-from cellctl.records.schema import (
+from cellctl.records.database import ledger, reading
+from cellctl.records.database.rows import (
+    active_alarm_rows,
+    close,
+    existing_run,
+    open_phase,
+    open_run,
+    to_entry,
+    to_row,
+)
+from cellctl.records.database.schema import (
+    SCHEMA_VERSION,
     AlarmRow,
     ArtefactRow,
     AuditRow,
     CalibrationRow,
     GaugeRow,
-    IterationRow,
-    MeasurementRow,
+    PhaseRow,
     RunRow,
     ValueRow,
 )
+from cellctl.records.database.sessions import Database
+from cellctl.records.entries import (
+    Alarm,
+    AuditEntry,
+    Calibration,
+    RunDetail,
+    RunHead,
+    RunRecord,
+    RunResult,
+)
+from cellctl.records.ownership import Ownership
 
 _GAUGE_RANGE_MM = (0.5, 50.0)
 _LINE_SEQ = "line_seq"
@@ -40,7 +56,10 @@ class RunStore:
     """One writer: the daemon. Commands of the operator may add gauge results beside it."""
 
     def __init__(self, path: Path, *, create: bool = True) -> None:
-        """Open the store in a folder, or create it; raises ``StoreUnavailable``."""
+        """Open the store in a folder, migrate an older one, or create it.
+
+        Raises ``StoreUnavailable``, ``StoreTooNew``.
+        """
         self.path = path
         self._database = Database(path / "store.sqlite", create=create)
         self.artefacts = ArtefactFolder(path / "files")
@@ -66,6 +85,7 @@ class RunStore:
     def start_run(
         self,
         *,
+        process: str,
         serial: str,
         recipe_id: int,
         recipe_name: str,
@@ -79,6 +99,8 @@ class RunStore:
     ) -> int:
         """Open a run, before anything moves; its number."""
         row = RunRow(
+            process=process,
+            record_schema=SCHEMA_VERSION,
             serial=serial,
             recipe_id=recipe_id,
             recipe_name=recipe_name,
@@ -88,68 +110,30 @@ class RunStore:
             software=software,
             config_hash=config_hash,
             simulated=simulated,
-            calibration_ids=dict(calibration_ids),
+            calibration_ids=calibration_ids,
             started=utc_now(),
         )
         with self._database.write() as session:
             session.add(row)
         return row.number
 
-    def add_measurement(
-        self,
-        run: int,
-        kind: str,
-        *,
-        pose_mm_deg: Sequence[float],
-        sigma_mm_deg: Sequence[float],
-        residual_um: float,
-        frames: int,
-        detail: Mapping[str, Any] | None = None,
-    ) -> None:
-        """A measured pose as X, Y, Z, A, B, C; ``residual_um`` is the rms over the holes."""
-        self._add(
-            run,
-            MeasurementRow(
-                run=run,
-                time=utc_now(),
-                kind=kind,
-                pose_mm_deg=floats(pose_mm_deg),
-                sigma_mm_deg=floats(sigma_mm_deg),
-                residual_um=floats([residual_um])[0],
-                frames=frames,
-                detail=dict(detail or {}),
-            ),
-        )
+    def add(self, run: int, *details: RunDetail) -> None:
+        """Figures, poses, passes and documents of the phase that a run is in; all or none."""
+        with self._database.write() as session:
+            open_run(session, run)
+            phase = open_phase(session, run)
+            phase_id = None if phase is None else phase.id
+            session.add_all(to_row(entry, run, phase_id) for entry in details)
 
-    def add_iteration(
-        self,
-        run: int,
-        iteration: int,
-        *,
-        error_mm_deg: Sequence[float],
-        sigma_mm_deg: Sequence[float],
-        threshold_mm_deg: Sequence[float],
-        frames: int,
-        residual_um: float,
-        converged: bool,
-        correction_mm_deg: Sequence[float] = (),
-    ) -> None:
-        """One pass of the loop; six components each, the correction empty when there was none."""
-        self._add(
-            run,
-            IterationRow(
-                run=run,
-                time=utc_now(),
-                iteration=iteration,
-                error_mm_deg=floats(error_mm_deg),
-                sigma_mm_deg=floats(sigma_mm_deg),
-                threshold_mm_deg=floats(threshold_mm_deg),
-                frames=frames,
-                residual_um=floats([residual_um])[0],
-                converged=converged,
-                correction_mm_deg=floats(correction_mm_deg),
-            ),
-        )
+    def begin_phase(self, run: int, number: int, label: str) -> None:
+        """End the phase that a run is in, if there is one, and begin another."""
+        now = utc_now()
+        with self._database.write() as session:
+            open_run(session, run)
+            before = open_phase(session, run)
+            if before is not None:
+                before.ended = now
+            session.add(PhaseRow(run=run, number=number, label=label, began=now))
 
     def add_artefact(self, run: int, name: str, data: bytes, media_type: str) -> str:
         """A file of the run; its SHA-256. The bytes are on the disk before the row is."""
@@ -162,14 +146,10 @@ class RunStore:
             size=len(data),
             media_type=media_type,
         )
-        self._add(run, row)
-        return sha256
-
-    def set_mating(self, run: int, mating: Mapping[str, Any]) -> None:
-        """Figures of the mating: plain numbers, texts and lists. Later keys replace earlier."""
         with self._database.write() as session:
-            row = open_run(session, run)
-            row.mating = {**(row.mating or {}), **mating}
+            open_run(session, run)
+            session.add(row)
+        return sha256
 
     def close_run(
         self,
@@ -217,7 +197,7 @@ class RunStore:
     def active_alarms(self) -> list[Alarm]:
         """Alarms nobody has acknowledged, the oldest first."""
         with self._database.read() as session:
-            return [reading.convert(row, Alarm) for row in session.scalars(active_alarm_rows())]
+            return [to_entry(row, Alarm) for row in session.scalars(active_alarm_rows())]
 
     def add_calibration(self, stored: StoredCalibration) -> None:
         """Keep a calibration for good; the same one again is no change."""
@@ -228,7 +208,7 @@ class RunStore:
             software=stored.software,
             made=stored.made,
             valid_until=stored.valid_until,
-            record=dict(stored.record),
+            record=stored.record,
         )
         with self._database.write() as session:
             if session.get(CalibrationRow, stored.id) is None:
@@ -251,13 +231,19 @@ class RunStore:
         """Every calibration that was ever stored, newest first."""
         query = select(CalibrationRow).order_by(CalibrationRow.made.desc())
         with self._database.read() as session:
-            return [reading.convert(row, Calibration) for row in session.scalars(query)]
+            return [to_entry(row, Calibration) for row in session.scalars(query)]
 
     def audit(self, actor: str, action: str, detail: Mapping[str, Any] | None = None) -> None:
         """Append to the audit log."""
-        row = AuditRow(time=utc_now(), actor=actor, action=action, detail=dict(detail or {}))
+        row = AuditRow(time=utc_now(), actor=actor, action=action, detail=detail or {})
         with self._database.write() as session:
             session.add(row)
+
+    def audit_log(self) -> list[AuditEntry]:
+        """Everything that was ever appended, oldest first."""
+        with self._database.read() as session:
+            rows = session.scalars(select(AuditRow).order_by(AuditRow.id))
+            return [to_entry(row, AuditEntry) for row in rows]
 
     def note_line_seq(self, seq: int) -> None:
         """Remember the last command number of the line, before the command is obeyed."""
@@ -276,7 +262,7 @@ class RunStore:
         if serial is not None:
             query = query.where(RunRow.serial == serial)
         with self._database.read() as session:
-            return [reading.convert(row, RunHead) for row in session.scalars(query)]
+            return [to_entry(row, RunHead) for row in session.scalars(query)]
 
     def run(self, number: int) -> RunRecord:
         """One run with everything; raises ``RunUnknown``."""
@@ -287,8 +273,3 @@ class RunStore:
         """Whether anything that is closed was changed: the problems, none if all is well."""
         with self._database.read() as session:
             return list(ledger.problems(session))
-
-    def _add(self, run: int, row: MeasurementRow | IterationRow | ArtefactRow) -> None:
-        with self._database.write() as session:
-            open_run(session, run)
-            session.add(row)

@@ -75,6 +75,7 @@ class JobRecord:
         made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
         self.number = await self.store.do(
             RunStore.start_run,
+            process=recipe.process,
             serial=command.serial,
             recipe_id=recipe.id,
             recipe_name=recipe.name,

@@ -20,6 +20,9 @@ from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
 from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.entries import RunRecord
+from cellctl.records.recorder import RunRecorder
+from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, Steps
@@ -53,8 +56,8 @@ class Prepared(Generic[P]):
 class RunContext:
     """One open run."""
 
-    number: int
-    """Of its record."""
+    recorder: RunRecorder
+    """Into its record."""
     safe_point: SafePoint
     """Obeys a pending Hold; a step that waits long or repeats itself calls it in between."""
 
@@ -105,6 +108,15 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     @abstractmethod
     async def clear(self) -> None:
         """Reset, with all robots ready: leave the station, whatever a run has left there."""
+
+    @classmethod
+    def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:  # noqa: ARG003
+        """What the report of a run shows besides the pages that any run has; by default nothing.
+
+        Called without a cell, also for runs that ended early and for those of earlier versions.
+        ``read`` gives the bytes of a file of the run and raises ``ArtefactDamaged``.
+        """
+        return ProcessPages()
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibrations and other measurements of Maintenance, by their numbers."""

@@ -7,6 +7,7 @@ from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.recorder import RunRecorder
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.process import Process, RunContext
@@ -47,6 +48,10 @@ class ProductionJob(Job):
         return self._record.number
 
     @property
+    def _recorder(self) -> RunRecorder:
+        return RunRecorder(self._process.services.store, self.run_number)
+
+    @property
     def outcome(self) -> RunResult:
         """A dry run ends without a part: never good."""
         return RunResult.BAD if self._command.dry_run else RunResult.GOOD
@@ -59,7 +64,7 @@ class ProductionJob(Job):
         prepared = await self._process.prepare(self._recipe)
         mode = DRY_RUN if self._command.dry_run else PRODUCTION
         await self._record.open(self._recipe, mode, prepared.stored)
-        run = self._process.open(prepared, RunContext(self.run_number, self._safe_point))
+        run = self._process.open(prepared, RunContext(self._recorder, self._safe_point))
         self._begun = run, await self._process.begin(run)
 
     async def execute(self) -> None:
@@ -74,7 +79,7 @@ class ProductionJob(Job):
         if self._command.dry_run:
             steps = steps.before_contact()
         runner = StepRunner(
-            self._board, self._safe_point, self.run_number, self._command.single_step
+            self._board, self._safe_point, self._recorder, self._command.single_step
         )
         while True:
             try:

@@ -10,6 +10,7 @@ from enum import Enum
 from typing import Any, Generic, Protocol, TypeVar
 
 from cellctl import log
+from cellctl.records.recorder import RunRecorder
 from cellctl.runtime.progress import ProgressBoard
 
 _log = log.get(__name__)
@@ -85,7 +86,8 @@ class StepRunner:
 
     board: ProgressBoard
     safe_point: SafePoint
-    run_number: int
+    recorder: RunRecorder
+    """Told of every step as a phase of the run."""
     single_step: bool = False
     """Hold before each step that was not reached before; with every Unhold the run measures anew
     and gets one step further."""
@@ -100,7 +102,8 @@ class StepRunner:
             self.board.update(
                 step=step.number, step_label=step.label, contact=step.contact, message=""
             )
-            with log.bound(run=self.run_number, step=step.label):
+            await self.recorder.phase(step.number, step.label)
+            with log.bound(run=self.recorder.run, step=step.label):
                 _log.info("step begins")
                 value = await step.run(value)
         result: B = value

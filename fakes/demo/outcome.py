@@ -45,7 +45,9 @@ def _outcome(
     wall_s: float,
 ) -> dict[str, Any]:
     pose = truth.get("frame_T_deck_mm_deg", [None] * 6)
-    mating = record.get("mating") or {}
+    figures = {figure["key"]: figure["value"] for figure in record.get("figures", [])}
+    passes = record.get("passes", [])
+    last = [component["value"] for component in passes[-1]["components"]] if passes else None
     offsets = [pin["offset_mm"] for pin in pins.values()]
     peak_true_n = truth["peak_contact_force_n"]
     good = line.get("result") == "good"
@@ -55,16 +57,16 @@ def _outcome(
         "passed": good and within,
         "result": line.get("result"),
         "fault": record.get("fault") or line.get("message") or "",
-        "iterations": len(record.get("iterations", [])),
-        "measured_error_mm_deg": (record.get("iterations") or [{}])[-1].get("error_mm_deg"),
+        "iterations": len(passes),
+        "measured_error_mm_deg": last,
         "true_frame_T_deck_mm_deg": pose,
         "lateral_mm": max(offsets) if offsets else None,
         "rotation_deg": None if pose[0] is None else max(abs(angle) for angle in pose[3:]),
         "seat_gap_mm": None if pose[0] is None else pose[2] - truth["deck_thickness_mm"],
         "peak_true_n": peak_true_n,
         "final_true_n": truth["contact_force_n"],
-        "peak_sensed_n": mating.get("peak_force_n"),
-        "hold_force_n": mating.get("hold_force_n"),
+        "peak_sensed_n": figures.get("peak_force"),
+        "hold_force_n": figures.get("hold_force"),
         "gauge_mm": {name: pin["gauge_mm"] for name, pin in pins.items()},
         "gauge_min_mm": min((pin["gauge_mm"] for pin in pins.values()), default=None),
         "wall_s": wall_s,

@@ -80,6 +80,5 @@ def _everything_is_on_record(data: Path, run: int) -> None:
     assert (found.head.mode, found.head.result) == ("commissioning", "good")
     curves = [artefact.name for artefact in found.artefacts if artefact.name.startswith("force")]
     assert curves == ["force-1.mcap", "force-2.mcap", "force-3.mcap"]
-    assert found.mating is not None
-    assert found.mating["approach"]["stop_latency_s"] == pytest.approx(0.3)
+    assert found.value("approach.stop_latency") == pytest.approx(0.3)
     assert {"stop_latency", "contact_stiffness_1"} <= kinds

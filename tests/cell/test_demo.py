@@ -47,7 +47,7 @@ def _record_is_complete(out: Path, result: dict[str, Any]) -> None:
     report = out / "report"
     record = json.loads((report / "run.json").read_text(encoding="utf-8"))
     assert record["result"] == "good"
-    assert len(record["iterations"]) == result["iterations"]
+    assert len(record["passes"]) == result["iterations"]
     page = (report / "report.html").read_text(encoding="utf-8")
     measured = ["frame", "deck", *(f"iteration-{i + 1}" for i in range(result["iterations"]))]
     wanted = {

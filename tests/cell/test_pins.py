@@ -31,11 +31,14 @@ def test_a_part_is_mated_onto_its_pins(own: OwnCell) -> None:
     assert 35.0 <= truth["peak_contact_force_n"] < 50.0
     store = RunStore(own.data, create=False)
     try:
-        mating = store.run(1).mating
+        record = store.run(1)
     finally:
         store.close()
-    assert mating is not None
-    assert mating["outcome"] == "seated"
-    assert mating["window"]["clear_mm"] < mating["window"]["earliest_mm"] - 1.4
-    gave_way = mating.get("gave_way", {"x_mm": 0.0, "y_mm": 0.0})
-    assert abs(gave_way["x_mm"]) + abs(gave_way["y_mm"]) < 0.1
+    assert record.document("mating")["outcome"] == "seated"
+    figures = record.newest_figures
+    clear_mm, earliest_mm = (figures[f"window.{name}"].value for name in ("clear", "earliest"))
+    assert clear_mm is not None
+    assert earliest_mm is not None
+    assert clear_mm < earliest_mm - 1.4
+    gave_way_mm = [record.value(f"gave_way.{axis}") or 0.0 for axis in "xy"]
+    assert sum(map(abs, gave_way_mm)) < 0.1

@@ -23,6 +23,7 @@ from cellctl.processes.deck_to_frame.state import Corrected, Ready
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.steps import CORRECT_POSE, TO_STAND_OFF
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home
+from cellctl.records.recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.steps import HeldMeanwhile, StepRunner, Steps, StepSpec
@@ -43,8 +44,9 @@ async def measure_contact_stiffness_on_cell(
     kinds = [kind for kind in CALIBRATIONS if kind.required]
     facts = await read_facts(cell, recipe, services.calibrations, kinds)
     number = await context.record.open(recipe, MODE, facts.calibrations.records)
-    opened = OpenRun.of(facts, services, RunContext(number, context.safe_point))
-    runner = StepRunner(services.board, context.safe_point, number)
+    recorder = RunRecorder(services.store, number)
+    opened = OpenRun.of(facts, services, RunContext(recorder, context.safe_point))
+    runner = StepRunner(services.board, context.safe_point, recorder)
     touch = StepSpec(108, "measure contact stiffness", _touch, contact=True)
     steps: Steps[Ready, ContactStiffness] = TO_STAND_OFF.then(CORRECT_POSE).then(touch)
     while True:

@@ -11,6 +11,8 @@ from cellctl.errors.vision import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import ROLES
 from cellctl.processes.deck_to_frame.settings import DeckSettings
+from cellctl.records.entries import RunRecord
+from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
@@ -98,6 +100,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
         for cell in self._cells():
             await lift_off(cell)
+
+    @classmethod
+    def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
+        """Holes, the loop, forces over time and travel, pin holes."""
+        from cellctl.processes.deck_to_frame.report.pages import pages
+
+        return pages(record, read)
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibration and commissioning, 101 to 108."""

@@ -42,7 +42,7 @@ class OpenRun:
     @classmethod
     def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
         """A run whose record was opened."""
-        journal = Journal(services.store, facts.cell.workers, context.number)
+        journal = Journal(context.recorder, facts.cell.workers)
         return cls(facts, services.board, journal, context.safe_point)
 
 

@@ -1,5 +1,5 @@
-"""The report of a run for people: HTML with figures and pictures."""
+"""The report of a run for people: HTML with figures and pictures, and the record beside it.
 
-from cellctl.records.report.export import export_run
-
-__all__ = ["export_run"]
+A process imports ``sections`` to make its own pages; everything else of a
+report is the same for all runs.
+"""

@@ -8,26 +8,31 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from cellctl.errors.records import RecordingUnreadable, RecordNotWritten, ValueRefused
-from cellctl.force.contact.curve import ForceCurve
+from cellctl.errors.records import RecordNotWritten, ValueRefused
 from cellctl.records.entries import RunRecord
-from cellctl.records.recording import MEDIA_TYPE, read_recording
 from cellctl.records.report.render import render
+from cellctl.records.report.sections import ReportBuilder, no_pages
 from cellctl.records.report.view import build_view
 from cellctl.records.store import RunStore
 
 REPORT, RECORD = "report.html", "run.json"
 
 
-def export_run(store: RunStore, number: int, folder: Path, *, single_file: bool = False) -> Path:
+def export_run(
+    store: RunStore,
+    number: int,
+    folder: Path,
+    *,
+    pages: ReportBuilder = no_pages,
+    single_file: bool = False,
+) -> Path:
     """Write a run into a folder and return its report.
 
     The folder gets ``report.html``, ``run.json`` and every file of the run under its name; with
-    ``single_file`` the pictures are inside the report. Raises ``RunUnknown``, ``ArtefactDamaged``,
-    ``RecordNotWritten``.
+    ``single_file`` the pictures are inside the report. ``pages`` is what the process of the run
+    adds to the report. Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten``.
     """
     record = store.run(number)
-    curves: dict[str, tuple[ForceCurve, bool]] = {}
     addresses: dict[str, str] = {}
     for artefact in record.artefacts:
         data = store.artefacts.get(artefact.sha256)
@@ -37,10 +42,9 @@ def export_run(store: RunStore, number: int, folder: Path, *, single_file: bool 
         if artefact.media_type.startswith("image/"):
             inline = f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
             addresses[artefact.name] = inline if single_file else name.as_posix()
-        elif artefact.media_type == MEDIA_TYPE:
-            curves.update(_curve(artefact.name, data))
     calibrations = {stored.id: stored for stored in store.calibrations()}
-    page = render(build_view(record, calibrations, curves, addresses))
+    brought = pages(record, lambda artefact: store.artefacts.get(artefact.sha256))
+    page = render(build_view(record, calibrations, brought, addresses))
     _write(folder / REPORT, page.encode())
     _write(folder / RECORD, (json.dumps(document(record), indent=1) + "\n").encode())
     return folder / REPORT
@@ -51,14 +55,6 @@ def document(record: RunRecord) -> Mapping[str, Any]:
     fields = asdict(record)
     plain: dict[str, Any] = json.loads(json.dumps(fields.pop("head") | fields, default=_plain))
     return plain
-
-
-def _curve(name: str, data: bytes) -> dict[str, tuple[ForceCurve, bool]]:
-    try:
-        recording = read_recording(data)
-    except RecordingUnreadable:
-        return {}  # the file is exported as it is; the report has no figure of it
-    return {name: (recording.curve, recording.complete)}
 
 
 def _safe(name: str) -> PurePosixPath:

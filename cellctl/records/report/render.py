@@ -6,7 +6,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from cellctl.records.report import text
-from cellctl.records.report.view import COMPONENTS, ReportView, worst_share
+from cellctl.records.report.sections import Drawing, FactList, Heading, ReportBlock
+from cellctl.records.report.view import ReportView
 
 
 def render(view: ReportView) -> str:
@@ -20,11 +21,10 @@ def render(view: ReportView) -> str:
     )
     environment.filters |= {
         "when": text.when,
-        "fixed": text.fixed,
         "short": text.short,
-        "plain": text.plain,
         "zip": zip,
-        "svg": Markup,  # figures are made here, from numbers
+        "block_kind": _block_kind,
+        "svg": Markup,  # drawings are made from numbers by plot_style, never from outside text
     }
     css = files("cellctl.records.report").joinpath("report.css").read_text(encoding="utf-8")
     return environment.get_template("report.html").render(
@@ -32,7 +32,18 @@ def render(view: ReportView) -> str:
         run=view.record.head,
         record=view.record,
         css=Markup(css),  # a file of this package
-        components=COMPONENTS,
         duration=text.duration(view.record.head.started, view.record.head.ended),
-        worst_share=worst_share,
     )
+
+
+def _block_kind(block: ReportBlock) -> str:
+    """Which macro of the template places a block."""
+    match block:
+        case Heading():
+            return "heading"
+        case Drawing():
+            return "drawing"
+        case FactList():
+            return "facts"
+        case _:
+            return "table"

@@ -5,25 +5,10 @@ from collections.abc import Iterator, Mapping
 from datetime import datetime
 from typing import Any
 
-_UNITS = {
-    "_n_per_mm": "N/mm",
-    "_n_per_m": "N/m",
-    "_mm_s2": "mm/s²",
-    "_mm_s": "mm/s",
-    "_m_s": "m/s",
-    "_n_m": "N·m",
-    "_deg": "°",
-    "_kg": "kg",
-    "_um": "µm",
-    "_mm": "mm",
-    "_ms": "ms",
-    "_hz": "Hz",
-    "_px": "px",
-    "_n": "N",
-    "_s": "s",
-    "_m": "m",
-}
-"""Longest first: `_n_m` is not `_m`."""
+from cellctl.records.units import label
+
+_DECIMALS = {"mm": 4, "°": 5}
+"""Of errors and their deviations: 0.1 µm, and what that is at an arm's length."""
 MISSING = "–"
 
 
@@ -37,19 +22,16 @@ def facts(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
             yield prefix + name, with_unit(plain(value), unit)
 
 
-def label(key: str) -> tuple[str, str]:
-    """Words and unit of a key: ``stop_latency_ms`` is ("stop latency", "ms")."""
-    for suffix, unit in _UNITS.items():
-        if key.endswith(suffix):
-            return key.removesuffix(suffix).replace("_", " "), unit
-    return key.replace("_", " "), ""
-
-
 def with_unit(text: str, unit: str) -> str:
     """A value with its unit; a degree sign without a space."""
     if not unit or text == MISSING:
         return text
     return text + unit if unit == "°" else f"{text} {unit}"
+
+
+def quantity(value: float | None, unit: str) -> str:
+    """A number with its unit; a dash where it is unknown."""
+    return MISSING if value is None else with_unit(number(value), unit)
 
 
 def plain(value: Any) -> str:
@@ -83,6 +65,11 @@ def fixed(value: float | None, decimals: int, *, signed: bool = False) -> str:
         return MISSING
     text = f"{value:+.{decimals}f}" if signed else f"{value:.{decimals}f}"
     return text.replace("-", "−")
+
+
+def decimals(unit: str) -> int:
+    """Decimals of an error in a unit."""
+    return _DECIMALS.get(unit, 3)
 
 
 def when(time: datetime | None) -> str:

@@ -5,7 +5,6 @@ from datetime import timedelta
 from typing import Any
 
 import pytest
-from sqlalchemy import select
 
 from cellctl.errors.force import SensorSilent
 from cellctl.errors.link import LinkLost
@@ -15,16 +14,13 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
 from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.daemon_rig import DaemonRig
 
 
 def audit(store: RunStore) -> list[tuple[str, str, dict[str, Any]]]:
-    with store._database.read() as session:
-        rows = session.scalars(select(AuditRow).order_by(AuditRow.id)).all()
-        return [(row.actor, row.action, row.detail) for row in rows]
+    return [(entry.actor, entry.action, dict(entry.detail)) for entry in store.audit_log()]
 
 
 @pytest.mark.parametrize(

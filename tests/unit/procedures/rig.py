@@ -3,11 +3,8 @@
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import select
-
 from cellctl.processes.deck_to_frame.process import DeckToFrame
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.schema import AuditRow
 from cellctl.records.store import RunStore
 from cellctl.runtime.job_factory import procedures_by_number
 from cellctl.runtime.job_record import JobRecord
@@ -63,8 +60,6 @@ class ProcedureRig:
 
     async def audit(self) -> list[tuple[str, str, dict[str, Any]]]:
         def read(store: RunStore) -> list[tuple[str, str, dict[str, Any]]]:
-            with store._database.read() as session:
-                rows = session.scalars(select(AuditRow).order_by(AuditRow.id)).all()
-                return [(row.actor, row.action, row.detail) for row in rows]
+            return [(entry.actor, entry.action, dict(entry.detail)) for entry in store.audit_log()]
 
         return await self.archive.do(read)

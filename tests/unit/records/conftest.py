@@ -15,6 +15,7 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
 
 def start(store: RunStore, serial: str = "SAT-0001") -> int:
     return store.start_run(
+        process="deck-to-frame",
         serial=serial,
         recipe_id=1,
         recipe_name="panel 500 x 1000",

@@ -1,14 +1,24 @@
 """A run with everything in it, made from plausible figures."""
 
 from datetime import UTC, datetime, timedelta
+from typing import Any
 
 import numpy as np
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entries import (
+    Document,
+    LoopPass,
+    PassComponent,
+    PoseOrigin,
+    RecordedPose,
+)
+from cellctl.records.figures import Limit, figure
 from cellctl.records.recording import MEDIA_TYPE, encode_curve
 
+PROCESS = "deck-to-frame"
 THRESHOLD = (0.05, 0.05, 0.05, 0.005, 0.005, 0.005)
 SIGMA = (0.004, 0.004, 0.006, 0.0006, 0.0004, 0.0003)
 ERRORS = (
@@ -16,6 +26,10 @@ ERRORS = (
     (0.0712, -0.0431, 0.0122, 0.00712, -0.00213, 0.00481),
     (0.0081, -0.0112, 0.0043, 0.00112, -0.00083, 0.00041),
 )
+LOOP = "pose correction"
+COMPONENTS = (
+    ("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"),
+)  # fmt: skip
 HOLE = {
     "head": 1, "position_mm": [10.123, -20.456, 512.789], "sigma_mm": [0.002, 0.002, 0.006],
     "diameter_mm": 6.003, "left_px": [1000.1, 900.2], "right_px": [1100.3, 900.4],
@@ -36,40 +50,59 @@ def force_curve(peak_n: float = 38.0, seconds: float = 24.0) -> ForceCurve:
     return ForceCurve(time_s, wrench, travel_m)
 
 
+def pose(key: str, values: tuple[float, ...], residual_um: float, **more: Any) -> RecordedPose:
+    """A part as head 1 saw it."""
+    return RecordedPose(
+        key, PoseOrigin.MEASURED, "c1", key, values, SIGMA, residual_um=residual_um, frames=2,
+        **more,
+    )  # fmt: skip
+
+
+def loop_pass(
+    number: int, errors: tuple[float, ...], corrections: tuple[float | None, ...] = (None,) * 6
+) -> LoopPass:
+    """One pass of the loop of an assembly; the last one of ``ERRORS`` has converged."""
+    columns = zip(COMPONENTS, errors, SIGMA, THRESHOLD, corrections, strict=True)
+    components = tuple(PassComponent(*head, *values) for head, *values in columns)
+    return LoopPass(
+        LOOP, number, components, number == len(ERRORS), residual_um=3.0 + number, frames=2
+    )
+
+
 def fill(store: RunStore, run: int, picture: bytes) -> None:
     """Everything that a good run leaves behind."""
-    store.add_measurement(
-        run, "frame", pose_mm_deg=(12.34, -4.56, 512.3, 90.01, 0.02, 179.9),
-        sigma_mm_deg=SIGMA, residual_um=3.4, frames=2,
-    )  # fmt: skip
-    store.add_measurement(
-        run, "deck", pose_mm_deg=(10.1, -3.3, 447.2, 89.8, 0.1, 179.7), sigma_mm_deg=SIGMA,
-        residual_um=4.1, frames=2, detail={
-            "holes": dict.fromkeys(("P1", "P2", "P5", "P6"), HOLE),
-            "residuals_mm": {"P1": [0.001, 0.002, 0.002], "P5": [0.0, 0.0, 0.009]},
-            "outliers": ["P5"],
-        },
-    )  # fmt: skip
-    for number, error in enumerate(ERRORS, start=1):
-        store.add_iteration(
-            run, number, error_mm_deg=error, sigma_mm_deg=SIGMA, threshold_mm_deg=THRESHOLD,
-            frames=2, residual_um=3.0 + number, converged=number == len(ERRORS),
-        )  # fmt: skip
+    store.begin_phase(run, 10, "measure frame")
+    store.add(run, pose("frame", (12.34, -4.56, 512.3, 90.01, 0.02, 179.9), 3.4))
+    store.begin_phase(run, 20, "measure deck")
+    detail = {
+        "holes": dict.fromkeys(("P1", "P2", "P5", "P6"), HOLE),
+        "residuals_mm": {"P1": [0.001, 0.002, 0.002], "P5": [0.0, 0.0, 0.009]},
+        "outliers": ["P5"],
+    }
+    store.add(run, pose("deck", (10.1, -3.3, 447.2, 89.8, 0.1, 179.7), 4.1, detail=detail))
+    store.begin_phase(run, 40, "correct pose")
+    store.add(run, *(loop_pass(number, error) for number, error in enumerate(ERRORS, start=1)))
     for name in ("head-1-left", "head-1-right", "head-2-left", "head-2-right"):
         store.add_artefact(run, f"frame-{name}.png", picture, "image/png")
+    store.begin_phase(run, 50, "mate")
     recording = encode_curve(force_curve(seconds=4.0), datetime.now(UTC), {"attempt": "1"})
     store.add_artefact(run, "force-1.mcap", recording, MEDIA_TYPE)
-    store.set_mating(
+    store.add(
         run,
-        {
-            "target_force_n": 35.0,
-            "limit_force_n": 50.0,
-            "approach_speed_mm_s": 0.2512,
-            "stop_latency_ms": 250.0,
-            "stiffness_n_per_mm": 812.4,
-            "speed_formula": "F_peak = h(k v) + k v T + F_tare",
-            "verdict": {"seated": True, "depth_error_mm": 0.012},
-        },
+        figure("target_force", 35.0, "N"),
+        figure("limit_force", 50.0, "N"),
+        figure("peak_force", 38.4, "N", limit=Limit(upper=50.0)),
+        figure("approach.speed", 0.2512, "mm/s"),
+        figure("stop_latency", 250.0, "ms"),
+        figure("stiffness", 812.4, "N/mm"),
+        figure("verdict.depth_error", 0.012, "mm"),
+        Document(
+            "mating",
+            {
+                "approach": {"formula": "F_peak = h(k v) + k v T + F_tare"},
+                "verdict": {"seated": True},
+            },
+        ),
     )
 
 
@@ -101,7 +134,8 @@ def calibrations(store: RunStore) -> dict[str, str]:
 def good_run(store: RunStore, picture: bytes = b"\x89PNG\r\n\x1a\n") -> int:
     """A whole good run; its number."""
     run = store.start_run(
-        serial="SAT-0042", recipe_id=1, recipe_name="panel 500 x 1000", recipe_hash="ab" * 32,
+        process=PROCESS, serial="SAT-0042", recipe_id=1, recipe_name="panel 500 x 1000",
+        recipe_hash="ab" * 32,
         mode="PRODUCTION", software="cellctl 0.1.0", config_hash="cd" * 32,
         calibration_ids=calibrations(store), simulated=True, operator="OP-7",
     )  # fmt: skip

@@ -1,9 +1,7 @@
 """Recordings come back as they were written, and as far as they go when they were cut."""
 
 import io
-import os
 from datetime import UTC, datetime
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,22 +44,6 @@ def test_a_cut_recording_is_read_up_to_the_cut(share: float) -> None:
     samples = len(recording.curve.time_s)
     assert 0.5 * share * 20_000 < samples < 20_000
     np.testing.assert_allclose(recording.curve.wrench, original.wrench[:samples], atol=5e-5)
-
-
-def test_what_was_synced_survives_without_an_end(tmp_path: Path) -> None:
-    path = tmp_path / "force.mcap.part"
-    original = curve(100)
-    with path.open("wb") as file:
-        writer = CurveWriter(file, STARTED, {})
-        for time_s, travel_m, wrench in zip(
-            original.time_s, original.travel_m, original.wrench, strict=True
-        ):
-            writer.add(time_s, travel_m, wrench)
-        writer.sync()
-        size = os.path.getsize(path)
-    recording = read_recording(path.read_bytes()[:size])
-    assert not recording.complete
-    assert len(recording.curve.time_s) == 100
 
 
 @pytest.mark.parametrize(

@@ -1,60 +1,34 @@
-"""The exported folder and what the report says; how it looks is judged by eye."""
+"""The exported folder and the pages that any run has; how they look is judged by eye."""
 
 import json
-import re
-from html.parser import HTMLParser
 from pathlib import Path
-from xml.etree import ElementTree as ET
 
-import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from cellctl.cli.runs import app
-from cellctl.errors.records import ArtefactDamaged, RunUnknown, StoreUnavailable, ValueRefused
-from cellctl.force.contact.curve import ForceCurve
+from cellctl.errors.records import ArtefactDamaged, ValueRefused
 from cellctl.records import RunResult, RunStore
-from cellctl.records.plots import errors_by_iteration, force_by_time, force_by_travel, plug_gauges
-from cellctl.records.plots.force import envelope
-from cellctl.records.report import export_run
-from cellctl.records.report.text import fixed, label, number
+from cellctl.records.entries import RunRecord
+from cellctl.records.figures import Limit, figure
+from cellctl.records.report.export import export_run
+from cellctl.records.report.sections import (
+    Drawing,
+    FactList,
+    Heading,
+    ProcessPages,
+    ReadArtefact,
+    RecordPart,
+    ReportSection,
+    ReportTable,
+    RowMark,
+    TableCell,
+    TableRow,
+    Tile,
+)
+from cellctl.records.report.text import fixed, number
+from cellctl.records.units import label
 from tests.unit.records.conftest import start
-from tests.unit.records.sample import force_curve, good_run
-
-VOID = {"meta", "br", "img", "link", "hr", "input"}
-
-
-class Checker(HTMLParser):
-    """Open and close tags must match; collects text and addresses."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.stack: list[str] = []
-        self.texts: list[str] = []
-        self.addresses: list[str] = []
-        self.tags: set[str] = set()
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.add(tag)
-        self.addresses += [value or "" for name, value in attrs if name in ("src", "href")]
-        if tag not in VOID:
-            self.stack.append(tag)
-
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        pass
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.stack.pop() == tag
-
-    def handle_data(self, data: str) -> None:
-        self.texts.append(data.strip())
-
-
-def read(report: Path) -> Checker:
-    checker = Checker()
-    checker.feed(report.read_text(encoding="utf-8"))
-    assert checker.stack == []
-    return checker
+from tests.unit.records.page import read, text_of
+from tests.unit.records.sample import good_run
 
 
 @pytest.fixture
@@ -69,24 +43,71 @@ def test_the_folder_holds_record_report_pictures_and_recording(exported: Path) -
     assert {"report.html", "run.json", "force-1.mcap", "frame-head-1-left.png"} <= names
     record = json.loads((exported / "run.json").read_text(encoding="utf-8"))
     assert record["serial"] == "SAT-0042"
-    assert len(record["iterations"]) == 3
-    assert record["mating"]["limit_force_n"] == 50.0
+    assert record["process"] == "deck-to-frame"
+    assert len(record["passes"]) == 3
+    figures = {entry["key"]: entry for entry in record["figures"]}
+    assert figures["limit_force"]["value"] == 50.0
+    assert figures["peak_force"]["verdict"] == "pass"
     assert {gauge["hole"] for gauge in record["gauges"]} == {"P1", "P5"}
 
 
-def test_the_report_says_what_an_auditor_asks(exported: Path) -> None:
+def test_a_run_whose_process_is_not_installed_has_a_whole_report(exported: Path) -> None:
     page = read(exported / "report.html")
     text = " ".join(page.texts)
     for expected in (
         "SAT-0042", "Good part", "Simulated", "OP-7", "cellctl 0.1.0", "ab" * 32, "cd" * 32,
-        "Transforms", "−712.300", "179.0221", "−0.0112", "5.93 mm", "limit 50 N", "812.4 N/mm",
-        "No", "F_peak", "this entry", "P5 outlier",
+        "deck-to-frame", "Transforms", "−712.300", "179.0221", "pose correction", "−0.0112",
+        "Phases", "measure deck", "5.93", "simulator", "at most", "38.4 N", "50 N", "within",
+        "812.4 N/mm", "F_peak", "residuals: P1", "this entry",
     ):  # fmt: skip
         assert expected in text, expected
     assert "script" not in page.tags
     local = [address for address in page.addresses if not address.startswith("#")]
     assert all((exported / address).is_file() for address in local)
     assert len([a for a in local if a.endswith(".png")]) == 8
+
+
+def test_the_last_of_several_attempts_is_shown(store: RunStore, tmp_path: Path) -> None:
+    run = start(store)
+    store.add(run, figure("peak", 61.25, "N", limit=Limit(upper=50.0)))
+    store.add(run, figure("peak", 41.75, "N", limit=Limit(upper=50.0)))
+    out = export_run(store, run, tmp_path)
+    text = text_of(out)
+    assert "41.75 N" in text
+    assert "61.25" not in text
+    record = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    assert [entry["verdict"] for entry in record["figures"]] == ["fail", "pass"]
+
+
+def own_pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
+    """One of everything that a process can bring."""
+    size = len(read(record.artefacts[0]))
+    row = TableRow((TableCell("<first>"), TableCell("17", "± 2")), RowMark.BAD, (("why", "bent"),))
+    blocks = (
+        Heading("heading", "careful", warning=True),
+        ReportTable(("name", "amount"), (row,)),
+        Drawing("<svg><title>drawn</title></svg>", "caption"),
+        FactList((("bytes", str(size)),)),
+    )
+    return ProcessPages(
+        tiles=(Tile("Brought", "by the process", "bound", True),),
+        sections=(ReportSection("Own section", blocks),),
+        shows=frozenset({RecordPart.PASSES, RecordPart.GAUGES}),
+        tabulated=frozenset({"residuals_mm"}),
+    )
+
+
+def test_a_process_brings_its_pages(store: RunStore, tmp_path: Path) -> None:
+    page = read(export_run(store, good_run(store), tmp_path, pages=own_pages))
+    text = " ".join(page.texts)
+    for expected in (
+        "Brought", "Own section", "heading", "careful", "<first>", "± 2", "bent", "drawn",
+        "caption", "bytes 8",
+    ):  # fmt: skip
+        assert expected in text, expected
+    for replaced in ("Passes", "Plug gauges", "residuals: P1"):
+        assert replaced not in text, replaced
+    assert "holes: P1" in text, "what the process does not show is shown for it"
 
 
 def test_a_single_file_needs_no_neighbours(store: RunStore, tmp_path: Path) -> None:
@@ -125,53 +146,6 @@ def test_damaged_files_and_foreign_names_are_refused(store: RunStore, tmp_path: 
         export_run(store, second, tmp_path / "b")
 
 
-def test_a_recording_that_was_cut_is_shown_as_far_as_it_goes(
-    store: RunStore, tmp_path: Path
-) -> None:
-    from datetime import UTC, datetime
-
-    from cellctl.records.recording import MEDIA_TYPE, encode_curve
-
-    run = start(store)
-    data = encode_curve(force_curve(), datetime.now(UTC), {})
-    store.add_artefact(run, "force-1.mcap", data[: len(data) // 2], MEDIA_TYPE)
-    store.add_artefact(run, "force-2.mcap", b"nothing", MEDIA_TYPE)
-    text = " ".join(read(export_run(store, run, tmp_path)).texts)
-    assert "recording cut off" in text
-    assert "force 2" not in text
-
-
-def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
-    record = store.run(good_run(store))
-    curve = force_curve(seconds=2.0)
-    for draw in (
-        lambda: errors_by_iteration(record.iterations),
-        lambda: plug_gauges(record.gauges),
-        lambda: force_by_time(curve, 35.0, 50.0),
-        lambda: force_by_travel(curve, None, None),
-    ):
-        figure = draw()
-        assert ET.fromstring(figure).tag.endswith("svg")
-        assert figure == draw()
-
-
-def test_curves_without_samples_or_travel_are_drawn() -> None:
-    empty = ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))
-    assert "<svg" in force_by_time(empty, 35.0, 50.0)
-    unknown = ForceCurve(np.arange(3.0), np.ones((3, 6)), np.full(3, np.nan))
-    assert "<svg" in force_by_time(unknown, 35.0, 50.0)
-
-
-def test_thinning_a_curve_keeps_its_peaks() -> None:
-    x = np.arange(50_000.0)
-    y = np.random.default_rng(1).normal(size=50_000)
-    y[31_415], y[27_182] = 99.0, -99.0
-    thin_x, thin_y = envelope(x, y)
-    assert len(thin_x) <= 1400
-    assert (thin_y.max(), thin_y.min()) == (99.0, -99.0)
-    assert (np.diff(thin_x) > 0).all()
-
-
 @pytest.mark.parametrize(
     ("value", "text"),
     [(0.05, "0.05"), (0.0, "0"), (1234.5, "1234"), (-0.002512, "-0.002512"), (float("nan"), "–"),
@@ -187,55 +161,3 @@ def test_labels_and_columns() -> None:
     assert label("outcome") == ("outcome", "")
     assert fixed(-0.01234, 3, signed=True) == "−0.012"
     assert fixed(None, 3) == "–"
-
-
-class TestCommands:
-    @pytest.fixture
-    def runner(self) -> CliRunner:
-        return CliRunner(env={"COLUMNS": "120", "NO_COLOR": "1"})
-
-    @pytest.fixture
-    def folder(self, store: RunStore) -> str:
-        good_run(store)
-        start(store, "SAT-0043")
-        return str(store.path)
-
-    def test_list(self, runner: CliRunner, folder: str) -> None:
-        result = runner.invoke(app, ["list", "--data-dir", folder])
-        assert result.exit_code == 0
-        assert re.search(r"2\s+SAT-0043.*open", result.stdout)
-        assert re.search(r"1\s+SAT-0042 \(sim\).*good", result.stdout)
-        one = runner.invoke(app, ["list", "--data-dir", folder, "--serial", "SAT-0042"])
-        assert "SAT-0043" not in one.stdout
-
-    def test_show(self, runner: CliRunner, folder: str) -> None:
-        result = runner.invoke(app, ["show", "1", "--data-dir", folder])
-        assert result.exit_code == 0
-        assert "+1.2143" in result.stdout
-        assert "gauge 5.95 mm (simulator)" in result.stdout
-
-    def test_export(self, runner: CliRunner, folder: str, tmp_path: Path) -> None:
-        out = tmp_path / "handed on"
-        result = runner.invoke(app, ["export", "1", "--out", str(out), "--data-dir", folder])
-        assert result.exit_code == 0
-        assert (out / "report.html").is_file()
-
-    def test_gauge(self, runner: CliRunner, folder: str, store: RunStore) -> None:
-        options = ["--hole", "P1", "--mm", "5.91", "--source", "OP-7", "--data-dir", folder]
-        assert runner.invoke(app, ["gauge", "1", *options]).exit_code == 0
-        assert {g.hole: g.diameter_mm for g in store.run(1).gauges}["P1"] == 5.91
-        wrong = runner.invoke(app, ["gauge", "9", *options])
-        assert isinstance(wrong.exception, RunUnknown)
-
-    def test_verify(self, runner: CliRunner, folder: str, store: RunStore) -> None:
-        good = runner.invoke(app, ["verify", "--data-dir", folder])
-        assert good.exit_code == 0
-        store.artefacts.path(store.run(1).artefacts[0].sha256).write_bytes(b"changed")
-        bad = runner.invoke(app, ["verify", "--data-dir", folder])
-        assert bad.exit_code == 1
-        assert "frame-head-1-left.png" in bad.stdout
-
-    def test_no_store(self, runner: CliRunner, tmp_path: Path) -> None:
-        result = runner.invoke(app, ["list", "--data-dir", str(tmp_path / "nowhere")])
-        assert isinstance(result.exception, StoreUnavailable)
-        assert not (tmp_path / "nowhere").exists()

@@ -7,8 +7,10 @@ import sqlite3
 import subprocess
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import cast
 
 import pytest
 
@@ -23,6 +25,15 @@ from cellctl.errors.records import (
     ValueRefused,
 )
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entries import (
+    Document,
+    LoopPass,
+    PassComponent,
+    PoseOrigin,
+    RecordedPose,
+    Verdict,
+)
+from cellctl.records.figures import Limit, figure
 from tests.unit.records.conftest import start
 
 
@@ -37,20 +48,22 @@ def files_held_open(folder: Path) -> list[str]:
 
 
 SIX = (0.01, -0.02, 0.03, 0.001, -0.002, 0.003)
+POSE = RecordedPose("frame", PoseOrigin.MEASURED, "c1", "frame", SIX, SIX, frames=2)
+COMPONENT = PassComponent("X", "mm", 0.01, 0.002, 0.05)
+CORRECTED = PassComponent("X", "mm", 0.31, 0.002, 0.05, 0.31)
 
 
 def fill(store: RunStore, run: int) -> None:
-    store.add_measurement(
-        run, "frame", pose_mm_deg=SIX, sigma_mm_deg=SIX, residual_um=4.2, frames=2
+    store.begin_phase(run, 10, "measure frame")
+    store.add(run, POSE)
+    store.begin_phase(run, 40, "correct pose")
+    store.add(
+        run, LoopPass("loop", 1, (CORRECTED,), False), LoopPass("loop", 2, (COMPONENT,), True)
     )
-    for number in (1, 2):
-        store.add_iteration(
-            run, number, error_mm_deg=SIX, sigma_mm_deg=SIX, threshold_mm_deg=SIX, frames=2,
-            residual_um=3.0, converged=number == 2, correction_mm_deg=SIX if number == 1 else (),
-        )  # fmt: skip
     store.add_artefact(run, "left.png", b"picture", "image/png")
-    store.set_mating(run, {"speed_mm_s": 0.25})
-    store.set_mating(run, {"peak_n": 41.5})
+    store.add(run, figure("speed", 0.25, "mm/s"), figure("peak", 41.5, "N", limit=Limit(upper=50)))
+    store.add(run, Document("mating", {"outcome": "none yet", "tries": 1}))
+    store.add(run, Document("mating", {"outcome": "seated"}))
     store.add_alarm(run, 501, "F501 something")
 
 
@@ -59,18 +72,60 @@ def test_a_run_comes_back_as_it_was_written(store: RunStore) -> None:
     fill(store, run)
     store.close_run(run, RunResult.GOOD)
     record = store.run(run)
+    assert record.head.process == "deck-to-frame"
     assert record.head.serial == "SAT-0001"
     assert record.head.result == "good"
     assert record.head.simulated
     assert record.head.started.tzinfo is UTC
-    assert record.measurements[0].pose_mm_deg == SIX
-    assert [entry.iteration for entry in record.iterations] == [1, 2]
-    assert record.iterations[1].correction_mm_deg == ()
-    assert record.mating == {"speed_mm_s": 0.25, "peak_n": 41.5}
+    measure, correct = record.phases
+    assert replace(record.measurements[0], phase=None) == POSE
+    assert record.poses[0].phase == measure.id
+    assert [entry.number for entry in record.passes] == [1, 2]
+    assert record.passes[0].components == (CORRECTED,)
+    assert record.passes[1].components[0].correction is None
+    assert {entry.phase for entry in record.passes} == {correct.id}
+    assert (record.value("speed"), record.value("peak"), record.value("depth")) == (
+        0.25, 41.5, None,
+    )  # fmt: skip
+    assert record.newest_figures["peak"].verdict is Verdict.PASS
+    assert record.document("mating") == {"outcome": "seated", "tries": 1}
     assert store.artefacts.get(record.artefacts[0].sha256) == b"picture"
     assert record.alarms[0].number == 501
     assert record.seal is not None
     assert store.verify() == []
+
+
+def test_phases_follow_each_other_and_end_with_the_run(store: RunStore) -> None:
+    run = start(store)
+    store.begin_phase(run, 10, "measure frame")
+    store.begin_phase(run, 20, "measure deck")
+    store.begin_phase(run, 10, "measure frame")
+    before = store.run(run).phases
+    assert [(phase.number, phase.ended is None) for phase in before] == [
+        (10, False), (20, False), (10, True),
+    ]  # fmt: skip
+    assert before[0].ended == before[1].began
+    store.close_run(run, RunResult.STOPPED)
+    record = store.run(run)
+    assert record.phases[-1].ended == record.head.ended
+
+
+def test_nobody_knows_when_an_interrupted_phase_ended(tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    run = start(store)
+    store.begin_phase(run, 10, "measure frame")
+    store.mark_interrupted()
+    assert store.run(run).phases[0].ended is None
+    assert store.verify() == []
+    store.close()
+
+
+def test_a_detail_that_cannot_be_written_takes_the_others_of_its_call_back(store: RunStore) -> None:
+    run = start(store)
+    wrong = replace(figure("speed", 0.25, "mm/s"), unit=cast(str, None))
+    with pytest.raises(RecordNotWritten):
+        store.add(run, POSE, wrong)
+    assert store.run(run).poses == ()
 
 
 def test_numbers_count_up_and_lists_are_newest_first(store: RunStore) -> None:
@@ -84,7 +139,8 @@ def test_numbers_count_up_and_lists_are_newest_first(store: RunStore) -> None:
     "change",
     [
         lambda s, n: s.close_run(n, RunResult.GOOD),
-        lambda s, n: s.set_mating(n, {"peak_n": 1.0}),
+        lambda s, n: s.add(n, figure("peak", 1.0, "N")),
+        lambda s, n: s.begin_phase(n, 10, "measure frame"),
         lambda s, n: s.add_artefact(n, "x", b"x", "text/plain"),
         fill,
     ],
@@ -160,8 +216,13 @@ def test_two_daemons_do_not_share_a_store(tmp_path: Path) -> None:
     ("statement", "problem"),
     [
         ("UPDATE runs SET result = 'good' WHERE number = 1", "run 1 was changed"),
-        ("UPDATE iterations SET error_mm_deg = '[0,0,0,0,0,0]' WHERE id = 1", "run 1 was changed"),
-        ("DELETE FROM measurements", "run 1 was changed"),
+        ("UPDATE passes SET components = '[]' WHERE id = 1", "run 1 was changed"),
+        ("UPDATE figures SET upper = 60 WHERE key = 'peak'", "run 1 was changed"),
+        ("UPDATE figures SET verdict = 'fail' WHERE key = 'peak'", "run 1 was changed"),
+        ("UPDATE phases SET ended = began", "run 1 was changed"),
+        ("UPDATE documents SET content = '{}'", "run 1 was changed"),
+        ("DELETE FROM poses", "run 1 was changed"),
+        ("UPDATE runs SET record_schema = 1 WHERE number = 1", "run 1 was changed"),
         ("UPDATE gauges SET diameter_mm = 6.0", "gauge 1 was changed"),
         ("DELETE FROM ledger WHERE number = 2", "does not follow"),
         ("UPDATE ledger SET content = previous WHERE number = 1", "entry 1 (run 1) was changed"),
@@ -233,10 +294,14 @@ def test_the_lines_last_number_is_remembered(store: RunStore) -> None:
 
 def test_what_is_not_finite_becomes_unknown(store: RunStore) -> None:
     run = start(store)
-    store.add_measurement(
-        run, "deck", pose_mm_deg=SIX, sigma_mm_deg=[math.nan] * 6, residual_um=1.0, frames=1
-    )
-    assert store.run(run).measurements[0].sigma_mm_deg == (None,) * 6
+    store.add(run, replace(POSE, sigma_mm_deg=(math.nan,) * 6, residual_um=math.inf))
+    store.add(run, replace(POSE, detail={"holes": {"P1": [1.0, math.nan]}}))
+    store.add(run, figure("peak", math.nan, "N", limit=Limit(upper=50.0)))
+    record = store.run(run)
+    assert record.poses[0].sigma_mm_deg == (None,) * 6
+    assert record.poses[1].detail == {"holes": {"P1": (1.0, None)}}
+    assert record.value("peak") is None
+    assert record.newest_figures["peak"].verdict is Verdict.FAIL
 
 
 def test_the_same_bytes_are_stored_once_and_damage_is_found(store: RunStore) -> None:
@@ -285,11 +350,12 @@ def test_a_store_that_cannot_be_opened_is_a_clear_fault(tmp_path: Path) -> None:
     assert files_held_open(tmp_path) == []
 
 
-def test_a_store_of_another_version_is_left_alone(tmp_path: Path) -> None:
+def test_a_store_of_a_later_version_is_left_alone(tmp_path: Path) -> None:
     RunStore(tmp_path).close()
     with sqlite3.connect(tmp_path / "store.sqlite") as connection:
         connection.execute("PRAGMA user_version = 99")
     connection.close()
-    with pytest.raises(StoreUnavailable, match="schema 99"):
+    with pytest.raises(StoreUnavailable, match=r"F810 .*schema 99"):
         RunStore(tmp_path)
     assert files_held_open(tmp_path) == []
+    assert not list(tmp_path.glob("*schema*"))

@@ -65,8 +65,8 @@ async def test_contact_in_maintenance_leaves_a_run_and_a_calibration(
     assert (head.mode, head.serial, head.result, head.recipe_id) == (
         "commissioning", "FRAME-1", "good", 1,
     )  # fmt: skip
-    assert [entry.kind for entry in record.measurements] == ["frame", "deck", "flange_T_deck"]
-    assert record.iterations[-1].converged
+    assert [entry.key for entry in record.measurements] == ["frame", "deck", "flange_T_deck"]
+    assert record.passes[-1].converged
     assert sum("force" in artefact.name for artefact in record.artefacts) == 3
     stored = read_calibration(rig.bench.calibrations.path, "contact_stiffness_1")
     assert CONTACT_STIFFNESS.accepted(stored.record)
@@ -88,9 +88,7 @@ async def test_the_next_part_is_planned_with_it(rig: DaemonRig, touching: Touchi
     await rig.started(unit_mode=1, recipe_id=1)
     await rig.to(State.COMPLETED)
     record = await rig.record(2)
-    assert record.mating is not None
-    approach = record.mating["approach"]
-    assert approach["stiffness_n_per_mm"] == pytest.approx(1.5 * (300.0 + 3 * 20.0))
+    assert record.value("approach.stiffness") == pytest.approx(1.5 * (300.0 + 3 * 20.0))
     assert "contact_stiffness_1" in record.head.calibration_ids
     assert rig.shown().cycle_counter == 1
 

@@ -4,7 +4,6 @@ from datetime import timedelta
 from pathlib import Path
 
 import pytest
-from sqlalchemy import select
 
 from cellctl.calibration.store.kind import kinds_invalidated_by
 from cellctl.errors import CellError
@@ -20,7 +19,7 @@ from cellctl.errors.robot import ControllerFault, HeadMoved, MotionAborted
 from cellctl.errors.vision import CorrectionDiverging, ResidualsTooLarge
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.schema import AuditRow, CalibrationRow
+from cellctl.records.entries import AuditEntry, Calibration
 from cellctl.records.store import RunStore
 from cellctl.runtime.invalidation import invalidate_after
 from tests.unit.cell.bench import Bench
@@ -37,12 +36,9 @@ AGREED: dict[type[CellError], set[str]] = {
 }
 
 
-async def rows(archive: AsyncRunStore) -> tuple[list[CalibrationRow], list[AuditRow]]:
-    def read(store: RunStore) -> tuple[list[CalibrationRow], list[AuditRow]]:
-        with store._database.read() as session:
-            return list(session.scalars(select(CalibrationRow))), list(
-                session.scalars(select(AuditRow))
-            )
+async def rows(archive: AsyncRunStore) -> tuple[list[Calibration], list[AuditEntry]]:
+    def read(store: RunStore) -> tuple[list[Calibration], list[AuditEntry]]:
+        return store.calibrations(), store.audit_log()
 
     return await archive.do(read)
 

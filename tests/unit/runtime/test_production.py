@@ -15,6 +15,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
@@ -22,6 +23,11 @@ from tests.unit.daemon_rig import DaemonRig
 GOOD_RUN = [
     State.RESETTING, State.IDLE, State.STARTING, State.EXECUTE, State.COMPLETING, State.COMPLETED,
 ]  # fmt: skip
+
+
+def pin_offsets_mm(record: RunRecord) -> list[float]:
+    found = record.newest_figures.items()
+    return [entry.value or 0.0 for key, entry in found if key.startswith("pin_offsets.")]
 
 
 async def test_a_good_part(rig: DaemonRig) -> None:
@@ -34,13 +40,20 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     assert (head.serial, head.operator, head.result, head.mode) == (
         "SAT-7", "OP-3", "good", "production",
     )  # fmt: skip
-    assert [entry.kind for entry in record.measurements] == [
+    assert [entry.key for entry in record.measurements] == [
         "frame", "deck", "flange_T_deck", "seated",
     ]  # fmt: skip
-    assert record.iterations[-1].converged
-    assert record.mating is not None
-    assert record.mating["outcome"] == "seated"
-    assert max(record.mating["pin_offsets_mm"].values()) < 0.05
+    assert record.passes[-1].converged
+    assert record.document("mating")["outcome"] == "seated"
+    assert max(pin_offsets_mm(record)) < 0.05
+    assert [(phase.number, phase.label) for phase in record.phases] == [
+        (10, "measure frame"), (20, "measure deck"), (30, "pre-assembly"), (40, "correct pose"),
+        (50, "mate"), (60, "verify"),
+    ]  # fmt: skip
+    assert record.phases[-1].ended is not None
+    judged = {entry.key: entry.verdict for entry in record.figures if entry.verdict}
+    assert set(judged.values()) == {Verdict.PASS}
+    assert {"position_error", "angle_error", "peak_force", "pin_offsets.P1"} <= set(judged)
     assert rig.bench.cell.guard.asked[:2] == ["acknowledge", "set_gravity_compensation"]
     status = rig.shown()
     assert (status.run_number, status.run_result, status.serial) == (1, Result.GOOD, "SAT-7")
@@ -82,7 +95,7 @@ async def test_a_dry_run_ends_without_contact_and_without_a_good_part(rig: Daemo
     assert rig.contact.matings == 0
     record = await rig.record()
     assert (record.head.mode, record.head.result) == ("dry run", "bad")
-    assert record.iterations[-1].converged
+    assert record.passes[-1].converged
     assert rig.port.ended[seq] is Result.BAD
     assert rig.shown().cycle_counter == 0
 
@@ -141,8 +154,7 @@ async def test_a_frame_that_moved_during_a_hold_is_found_where_it_is(rig: Daemon
     await rig.take(Command.UNHOLD)
     await rig.to(State.COMPLETED)
     record = await rig.record()
-    assert record.mating is not None
-    assert max(record.mating["pin_offsets_mm"].values()) < 0.05
+    assert max(pin_offsets_mm(record)) < 0.05
 
 
 async def in_contact(rig: DaemonRig) -> int:

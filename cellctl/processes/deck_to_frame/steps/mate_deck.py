@@ -11,6 +11,7 @@ from cellctl.processes.deck_to_frame.steps.correct_pose import LABEL, NUMBER, co
 async def mate_deck(corrected: Corrected) -> Seated:
     """Mate, measuring and correcting again before each further try after a false seat."""
     run, latest = corrected.run, corrected
+    phase = run.journal.recorder.phase
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
 
     async def measured_plan(attempt: int) -> MatingPlan:
@@ -19,8 +20,10 @@ async def mate_deck(corrected: Corrected) -> Seated:
             # Shown to the line as the step that it is; contact comes only after it.
             mating = run.board.current
             run.board.update(step=NUMBER, step_label=LABEL, contact=False)
+            await phase(NUMBER, LABEL)
             latest = await correct_pose(latest)
             run.board.update(step=mating.step, step_label=mating.step_label, contact=True)
+            await phase(mating.step, mating.step_label)
         plan = contact_plan(latest, run.facts.commissioned)
         await run.journal.mating_plan(plan)
         return plan

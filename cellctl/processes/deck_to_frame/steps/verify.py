@@ -27,8 +27,9 @@ async def verify(seat: Seated) -> Verified:
         hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
         for hole in judged
     }
-    await run.journal.verification(assembly_error(seated, M_T_D), offsets_mm, measurement)
     limit_mm = run.recipe.seated_limit_mm
+    error = assembly_error(seated, M_T_D)
+    await run.journal.verification(error, offsets_mm, limit_mm, measurement)
     off = {name: value for name, value in offsets_mm.items() if value > limit_mm}
     if off:
         text = ", ".join(f"{name} {value:.3f} mm" for name, value in off.items())

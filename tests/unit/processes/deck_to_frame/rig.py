@@ -16,6 +16,7 @@ from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
+from cellctl.records.recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.workers import VisionWorkers
@@ -46,7 +47,7 @@ class RunRig:
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"
         self.board = ProgressBoard()
         workers = cast(VisionWorkers, bench.cell.workers)
-        self.journal = Journal(self.archive, workers, self.number)
+        self.journal = Journal(RunRecorder(self.archive, self.number), workers)
         geometry = bench.geometry()
         heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)

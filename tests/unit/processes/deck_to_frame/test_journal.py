@@ -7,8 +7,10 @@ import pytest
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.journal import draw, rms_um
+from cellctl.processes.deck_to_frame.journal import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
+from cellctl.processes.deck_to_frame.record.entries import rms_um
+from cellctl.records.entries import PoseOrigin
 from cellctl.records.recording import read_recording
 from cellctl.vision.measurement import PairMeasurement
 from tests.unit.cell.bench import SIGMA, measurement
@@ -29,7 +31,14 @@ async def test_a_measurement_with_its_pictures(rig: RunRig) -> None:
     entry = record.measurements[0]
     assert entry.pose_mm_deg == pytest.approx((10, 20, 500, 5, 1, 179))
     assert entry.sigma_mm_deg[:3] == pytest.approx(SIGMA[:3] * 1e3)
-    assert entry.detail["outliers"] == []
+    covariance = np.array(entry.covariance_mm_deg)
+    assert covariance.shape == (6, 6)
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), entry.sigma_mm_deg)
+    reported = [pose for pose in record.poses if pose.origin is PoseOrigin.REPORTED]
+    assert [(pose.key, pose.parent, pose.child) for pose in reported] == [
+        ("frame", "base", "flange")
+    ] * 2
+    assert entry.detail["outliers"] == ()
     assert set(entry.detail["residuals_mm"]) == {h.name for h in rig.bench.features()[0].holes}
     names = [artefact.name for artefact in record.artefacts]
     assert names[0] == "frame-head-1-left.jpg"
@@ -46,7 +55,7 @@ async def test_residuals_are_summed_up(rig: RunRig) -> None:
 
 async def test_the_grip_is_recorded(rig: RunRig) -> None:
     await rig.journal.deck_on_flange(UncertainPose(PLACE, np.diag(SIGMA**2)))
-    assert (await rig.record()).measurements[0].kind == "flange_T_deck"
+    assert (await rig.record()).measurements[0].key == "flange_T_deck"
 
 
 async def test_force_curves_are_kept_once_and_can_be_read(rig: RunRig) -> None:

@@ -18,6 +18,7 @@ from cellctl.processes.deck_to_frame.state import Corrected
 from cellctl.processes.deck_to_frame.steps import MATE
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.mate_deck import mate_deck
+from cellctl.records.entries import Verdict
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.processes.deck_to_frame.rig import RunRig, curve, seated
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off
@@ -63,9 +64,10 @@ async def test_a_mating_with_its_record(rig: RunRig, monkeypatch: pytest.MonkeyP
     assert plan.settings.limit_force_n == rig.bench.recipe.mating.limit_force_n
     assert plan.settings.stale_s == pytest.approx(rig.bench.deck.force_config.stale_ms / 1e3)
     record = await rig.record()
-    assert record.mating is not None
-    assert record.mating["outcome"] == "seated"
-    assert record.mating["approach"]["speed_mm_s"] > 0
+    assert record.document("mating")["outcome"] == "seated"
+    assert (record.value("approach.speed") or 0.0) > 0
+    peak = record.newest_figures["peak_force"]
+    assert (peak.verdict, peak.upper) == (Verdict.PASS, rig.bench.recipe.mating.limit_force_n)
     assert [a.name for a in record.artefacts if "force" in a.name] == ["force-1.mcap"]
     assert rig.board.current.force_peaks[2] == pytest.approx(36.0)
     assert rig.board.current.force_limit_n == rig.bench.recipe.mating.limit_force_n
@@ -78,7 +80,7 @@ async def test_a_further_attempt_is_measured_and_corrected_anew(
     corrected = await ready(rig, Mating(attempts=2), monkeypatch)
     await mate_deck(corrected)
     record = await rig.record()
-    assert [entry.iteration for entry in record.iterations] == [1, 2]
+    assert [entry.number for entry in record.passes] == [1, 2]
     names = [a.name for a in record.artefacts if "force" in a.name]
     assert names == ["force-1.mcap", "force-2.mcap"]
     assert rig.board.current.step == MATE.number
@@ -103,8 +105,8 @@ async def test_the_curve_of_a_failure_is_kept(
         await mate_deck(corrected)
     record = await rig.record()
     assert any(a.name == "force-1.mcap" for a in record.artefacts)
-    assert record.mating is not None
-    assert "outcome" not in record.mating
+    assert record.value("approach.speed") is not None
+    assert "outcome" not in record.document("mating")
 
 
 async def test_a_disk_that_fails_does_not_hide_the_fault(

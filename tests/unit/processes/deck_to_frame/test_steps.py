@@ -25,6 +25,7 @@ from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck
 from cellctl.processes.deck_to_frame.steps.measure_frame import measure_frame
 from cellctl.processes.deck_to_frame.steps.pre_assembly import pre_assembly
 from cellctl.processes.deck_to_frame.steps.verify import verify
+from cellctl.records.entries import PoseOrigin, Verdict
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.processes.deck_to_frame.rig import RunRig
 
@@ -42,7 +43,7 @@ async def test_the_frame_is_found_and_remembered(rig: RunRig) -> None:
     )
     assert rig.bench.memory.base_T_frame is not None
     record = await rig.record()
-    assert [entry.kind for entry in record.measurements] == ["frame"]
+    assert [entry.key for entry in record.measurements] == ["frame"]
     names = [artefact.name for artefact in record.artefacts]
     assert names == [
         f"frame-head-{head}-{side}.jpg" for head in (1, 2) for side in ("left", "right")
@@ -62,7 +63,7 @@ async def test_the_deck_is_found_on_the_flange(rig: RunRig) -> None:
     np.testing.assert_allclose(
         pose_to_xyzabc(found.flange_T_deck), pose_to_xyzabc(expected), atol=1e-6
     )
-    kinds = [entry.kind for entry in (await rig.record()).measurements]
+    kinds = [entry.key for entry in (await rig.record()).measurements]
     assert kinds == ["frame", "deck", "flange_T_deck"]
 
 
@@ -132,10 +133,15 @@ async def test_the_correction_ends_within_the_thresholds(rig: RunRig) -> None:
     corrected = await correct_pose(stand_off)
     np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[:3], [0, 0, 25.0], atol=0.05)
     np.testing.assert_allclose(pose_to_xyzabc(rig.true_deck)[3:], 0.0, atol=0.005)
-    iterations = (await rig.record()).iterations
+    iterations = (await rig.record()).passes
     assert [entry.converged for entry in iterations] == [False, True]
-    assert iterations[0].correction_mm_deg != ()
-    assert iterations[1].correction_mm_deg == ()
+    assert all(part.correction == part.value for part in iterations[0].components)
+    assert all(part.correction is None for part in iterations[1].components)
+    commanded = [pose for pose in (await rig.record()).poses if pose.origin is PoseOrigin.COMMANDED]
+    assert len(commanded) == 2, "to the stand-off, and once corrected"
+    np.testing.assert_allclose(
+        commanded[-1].pose_mm_deg, pose_to_xyzabc(rig.bench.cell.main.flange), atol=1e-6
+    )
     assert rig.board.current.iteration == 2
     assert max(np.abs(rig.board.current.error_mm_deg)) < 0.05
     at = rig.bench.cell.main.flange.as_matrix()
@@ -157,7 +163,7 @@ async def test_the_paper_s_rule_converges_too(rig: RunRig) -> None:
 async def test_a_second_correction_goes_on_counting(rig: RunRig) -> None:
     stand_off = await at_the_stand_off(rig)
     await correct_pose(await correct_pose(stand_off))
-    assert [entry.iteration for entry in (await rig.record()).iterations] == [1, 2]
+    assert [entry.number for entry in (await rig.record()).passes] == [1, 2]
 
 
 async def test_an_implausible_jump_moves_nothing(rig: RunRig) -> None:
@@ -167,7 +173,7 @@ async def test_an_implausible_jump_moves_nothing(rig: RunRig) -> None:
     with pytest.raises(CorrectionImplausible):
         await correct_pose(stand_off)
     assert len(rig.bench.cell.main.moves) == moves
-    assert len((await rig.record()).iterations) == 1, "recorded all the same"
+    assert len((await rig.record()).passes) == 1, "recorded all the same"
 
 
 async def test_a_correction_down_to_the_frame_is_not_commanded(rig: RunRig) -> None:
@@ -225,7 +231,7 @@ async def test_a_hold_in_the_loop_spoils_what_was_measured(rig: RunRig) -> None:
     rig.bench.world.robot_error *= pose_from_xyzabc([0.6, 0, 0, 0, 0, 0])
     with pytest.raises(HeldMeanwhile):
         await correct_pose(stand_off)
-    assert len((await rig.record()).iterations) == 1
+    assert len((await rig.record()).passes) == 1
 
 
 async def seat(stand_off: AtStandOff, rig: RunRig, offset_mm_deg: list[float]) -> None:
@@ -241,19 +247,20 @@ async def seat(stand_off: AtStandOff, rig: RunRig, offset_mm_deg: list[float]) -
 async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
     stand_off = await at_the_stand_off(rig)
     await seat(stand_off, rig, [0.03, 0, 0, 0, 0, 0])
-    mating = (await rig.record()).mating
-    assert mating is not None
-    assert set(mating["pin_offsets_mm"]) == {
-        hole.name for hole in stand_off.run.facts.deck_features.holes if hole.kind == "pin"
+    figures = (await rig.record()).newest_figures
+    holes = stand_off.run.facts.deck_features.holes
+    assert {key for key in figures if key.startswith("pin_offsets.")} == {
+        f"pin_offsets.{hole.name}" for hole in holes if hole.kind == "pin"
     }
-    assert mating["pin_offsets_mm"]["P1"] == pytest.approx(0.03, abs=1e-5)
+    assert figures["pin_offsets.P1"].value == pytest.approx(0.03, abs=1e-5)
+    assert figures["pin_offsets.P1"].verdict is Verdict.PASS
 
 
 async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:
     stand_off = await at_the_stand_off(rig)
     with pytest.raises(SeatedOffPosition, match=r"P1 0\.300 mm"):
         await seat(stand_off, rig, [0.3, 0, 0, 0, 0, 0])
-    assert (await rig.record()).mating is not None
+    assert (await rig.record()).newest_figures["pin_offsets.P1"].verdict is Verdict.FAIL
 
 
 async def test_a_part_without_pins_is_verified_at_every_hole(rig: RunRig) -> None:

@@ -1,0 +1,21 @@
+"""Names that the record of an assembly uses; a report finds its figures by them.
+
+They never change: stores keep runs for years, and evaluation compares runs of all of them.
+"""
+
+BASE, FLANGE, HEAD_1, FRAME, DECK = "base", "flange", "c1", "frame", "deck"
+"""Frames of the recorded poses."""
+FLANGE_T_DECK = "flange_T_deck"
+
+LOOP = "pose correction"
+COMPONENTS = (
+    ("X", "mm"), ("Y", "mm"), ("Z", "mm"),
+    ("rx", "°"), ("ry", "°"), ("rz", "°"),
+)  # fmt: skip
+"""Name and unit of the components of one pass, of the error in the axes of the frame."""
+
+MATING = "mating"
+"""Document with what is no number."""
+TARGET_FORCE, LIMIT_FORCE, PEAK_FORCE = "target_force", "limit_force", "peak_force"
+POSITION_ERROR, ANGLE_ERROR = "position_error", "angle_error"
+PIN_OFFSETS = "pin_offsets"

@@ -1,0 +1,72 @@
+"""The pages of an assembly."""
+
+from cellctl.processes.deck_to_frame.report.force_section import force_section, recordings
+from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM, plug_gauges
+from cellctl.processes.deck_to_frame.report.hole_table import TABULATED, hole_blocks
+from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
+from cellctl.processes.deck_to_frame.report.tiles import tiles
+from cellctl.records.entries import Gauge, RunRecord
+from cellctl.records.report.run_sections import pass_table
+from cellctl.records.report.sections import (
+    Drawing,
+    ProcessPages,
+    ReadArtefact,
+    RecordPart,
+    ReportSection,
+    ReportTable,
+    RowMark,
+    TableCell,
+    TableRow,
+)
+from cellctl.records.report.text import fixed
+
+_LOOP_CAPTION = (
+    "Error of every component by iteration, with two standard deviations; green: within the "
+    "threshold. Linear inside the threshold, logarithmic outside. On the right of each title the "
+    "last value."
+)
+_GAUGE_CAPTION = (
+    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Green: offset below 0.2 mm."
+)
+
+
+def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
+    """What the report of an assembly shows besides the pages of any run."""
+    curves = recordings(record, read)
+    holes = ReportSection("Holes", tuple(hole_blocks(record.measurements)))
+    sections = (holes, _loop(record), force_section(record, curves), _pin_holes(record))
+    return ProcessPages(
+        tiles=tiles(record, curves.values()),
+        sections=tuple(section for section in sections if section.blocks),
+        shows=frozenset({RecordPart.PASSES, RecordPart.GAUGES}),
+        tabulated=TABULATED,
+    )
+
+
+def _loop(record: RunRecord) -> ReportSection:
+    if not record.passes:
+        return ReportSection("", ())
+    drawing = Drawing(errors_by_pass(record.passes), _LOOP_CAPTION)
+    return ReportSection("Measure and compensate", (drawing, pass_table(record.passes)))
+
+
+def _pin_holes(record: RunRecord) -> ReportSection:
+    if not record.gauges:
+        return ReportSection("", ())
+    drawing = Drawing(plug_gauges(record.gauges), _GAUGE_CAPTION)
+    columns = ("hole", "gauge mm", "offset below mm", "verdict", "measured by")
+    rows = tuple(_gauge_row(gauge) for gauge in record.gauges)
+    return ReportSection("Pin holes", (drawing, ReportTable(columns, rows, numbers=False)))
+
+
+def _gauge_row(gauge: Gauge) -> TableRow:
+    passed = gauge.diameter_mm >= LEAST_MM
+    texts = (
+        gauge.hole,
+        fixed(gauge.diameter_mm, 2),
+        fixed(HOLE_MM - gauge.diameter_mm, 2),
+        "within" if passed else "beyond",
+        gauge.source,
+    )
+    mark = RowMark.GOOD if passed else RowMark.BAD
+    return TableRow(tuple(TableCell(text) for text in texts), mark)

@@ -1,0 +1,1 @@
+"""The SQLite file behind the run store: tables, migration, seals."""

@@ -1,0 +1,85 @@
+"""Older stores are brought to the schema of today when they are opened.
+
+A migration only adds tables and columns. What has been sealed stays as it is (``schema_1``), and a
+daemon of the earlier version that still runs on the store goes on writing and sealing runs of its
+own schema: the defaults below are for its rows.
+"""
+
+import os
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from sqlalchemy import Connection, text
+
+from cellctl.atomic_files import sync_folder
+from cellctl.errors.records import StoreTooNew
+from cellctl.records.database.schema import SCHEMA_VERSION, Base
+from cellctl.records.database.schema_1.tables import PROCESS
+
+
+def bring_up_to_date(connection: Connection, file: Path) -> None:
+    """Create the tables of a new store, or migrate those of an older one.
+
+    Called inside a transaction that holds the write lock; nothing is changed when it is rolled
+    back. Before an older store is changed, its copy is on the disk as ``backup_of(file, version)``.
+    Raises ``StoreTooNew``, ``OSError`` or ``sqlite3.Error``.
+    """
+    version = schema_version(connection)
+    if version > SCHEMA_VERSION:
+        raise StoreTooNew(f"{file} has schema {version}, this version knows {SCHEMA_VERSION}")
+    if version == SCHEMA_VERSION:
+        return
+    if version == 0:
+        Base.metadata.create_all(connection)
+    else:
+        _back_up(file, backup_of(file, version))
+        for step in _STEPS[version - 1 :]:
+            step(connection)
+    connection.execute(text(f"PRAGMA user_version = {SCHEMA_VERSION}"))
+
+
+def schema_version(connection: Connection) -> int:
+    """0 in a file without tables."""
+    return int(connection.execute(text("PRAGMA user_version")).scalar_one())
+
+
+def backup_of(file: Path, version: int) -> Path:
+    """Where the store lies as it was before it was migrated from a version."""
+    return file.with_name(f"{file.stem}-schema-{version}.sqlite")
+
+
+def _back_up(file: Path, target: Path) -> None:
+    """A copy of the whole database, also of what is still in its write-ahead log.
+
+    Copying the file would miss that log; SQLite's own backup reads beside the writer, which holds
+    the lock, so that nothing can come in between the copy and the change.
+    """
+    draft = target.with_name(f"{target.name}.part")
+    draft.unlink(missing_ok=True)
+    with closing(sqlite3.connect(file)) as source, closing(sqlite3.connect(draft)) as copy:
+        source.backup(copy)
+        # One file that needs no log beside it can be put back with a plain copy.
+        copy.execute("PRAGMA journal_mode = DELETE")
+    descriptor = os.open(draft, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+    draft.replace(target)
+    sync_folder(target.parent)
+
+
+def _from_1_to_2(connection: Connection) -> None:
+    """Runs of any process: the old tables stay, those that every process uses come beside them."""
+    for column in (
+        f"process VARCHAR NOT NULL DEFAULT '{PROCESS}'",
+        "record_schema INTEGER NOT NULL DEFAULT 1",
+    ):
+        connection.execute(text(f"ALTER TABLE runs ADD COLUMN {column}"))
+    Base.metadata.create_all(connection)
+
+
+_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2,)
+"""The first leads from schema 1 to 2."""

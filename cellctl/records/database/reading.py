@@ -1,0 +1,85 @@
+"""Whole runs from the tables."""
+
+from datetime import datetime
+from typing import Any, TypeVar
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session
+
+from cellctl.records.database import schema_1
+from cellctl.records.database.ledger import RUN
+from cellctl.records.database.rows import existing_run, to_entry
+from cellctl.records.database.schema import (
+    AlarmRow,
+    ArtefactRow,
+    AuditRow,
+    DocumentRow,
+    FigureRow,
+    GaugeRow,
+    LedgerRow,
+    PassRow,
+    PhaseRow,
+    PoseRow,
+    RunRow,
+)
+from cellctl.records.entries import (
+    Alarm,
+    Artefact,
+    Document,
+    Figure,
+    Gauge,
+    LoopPass,
+    Phase,
+    RecordedPose,
+    RunHead,
+    RunRecord,
+    Seal,
+)
+
+T = TypeVar("T")
+
+
+def read_run(session: Session, number: int) -> RunRecord:
+    """One run with everything that belongs to it; raises ``RunUnknown``."""
+    row = existing_run(session, number)
+    if row.record_schema == 1:
+        details = schema_1.read_details(session, number)
+    else:
+        details = _details(session, number)
+    sealed = session.scalars(
+        select(LedgerRow).where(LedgerRow.kind == RUN, LedgerRow.subject == number)
+    ).first()
+    gauges = {gauge.hole: gauge for gauge in _entries(session, GaugeRow, Gauge, number)}
+    return RunRecord(
+        head=to_entry(row, RunHead),
+        phases=_entries(session, PhaseRow, Phase, number),
+        figures=details.figures,
+        poses=details.poses,
+        passes=details.passes,
+        documents=details.documents,
+        artefacts=_entries(session, ArtefactRow, Artefact, number),
+        alarms=_entries(session, AlarmRow, Alarm, number),
+        gauges=tuple(gauges.values()),
+        seal=None if sealed is None else to_entry(sealed, Seal),
+    )
+
+
+def newest_time(session: Session) -> datetime | None:
+    """When the newest record of a store was written."""
+    columns = (RunRow.started, RunRow.ended, AuditRow.time, AlarmRow.time, LedgerRow.time)
+    times = [session.scalar(select(func.max(column))) for column in columns]
+    return max((time for time in times if time is not None), default=None)
+
+
+def _details(session: Session, number: int) -> schema_1.Details:
+    return schema_1.Details(
+        figures=_entries(session, FigureRow, Figure, number),
+        poses=_entries(session, PoseRow, RecordedPose, number),
+        passes=_entries(session, PassRow, LoopPass, number),
+        documents=_entries(session, DocumentRow, Document, number),
+    )
+
+
+def _entries(session: Session, table: Any, entry: type[T], number: int) -> tuple[T, ...]:
+    rows = session.scalars(select(table).where(table.run == number).order_by(table.id))
+    return tuple(to_entry(row, entry) for row in rows)

@@ -1,0 +1,91 @@
+"""Rows and entries: each is made of the other by the names of the fields."""
+
+from dataclasses import fields
+from typing import Any, TypeVar
+
+from sqlalchemy import Select, select
+from sqlalchemy.orm import Session
+
+from cellctl.clock import utc_now
+from cellctl.errors.records import RunClosed, RunUnknown
+from cellctl.records.database import ledger
+from cellctl.records.database.schema import (
+    AlarmRow,
+    Base,
+    DocumentRow,
+    FigureRow,
+    PassRow,
+    PhaseRow,
+    PoseRow,
+    RunRow,
+)
+from cellctl.records.entries import (
+    Document,
+    Figure,
+    LoopPass,
+    RecordedPose,
+    RunDetail,
+    RunResult,
+)
+
+T = TypeVar("T")
+
+ROW_OF: dict[type[RunDetail], type[FigureRow | PoseRow | PassRow | DocumentRow]] = {
+    Figure: FigureRow,
+    RecordedPose: PoseRow,
+    LoopPass: PassRow,
+    Document: DocumentRow,
+}
+
+
+def to_row(entry: RunDetail, run: int, phase: int | None) -> Base:
+    """The row of a detail of a run that is in a phase."""
+    values = {item.name: getattr(entry, item.name) for item in fields(entry)}
+    return ROW_OF[type(entry)](**values | {"run": run, "phase": phase})
+
+
+def to_entry(row: Any, entry: type[T]) -> T:
+    """A row as the dataclass that names a part of its columns."""
+    values = {item.name: getattr(row, item.name) for item in fields(entry)}  # type: ignore[arg-type]
+    return entry(**values)
+
+
+def existing_run(session: Session, number: int) -> RunRow:
+    """The row; raises ``RunUnknown``."""
+    row = session.get(RunRow, number)
+    if row is None:
+        raise RunUnknown(str(number))
+    return row
+
+
+def open_run(session: Session, number: int) -> RunRow:
+    """The row of a run that may still change; raises ``RunUnknown`` or ``RunClosed``."""
+    row = existing_run(session, number)
+    if row.ended is not None:
+        raise RunClosed(f"run {number}, {row.result}")
+    return row
+
+
+def open_phase(session: Session, run: int) -> PhaseRow | None:
+    """The phase that a run is in."""
+    query = select(PhaseRow).where(PhaseRow.run == run, PhaseRow.ended.is_(None))
+    return session.scalars(query).one_or_none()
+
+
+def close(
+    session: Session, row: RunRow, result: RunResult, fault_number: int | None, fault: str | None
+) -> None:
+    """Close a run and seal it."""
+    row.ended, row.result = utc_now(), result.value
+    row.fault_number, row.fault = fault_number, fault
+    phase = open_phase(session, row.number)
+    # Nobody knows when an interrupted phase ended: its end stays unknown rather than invented.
+    if phase is not None and result is not RunResult.INTERRUPTED:
+        phase.ended = row.ended
+    session.flush()
+    ledger.seal(session, ledger.RUN, row.number, row.ended)
+
+
+def active_alarm_rows() -> Select[AlarmRow]:
+    """Alarms nobody has acknowledged, the oldest first."""
+    return select(AlarmRow).where(AlarmRow.acknowledged.is_(None)).order_by(AlarmRow.id)

@@ -1,0 +1,112 @@
+"""SQLite as the store needs it: durable at every commit, one writer, numbered faults.
+
+Measured elsewhere and kept here as rules: WAL with ``synchronous=FULL`` loses no acknowledged
+commit in a power cut, NORMAL does; and after a failed fsync the next one may lie, so a store that
+failed once takes nothing more until it is opened anew.
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Engine, create_engine, event
+from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
+from sqlalchemy.orm import Session
+
+from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreUnavailable
+from cellctl.records.database import migration
+from cellctl.records.database.schema import SCHEMA_VERSION
+
+_BUSY_TIMEOUT_S = 5
+_READS = "store_reads"
+
+
+class Database:
+    """Sessions on one file. Used from one thread at a time."""
+
+    def __init__(self, file: Path, *, create: bool) -> None:
+        """Open, or create if allowed; an older store is migrated (see ``migration``).
+
+        Readers migrate, too: an operator lists the runs of an old store before any daemon opens
+        it. Raises ``StoreUnavailable``, ``StoreTooNew``.
+        """
+        self._failed: str | None = None
+        if not (create or file.exists()):
+            raise StoreUnavailable(f"there is no {file}")
+        self._engine = _engine(file)
+        try:
+            file.parent.mkdir(parents=True, exist_ok=True)
+            # A store of today is opened without a write, so without waiting for a writer's lock.
+            if not self._is_up_to_date():
+                with self._engine.begin() as connection:
+                    migration.bring_up_to_date(connection, file)
+        except StoreUnavailable:
+            self.close()
+            raise
+        except (OSError, SQLAlchemyError, sqlite3.Error) as error:
+            self.close()
+            raise StoreUnavailable(f"{file}: {_reason(error)}") from error
+
+    def _is_up_to_date(self) -> bool:
+        with self._reader().connect() as connection:
+            return migration.schema_version(connection) == SCHEMA_VERSION
+
+    def _reader(self) -> Engine:
+        return self._engine.execution_options(**{_READS: True})
+
+    def close(self) -> None:
+        """Drop the connection."""
+        self._engine.dispose()
+
+    @contextmanager
+    def write(self) -> Iterator[Session]:
+        """A transaction that is on the disk when the block ends.
+
+        Raises ``RecordNotWritten`` when it is not, and from then on always; ``RunUnknown`` when it
+        refers to a run that does not exist.
+        """
+        if self._failed is not None:
+            raise RecordNotWritten(f"the store failed earlier: {self._failed}")
+        try:
+            with Session(self._engine, expire_on_commit=False) as session, session.begin():
+                yield session
+        except IntegrityError as error:
+            fault = RunUnknown if "FOREIGN KEY" in _reason(error) else RecordNotWritten
+            raise fault(_reason(error)) from error
+        except DBAPIError as error:
+            self._failed = _reason(error)
+            raise RecordNotWritten(self._failed) from error
+
+    @contextmanager
+    def read(self) -> Iterator[Session]:
+        """A consistent view; raises ``StoreUnavailable``."""
+        try:
+            with Session(self._reader()) as session:
+                yield session
+        except DBAPIError as error:
+            raise StoreUnavailable(_reason(error)) from error
+
+
+def _engine(file: Path) -> Engine:
+    engine = create_engine(
+        f"sqlite:///{file}", connect_args={"timeout": _BUSY_TIMEOUT_S, "check_same_thread": False}
+    )
+
+    @event.listens_for(engine, "connect")
+    def _settings(connection: Any, _record: Any) -> None:
+        connection.isolation_level = None  # BEGIN is ours, see below
+        for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
+            connection.execute(f"PRAGMA {pragma}")
+
+    @event.listens_for(engine, "begin")
+    def _begin(connection: Any) -> None:
+        reads = connection.get_execution_options().get(_READS, False)
+        connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")
+
+    return engine
+
+
+def _reason(error: Exception) -> str:
+    return str(getattr(error, "orig", None) or error)

@@ -1,0 +1,129 @@
+"""What a report is made of: values that a process fills in and the template places.
+
+A process knows what its run means, this package knows how a report looks. A ``ReportBuilder`` of a
+process returns ``ProcessPages``; it never writes HTML.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+from cellctl.records.entries import Artefact, RunRecord
+
+
+@dataclass(frozen=True, slots=True)
+class Tile:
+    """One headline figure with its bound."""
+
+    title: str
+    value: str
+    bound: str
+    passed: bool | None
+    """None where there is nothing to judge."""
+
+
+class RowMark(Enum):
+    """How a row of a table stands out."""
+
+    NONE = ""
+    GOOD = "good"
+    BAD = "bad"
+    LIMIT = "threshold"
+    """The limits of the columns above it."""
+
+
+@dataclass(frozen=True, slots=True)
+class TableCell:
+    """One cell; ``small`` is a second line in small print, such as an uncertainty."""
+
+    text: str
+    small: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class TableRow:
+    """The first cell is the heading of the row; ``facts`` follow below it over the whole width."""
+
+    cells: tuple[TableCell, ...]
+    mark: RowMark = RowMark.NONE
+    facts: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ReportTable:
+    """A table with a heading of its own, or none."""
+
+    columns: tuple[str, ...]
+    rows: tuple[TableRow, ...]
+    numbers: bool = True
+    """Columns after the first are numbers, aligned at their right."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A drawing as an ``<svg>`` element of ``cellctl.plot_style``."""
+
+    svg: str
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class FactList:
+    """Labels and values, in two columns."""
+
+    facts: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading within a section."""
+
+    text: str
+    small: str = ""
+    warning: bool = False
+    """``small`` is something to worry about."""
+
+
+ReportBlock = Heading | ReportTable | Drawing | FactList
+
+
+@dataclass(frozen=True, slots=True)
+class ReportSection:
+    """A section of the report; one without blocks is left out."""
+
+    title: str
+    blocks: tuple[ReportBlock, ...]
+
+
+class RecordPart(Enum):
+    """Parts of a record that a process may show better than the pages for any run do."""
+
+    PASSES = "passes"
+    GAUGES = "gauges"
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessPages:
+    """What a process adds to the report of its run."""
+
+    tiles: tuple[Tile, ...] = ()
+    """Headline figures, in place of the figures with limits."""
+    sections: tuple[ReportSection, ...] = ()
+    """After the poses, in this order."""
+    shows: frozenset[RecordPart] = frozenset()
+    """Parts that ``sections`` show, so that they are not shown twice."""
+    tabulated: frozenset[str] = frozenset()
+    """Keys of a pose's detail that ``sections`` show."""
+
+
+ReadArtefact = Callable[[Artefact], bytes]
+"""The bytes of a file of the run."""
+
+ReportBuilder = Callable[[RunRecord, ReadArtefact], ProcessPages]
+"""How a process makes its pages. It must accept any record of its process, also of a run that
+ended before its first figure."""
+
+
+def no_pages(_record: RunRecord, _read: ReadArtefact) -> ProcessPages:
+    """For a run whose process is not installed."""
+    return ProcessPages()

@@ -1,0 +1,82 @@
+"""`cellctl runs`: what an operator sees of the store and enters into it."""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.runs import app
+from cellctl.errors.records import RunUnknown, StoreUnavailable
+from cellctl.records import RunStore
+from tests.unit.records.conftest import start
+from tests.unit.records.sample import good_run
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[RunStore]:
+    store = RunStore(tmp_path / "runs")
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def runner() -> CliRunner:
+    return CliRunner(env={"COLUMNS": "120", "NO_COLOR": "1"})
+
+
+@pytest.fixture
+def folder(store: RunStore) -> str:
+    good_run(store)
+    start(store, "SAT-0043")
+    return str(store.path)
+
+
+def test_runs_are_listed_newest_first(runner: CliRunner, folder: str) -> None:
+    result = runner.invoke(app, ["list", "--data-dir", folder])
+    assert result.exit_code == 0
+    assert re.search(r"2\s+SAT-0043.*open", result.stdout)
+    assert re.search(r"1\s+SAT-0042 \(sim\).*good", result.stdout)
+    one = runner.invoke(app, ["list", "--data-dir", folder, "--serial", "SAT-0042"])
+    assert "SAT-0043" not in one.stdout
+
+
+def test_one_run_in_figures(runner: CliRunner, folder: str) -> None:
+    result = runner.invoke(app, ["show", "1", "--data-dir", folder])
+    assert result.exit_code == 0
+    assert "+1.2143" in result.stdout
+    assert re.search(r"peak force\s+38.4 N\s+–\s+50 N\s+pass", result.stdout)
+    assert "gauge 5.95 mm (simulator)" in result.stdout
+
+
+def test_a_run_is_exported(runner: CliRunner, folder: str, tmp_path: Path) -> None:
+    out = tmp_path / "handed on"
+    result = runner.invoke(app, ["export", "1", "--out", str(out), "--data-dir", folder])
+    assert result.exit_code == 0
+    assert "Measure and compensate" in (out / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_gauge_is_entered(runner: CliRunner, folder: str, store: RunStore) -> None:
+    options = ["--hole", "P1", "--mm", "5.91", "--source", "OP-7", "--data-dir", folder]
+    assert runner.invoke(app, ["gauge", "1", *options]).exit_code == 0
+    assert {g.hole: g.diameter_mm for g in store.run(1).gauges}["P1"] == 5.91
+    wrong = runner.invoke(app, ["gauge", "9", *options])
+    assert isinstance(wrong.exception, RunUnknown)
+
+
+def test_a_changed_file_is_found(runner: CliRunner, folder: str, store: RunStore) -> None:
+    good = runner.invoke(app, ["verify", "--data-dir", folder])
+    assert good.exit_code == 0
+    store.artefacts.path(store.run(1).artefacts[0].sha256).write_bytes(b"changed")
+    bad = runner.invoke(app, ["verify", "--data-dir", folder])
+    assert bad.exit_code == 1
+    assert "frame-head-1-left.png" in bad.stdout
+
+
+def test_without_a_store_there_is_a_fault_and_none_is_made(
+    runner: CliRunner, tmp_path: Path
+) -> None:
+    result = runner.invoke(app, ["list", "--data-dir", str(tmp_path / "nowhere")])
+    assert isinstance(result.exception, StoreUnavailable)
+    assert not (tmp_path / "nowhere").exists()
