@@ -7,16 +7,17 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from click.testing import Result
 from scipy.spatial.transform import RigidTransform
-from typer.testing import CliRunner
+from typer.testing import CliRunner, Result
 
 from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
+from cellctl.calibration.solvers.hand_eye.hand_eye import Setup
 from cellctl.cli.calibrate import app
 from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
+from cellctl.vision.camera import project
 from cellctl.vision.stereo_head import read_stereo_head
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard, StereoTruth
@@ -31,7 +32,8 @@ def call(*arguments: object) -> Result:
 
 
 def written(pose: RigidTransform) -> list[float]:
-    return pose_to_xyzabc(pose).tolist()
+    numbers: list[float] = pose_to_xyzabc(pose).tolist()
+    return numbers
 
 
 def save(path: Path, data: object) -> Path:
@@ -40,7 +42,7 @@ def save(path: Path, data: object) -> Path:
 
 
 def hand_eye_file(folder: Path, **extra: Any) -> Path:
-    poses = hand_eye_case.make_poses(0, hand_eye_case.Setup.EYE_IN_HAND)
+    poses = hand_eye_case.make_poses(0, Setup.EYE_IN_HAND)
     entries = [
         {
             "base_T_flange": written(pose.base_T_flange),
@@ -69,7 +71,7 @@ def test_hand_eye_from_corners(tmp_path: Path) -> None:
     for _ in range(12):
         seen = hand_eye_case.random_view(rng)
         flange = hand_eye_case.BASE_T_BOARD * seen.inv() * hand_eye_case.FLANGE_T_CAMERA.inv()
-        pixels = hand_eye_case.project(hand_eye_case.CAMERA, seen.apply(hand_eye_case.BOARD_M))
+        pixels = project(hand_eye_case.CAMERA, seen.apply(hand_eye_case.BOARD_M))
         noisy = pixels + rng.normal(0, 0.1, pixels.shape)
         matrix = flange.as_matrix()
         matrix[:3, 3] /= MM

@@ -179,7 +179,7 @@ def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scena
     assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), rel=0.01)
 
 
-def test_matrices_of_written_poses_are_those_of_the_poses(scenario: Scenario):
+def test_matrices_of_written_poses_are_those_of_the_poses(scenario: Scenario) -> None:
     rng = np.random.default_rng(3)
     for _ in range(50):
         written = [*rng.uniform(-2000, 2000, 3), *rng.uniform(-180, 180, 3)]

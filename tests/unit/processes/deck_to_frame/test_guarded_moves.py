@@ -42,7 +42,9 @@ def cell_of(world: MatingCell) -> DeckCell:
 
 def run_on(world: MatingCell) -> AssemblyRun:
     cell, nothing = cell_of(world), cast(Any, None)
-    facts = RunFacts(cell, cell.recipes[0], nothing, (), nothing, 200.0, nothing, nothing)
+    values = dict.fromkeys(RunFacts.__dataclass_fields__, nothing)
+    payload = SimpleNamespace(mass_kg=200.0)
+    facts = RunFacts(**values | {"cell": cell, "recipe": cell.recipes[0], "payload": payload})
     return AssemblyRun(OpenRun(facts, nothing, nothing, nothing), nothing)
 
 
