@@ -40,7 +40,7 @@ from cellctl.processes.deck_to_frame.mating.result import (
     MatingProgress,
     Reading,
 )
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry
 from cellctl.processes.deck_to_frame.steps import mate_deck as mating_step
 from cellctl.processes.deck_to_frame.steps.correct_pose import compensate
 from cellctl.processes.deck_to_frame.steps.mate_deck import mate_deck

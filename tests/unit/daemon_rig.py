@@ -19,7 +19,7 @@ from cellctl.packml.state import State
 from cellctl.packml.unit_command import Source, UnitCommand
 from cellctl.processes.deck_to_frame import beginning
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunHead, RunRecord
 from cellctl.records.store import RunStore

@@ -1,6 +1,6 @@
 """Where every run over the station begins: the deck clear of it, the heads over it."""
 
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_poses, main_to_home

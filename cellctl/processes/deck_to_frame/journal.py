@@ -17,8 +17,8 @@ from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.record import plan_record, result_record
 from cellctl.processes.deck_to_frame.mating.result import MatingProgress, MatingResult
-from cellctl.processes.deck_to_frame.measuring import PartMeasurement
-from cellctl.processes.deck_to_frame.pose_correction import Judgement, Thresholds
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.poses.pose_correction import Judgement, Thresholds
 from cellctl.processes.deck_to_frame.record.entries import (
     error_figures,
     loop_pass,

@@ -9,7 +9,7 @@ from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
-from cellctl.processes.deck_to_frame.pose_limits import is_near
+from cellctl.processes.deck_to_frame.poses.pose_limits import is_near
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating
 from cellctl.processes.deck_to_frame.stations import DeckCell
 

@@ -38,7 +38,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
     spoiled_by = frozenset({SeatedOffPosition})
 
     def __init__(self, services: CellServices) -> None:
-        from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements
+        from cellctl.processes.deck_to_frame.procedures.board_transfer import WaitingPlacements
         from cellctl.processes.deck_to_frame.stations import FrameMemory
 
         super().__init__(services)
@@ -52,7 +52,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
     ) -> Iterable[ConfigIssue]:
         """Feature files, and whether the recipe's figures give a mating plan."""
-        from cellctl.processes.deck_to_frame.checks import recipe_issues
+        from cellctl.processes.deck_to_frame.checks.recipe import recipe_issues
 
         return recipe_issues(cell, cast(DeckRecipe, recipe), key, folder)
 
@@ -110,7 +110,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibration and commissioning, 101 to 108."""
-        from cellctl.processes.deck_to_frame.procedures import deck_procedures
+        from cellctl.processes.deck_to_frame.procedures.offered import deck_procedures
 
         # The cell's measurements belong to its devices: they are offered once, with those of the
         # first recipe.

@@ -24,8 +24,8 @@ from cellctl.packml.unit_command import Options, Source, UnitCommand
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.facts import RunFacts
-from cellctl.processes.deck_to_frame.geometry import CalibrationSet
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement
+from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurement
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory

@@ -11,8 +11,12 @@ from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import HoleMissing, UncertaintyTooLarge
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame import measuring
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement, PartMeasurer
+from cellctl.processes.deck_to_frame.poses import part_measurer as measuring
+from cellctl.processes.deck_to_frame.poses.part_measurer import (
+    HeadGeometry,
+    PartMeasurement,
+    PartMeasurer,
+)
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.misfit import Misfit
 from cellctl.vision.part_pose import PartPose

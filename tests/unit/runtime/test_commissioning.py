@@ -11,11 +11,11 @@ from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.processes.deck_to_frame import contact_stiffness
 from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
+from cellctl.processes.deck_to_frame.procedures import contact_stiffness
 from tests.unit.daemon_rig import DaemonRig
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 

@@ -17,7 +17,7 @@ from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned import Commissioned
-from cellctl.processes.deck_to_frame.geometry import CalibrationSet
+from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from fakes import scenario as scenarios
 from fakes.world.frames import from_written
 from fakes.world.world import World

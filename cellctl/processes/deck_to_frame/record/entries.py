@@ -7,8 +7,8 @@ import numpy as np
 
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.measuring import PartMeasurement
-from cellctl.processes.deck_to_frame.pose_correction import Judgement, Thresholds
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.poses.pose_correction import Judgement, Thresholds
 from cellctl.processes.deck_to_frame.record.keys import (
     ANGLE_ERROR,
     COMPONENTS,

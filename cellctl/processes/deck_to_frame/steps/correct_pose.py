@@ -7,8 +7,8 @@ import numpy as np
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.measuring import PartMeasurement
-from cellctl.processes.deck_to_frame.pose_correction import (
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.poses.pose_correction import (
     CorrectionLimits,
     CorrectionMethod,
     Judgement,
@@ -20,7 +20,7 @@ from cellctl.processes.deck_to_frame.pose_correction import (
     next_target,
     uncertain_deck_in_frame,
 )
-from cellctl.processes.deck_to_frame.pose_limits import require_clearance, require_near
+from cellctl.processes.deck_to_frame.poses.pose_limits import require_clearance, require_near
 from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.processes.deck_to_frame.state import AtStandOff, Corrected
 

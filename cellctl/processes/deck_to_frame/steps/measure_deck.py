@@ -5,8 +5,8 @@ import numpy as np
 from cellctl.cell.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.deck_on_flange import deck_on_flange
-from cellctl.processes.deck_to_frame.pose_limits import require_near
+from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
+from cellctl.processes.deck_to_frame.poses.pose_limits import require_near
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
 from cellctl.processes.deck_to_frame.state import DeckMeasured, FrameMeasured
 

@@ -1,7 +1,7 @@
 """Step 10: where the frame stands (paper 2.2.1)."""
 
 from cellctl.geometry.pose import pose_from_xyzabc
-from cellctl.processes.deck_to_frame.pose_limits import require_near
+from cellctl.processes.deck_to_frame.poses.pose_limits import require_near
 from cellctl.processes.deck_to_frame.state import FrameMeasured, Ready
 
 

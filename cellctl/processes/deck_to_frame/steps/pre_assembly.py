@@ -3,7 +3,7 @@
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.pose_correction import flange_target
+from cellctl.processes.deck_to_frame.poses.pose_correction import flange_target
 from cellctl.processes.deck_to_frame.state import AtStandOff, DeckMeasured
 
 

@@ -5,7 +5,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import SeatedOffPosition
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.pose_correction import assembly_error, deck_in_frame
+from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error, deck_in_frame
 from cellctl.processes.deck_to_frame.state import Seated, Verified
 
 

@@ -24,7 +24,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_1,
     STEREO_HEAD_2,
 )
-from cellctl.processes.deck_to_frame.geometry import CalibrationSet
+from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from tests.unit.calibration.solvers.base_frame import test_base_frame
 from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
 from tests.unit.calibration.solvers.transfer import test_board_transfer

@@ -17,7 +17,7 @@ from cellctl.force.contact.approach import (
 )
 from cellctl.force.contact.cusum import Cusum
 from cellctl.geometry.pose import pose_from_xyzabc
-from cellctl.processes.deck_to_frame.pose_correction import flange_target
+from cellctl.processes.deck_to_frame.poses.pose_correction import flange_target
 
 FIGURES = ApproachFigures(
     stop_latency_s=0.25,

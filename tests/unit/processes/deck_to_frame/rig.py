@@ -11,7 +11,7 @@ from cellctl.force.contact.seat import SeatVerdict
 from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
-from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurer
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 from typing import cast
 
-from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements
-from cellctl.processes.deck_to_frame.procedures import deck_procedures
+from cellctl.processes.deck_to_frame.procedures.board_transfer import WaitingPlacements
+from cellctl.processes.deck_to_frame.procedures.offered import deck_procedures
 from cellctl.processes.deck_to_frame.steps import ASSEMBLY
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.runtime.process import CellServices

@@ -25,7 +25,7 @@ from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.target_tracker import Target
-from cellctl.processes.deck_to_frame.deck_on_flange import deck_on_flange
+from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
 
 DISCS = target_board_discs()
 C_T_BASE = pose_from_xyzabc([1300, 30, 6000, 10, 1, 179]).inv()

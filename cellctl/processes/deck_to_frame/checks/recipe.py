@@ -5,8 +5,8 @@ from pathlib import Path
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.processes.deck_to_frame.feature_checks import feature_issues
-from cellctl.processes.deck_to_frame.mating.plan_check import plan_issues
+from cellctl.processes.deck_to_frame.checks.features import feature_issues
+from cellctl.processes.deck_to_frame.checks.mating_plan import plan_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
 

@@ -16,7 +16,6 @@ from cellctl.procedures.base_frame import AxisTurns, calibrate_base
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
 from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
-from cellctl.processes.deck_to_frame.board_transfer import WaitingPlacements, measure_board
 from cellctl.processes.deck_to_frame.calibrations import (
     BASE_FRAME,
     PAYLOAD,
@@ -24,8 +23,14 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_2,
     STOP_LATENCY,
 )
-from cellctl.processes.deck_to_frame.clear_cell import clear_the_cell
-from cellctl.processes.deck_to_frame.contact_stiffness import measure_contact_stiffness_on_cell
+from cellctl.processes.deck_to_frame.procedures.board_transfer import (
+    WaitingPlacements,
+    measure_board,
+)
+from cellctl.processes.deck_to_frame.procedures.clear_cell import clear_the_cell
+from cellctl.processes.deck_to_frame.procedures.contact_stiffness import (
+    measure_contact_stiffness_on_cell,
+)
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home

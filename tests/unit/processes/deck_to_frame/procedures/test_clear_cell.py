@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.processes.deck_to_frame.clear_cell import clear_the_cell
+from cellctl.processes.deck_to_frame.procedures.clear_cell import clear_the_cell
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.cell.bench import make_bench
 from tests.unit.procedures.rig import ProcedureRig

@@ -10,7 +10,7 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.pose_correction import (
+from cellctl.processes.deck_to_frame.poses.pose_correction import (
     CorrectionLimits,
     Judgement,
     Thresholds,

@@ -5,11 +5,6 @@ from cellctl.calibration.checks import all_passed
 from cellctl.processes.deck_to_frame.beginning import to_the_beginning
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, CONTACT_STIFFNESS
 from cellctl.processes.deck_to_frame.commissioned import Commissioned
-from cellctl.processes.deck_to_frame.contact_stiffness_picture import stiffness_picture
-from cellctl.processes.deck_to_frame.contact_stiffness_result import (
-    stiffness_checks,
-    stiffness_record,
-)
 from cellctl.processes.deck_to_frame.facts import read_facts
 from cellctl.processes.deck_to_frame.mating.commissioning import (
     ContactStiffness,
@@ -17,6 +12,11 @@ from cellctl.processes.deck_to_frame.mating.commissioning import (
 )
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
 from cellctl.processes.deck_to_frame.mating.curves import curves_kept
+from cellctl.processes.deck_to_frame.procedures.contact_stiffness_picture import stiffness_picture
+from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import (
+    stiffness_checks,
+    stiffness_record,
+)
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.run import OpenRun
 from cellctl.processes.deck_to_frame.state import Corrected, Ready

@@ -6,8 +6,8 @@ from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.geometry.pose import MM
 from cellctl.plot_style import style
-from cellctl.processes.deck_to_frame.contact_stiffness_result import readings_of
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
+from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import readings_of
 
 
 @style()
