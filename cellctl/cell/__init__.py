@@ -1,1 +1,5 @@
-"""What steps and procedures share: the devices, measuring a part, the present run, progress."""
+"""The devices of one cell by name, and what can be done with them whatever the process is.
+
+``devices`` builds and connects them; ``guarded_moves`` runs moves under force limits;
+``settling``, ``standstill`` and ``readiness`` say whether the cell is still, unmoved and ready.
+"""

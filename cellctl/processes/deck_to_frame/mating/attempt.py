@@ -43,7 +43,7 @@ class Attempt:
     plan: MatingPlan
     recorder: Recorder
     report: Report
-    sideways: LateralOffset = NO_OFFSET
+    offset: LateralOffset = NO_OFFSET
     """How far the deck has given way to pins."""
     gave_way: list[GivingWay] = field(default_factory=list)
     touches_above: int = 0
@@ -51,7 +51,7 @@ class Attempt:
 
     def pose_at(self, travel_m: float) -> RigidTransform:
         """Flange after so much travel along −Z_D, beside it where the deck gave way."""
-        return self.plan.pose_at(travel_m, self.sideways)
+        return self.plan.pose_at(travel_m, self.offset)
 
     def tell(self, phase: MatingPhase, reading: Reading | None = None, message: str = "") -> None:
         """Report progress."""

@@ -13,7 +13,7 @@ GLANCE_S = 0.15
 """The last part of a move; its mean tells whether a reading at standstill is worth its time."""
 
 
-async def give_way(attempt: Attempt, reading: Reading) -> Reading:
+async def comply(attempt: Attempt, reading: Reading) -> Reading:
     """Move across the approach until the reading is quiet or a bound is reached; the last one.
 
     The guard must be watching the limits of contact. Raises the fault of a trip.
@@ -22,11 +22,11 @@ async def give_way(attempt: Attempt, reading: Reading) -> Reading:
     if law is None:
         return reading
     for _ in range(settings.max_creep_steps):
-        move = next_move(law, attempt.sideways, reading.wrench)
+        move = next_move(law, attempt.offset, reading.wrench)
         if move is None:
             break
-        attempt.sideways = attempt.sideways.plus(move)
-        attempt.gave_way.append(GivingWay(reading, move, attempt.sideways))
+        attempt.offset = attempt.offset.plus(move)
+        attempt.gave_way.append(GivingWay(reading, move, attempt.offset))
         attempt.tell(MatingPhase.GIVE_WAY, reading)
         pose = attempt.pose_at(reading.travel_m)
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=settings.step_speed_m_s))
@@ -36,7 +36,7 @@ async def give_way(attempt: Attempt, reading: Reading) -> Reading:
     return reading
 
 
-async def glance(attempt: Attempt) -> None:
+async def check_lateral_load(attempt: Attempt) -> None:
     """After a move of the guarded travel: give way where the samples of its end ask for it."""
     law = attempt.plan.compliance
     if law is None:
@@ -46,11 +46,11 @@ async def glance(attempt: Attempt) -> None:
         return
     settings = attempt.plan.settings
     await attempt.guard.arm(contact_limits(settings))
-    await give_way(attempt, await attempt.read(settings.reading_s, settings.step_settle_s))
+    await comply(attempt, await attempt.read(settings.reading_s, settings.step_settle_s))
     await attempt.guard.arm(touch_limits(settings))
 
 
-async def relieve(attempt: Attempt) -> float:
+async def resolve_early_contact(attempt: Attempt) -> float:
     """After a touch above the seat, taken over: give way and go on; the travel reached.
 
     Raises ``ContactEarly`` when the force along the approach stays: that is no pin. Touches that
@@ -58,14 +58,14 @@ async def relieve(attempt: Attempt) -> float:
     """
     settings, window = attempt.plan.settings, attempt.plan.window
     reading = await attempt.read(settings.reading_s, settings.step_settle_s)
-    reading = await give_way(attempt, reading)
+    reading = await comply(attempt, reading)
     attempt.touches_above += 1
     stays = reading.force_n > settings.touch.drift_n
     if stays or attempt.touches_above > settings.max_creep_steps:
         raise ContactEarly(
             f"contact after {reading.travel_m / MM:.3f} mm, expected at "
             f"{window.expected_m / MM:.3f} mm; giving way by "
-            f"{attempt.sideways.distance_m / MM:.3f} mm leaves {reading.force_n:.1f} N "
+            f"{attempt.offset.distance_m / MM:.3f} mm leaves {reading.force_n:.1f} N "
             f"({attempt.touches_above} touches)"
         )
     await attempt.guard.arm(touch_limits(settings))

@@ -14,7 +14,7 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, loop_time_s
-from cellctl.processes.deck_to_frame.mating.comply import glance, relieve
+from cellctl.processes.deck_to_frame.mating.comply import check_lateral_load, resolve_early_contact
 from cellctl.processes.deck_to_frame.mating.limits import (
     contact_limits,
     fault_of,
@@ -93,10 +93,10 @@ async def travel_to_touch(attempt: Attempt) -> float:
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=plan.speed.speed_m_s))
         if trip is None:
             attempt.require_alive(attempt.guard.samples(begin_s).raw)
-            await glance(attempt)
+            await check_lateral_load(attempt)
         elif _at_pins(attempt, trip):
             await take_over(attempt)
-            commanded_m = await relieve(attempt)
+            commanded_m = await resolve_early_contact(attempt)
         else:
             return _touched(attempt, trip)
     return await _touch_at_standstill(attempt)

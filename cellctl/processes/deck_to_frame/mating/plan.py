@@ -45,9 +45,9 @@ class MatingPlan:
     compliance: ComplianceLaw | None
     """How the deck gives way to pins; None where it does not."""
 
-    def pose_at(self, travel_m: float, sideways: LateralOffset = NO_OFFSET) -> RigidTransform:
+    def pose_at(self, travel_m: float, offset: LateralOffset = NO_OFFSET) -> RigidTransform:
         """Flange after so much travel along −Z_D (eq. 18), beside it where the deck gave way."""
-        return advance(self.base_T_flange, self.flange_T_deck, travel_m, sideways)
+        return advance(self.base_T_flange, self.flange_T_deck, travel_m, offset)
 
     def travel_of(self, base_T_flange: RigidTransform) -> float:
         """Travel along −Z_D (m) of a reported pose."""

@@ -9,7 +9,7 @@ from cellctl.force.contact.creep import CreepLaw, after_step, begin, done, next_
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
-from cellctl.processes.deck_to_frame.mating.comply import give_way
+from cellctl.processes.deck_to_frame.mating.comply import comply
 from cellctl.processes.deck_to_frame.mating.limits import fault_of
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, Reading
 
@@ -30,7 +30,7 @@ async def creep_to(
     """
     plan, settings = attempt.plan, attempt.plan.settings
     reading = first or await attempt.read(settings.reading_s, settings.step_settle_s)
-    reading = await give_way(attempt, reading)
+    reading = await comply(attempt, reading)
     readings, state = [reading], begin(law, reading.force_n, reading.travel_m, shown_n_m)
     while not done(law, state):
         attempt.tell(phase, reading)
@@ -46,7 +46,7 @@ async def creep_to(
         if trip is not None:
             raise fault_of(trip, settings)
         reading = await attempt.read(settings.reading_s, settings.step_settle_s)
-        reading = await give_way(attempt, reading)
+        reading = await comply(attempt, reading)
         state = after_step(law, state, reading.force_n, reading.travel_m)
         readings.append(reading)
     attempt.tell(phase, reading)
