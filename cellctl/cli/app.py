@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import typer
 from rich.console import Console
 
-from cellctl.cli import operator_commands
+from cellctl.cli.operator import commands as operator_commands
 from cellctl.cli.root import settings
 from cellctl.errors import CellError
 

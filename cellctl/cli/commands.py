@@ -1,7 +1,8 @@
 """Every command of `cellctl`."""
 
-from cellctl.cli import calibrate, check, demo, faults, identify_payload, measure, run, runs
-from cellctl.cli.operator_commands import add_operator_commands
+from cellctl.cli import check, demo, faults, run, runs
+from cellctl.cli.offline import calibrate, identify_payload, measure
+from cellctl.cli.operator.commands import add_operator_commands
 from cellctl.cli.root import new_app
 
 _CELL, _RECORDS, _OFFLINE = "The cell", "Records and faults", "From files, without a cell"

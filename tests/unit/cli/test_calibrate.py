@@ -13,7 +13,7 @@ from typer.testing import CliRunner, Result
 from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
-from cellctl.cli.calibrate import app
+from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc

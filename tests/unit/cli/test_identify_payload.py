@@ -6,7 +6,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cellctl.cli.identify_payload import identify_payload
+from cellctl.cli.offline.identify_payload import identify_payload
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.pose_file import format_pose_file
 from tests.unit.force.gravity.world import LoadedSensor, imperfect, record

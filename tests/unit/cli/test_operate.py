@@ -25,9 +25,10 @@ from cellctl.api.local.messages import (
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
 from cellctl.api.local.socket_file import default_path
 from cellctl.cli import app as entry
-from cellctl.cli import daemon_client, operator_commands
 from cellctl.cli.commands import app
-from cellctl.cli.status_screen import screen
+from cellctl.cli.operator import commands as operator_commands
+from cellctl.cli.operator import daemon_client
+from cellctl.cli.operator.status_screen import screen
 from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.local import (
@@ -243,7 +244,7 @@ def test_the_documents_show_every_command() -> None:
 
 def test_an_abort_waits_for_no_library_that_computes() -> None:
     """Loading these takes seconds, of an Abort's time and of the daemon's processor."""
-    code = "import sys, cellctl.cli.operator_commands; print(*sys.modules)"
+    code = "import sys, cellctl.cli.operator.commands; print(*sys.modules)"
     done = subprocess.run(
         [sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=True
     )

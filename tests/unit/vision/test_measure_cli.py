@@ -7,7 +7,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cellctl.cli.measure import measure
+from cellctl.cli.offline.measure import measure
 from cellctl.vision.stereo_head import write_stereo_head
 from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
 

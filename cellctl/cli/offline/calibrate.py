@@ -33,7 +33,7 @@ from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_
 from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.invalidate import invalidate
-from cellctl.cli.measure import read_image
+from cellctl.cli.offline.measure import read_image
 from cellctl.cli.output import write_file
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc

@@ -6,7 +6,7 @@ import typer
 from rich.console import Console
 
 from cellctl.api.local.messages import AcknowledgeCommand, made
-from cellctl.cli.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 

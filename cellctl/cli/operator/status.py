@@ -7,8 +7,8 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from cellctl.cli.daemon_client import DaemonClient, SocketOption
-from cellctl.cli.status_screen import screen
+from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.operator.status_screen import screen
 from cellctl.clock import utc_now
 
 _PERIOD_S = 1.0

@@ -2,7 +2,7 @@
 
 import typer
 
-from cellctl.cli import alarms, operate, status
+from cellctl.cli.operator import alarms, operate, status
 from cellctl.cli.root import new_app
 
 _PANEL = "Operate the running cell"

@@ -16,7 +16,7 @@ from cellctl.api.local.messages import (
     made,
 )
 from cellctl.api.local.report import StatusReport
-from cellctl.cli.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
 from cellctl.errors.local import CommandMissedItsGoal
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
