@@ -11,6 +11,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.stereo_head import CameraModel
 
 _MIN_CORNERS = 6
+"""Four give a pose, but nothing that would show how good it is."""
 
 
 def board_in_camera(
@@ -27,6 +28,7 @@ def board_in_camera(
         raise BoardPoseInvalid("the corners give no pose")
     rotation = Rotation.from_rotvec(np.ravel(turn))
     translation = np.ravel(shift).astype(float)
+    # OpenCV's solution has no covariance: a few Gauss-Newton steps from it give both.
     vector = camera_vector(camera)
     for _ in range(10):
         turned = rotation.apply(board_m)

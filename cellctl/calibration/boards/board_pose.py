@@ -80,6 +80,7 @@ def fit_board(
     while True:
         pose, residuals, squares, chi2_ratio = _fit(drawing, used, disc_sigma_m)
         worst = int(np.argmax(squares))
+        # Against the typical disc: noise that was stated too small must not reject good discs.
         if squares[worst] <= _OUTLIER_CHI2 * max(1.0, _typical(squares)):
             break
         outliers.append(used.pop(worst).name)
@@ -104,10 +105,13 @@ def _fit(
         raise BoardPoseInvalid(f"{len(points)} discs, at least {_MIN_DISCS} needed: {names}")
     on_board = np.stack([drawing[point.name] for point in points])
     measured = np.stack([point.position_m for point in points])
+    # Discs on a line leave the turn about that line undetermined.
     if np.linalg.svd(on_board - on_board.mean(axis=0), compute_uv=False)[1] < 10 * MM:
         raise BoardPoseInvalid("the discs lie on a line")
+    # The drawing is uncertain too: a printed disc is off its place by some micrometres.
     own = np.eye(3) * disc_sigma_m**2
     weights = np.linalg.inv(np.stack([point.covariance_m2 + own for point in points]))
+    # Start: the unweighted closed form. Gauss-Newton on it brings in the covariances of the discs.
     rotation, _ = Rotation.align_vectors(
         measured - measured.mean(axis=0), on_board - on_board.mean(axis=0)
     )
@@ -130,4 +134,5 @@ def _fit(
 
 def _typical(squares: Array) -> float:
     """Median of the squares over its expectation for three coordinates."""
+    # 2.37 is the median of a chi square with three degrees of freedom.
     return float(np.median(squares)) / 2.37

@@ -48,9 +48,11 @@ def project(camera: Array, points_m: Array) -> Projection:
     xd = x * radial + 2 * p1 * x * y + p2 * (r2 + 2 * x * x)
     yd = y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y
 
+    # Derivatives of the distorted by the plain image point; the mixed one is the same for both.
     cross = 2 * x * y * slope + 2 * p1 * x + 2 * p2 * y
     xd_x = radial + 2 * x * x * slope + 2 * p1 * y + 6 * p2 * x
     yd_y = radial + 2 * y * y * slope + 6 * p1 * y + 2 * p2 * x
+    # By the chain rule through x = X/Z, y = Y/Z.
     by_point = np.empty((len(points_m), 2, 3))
     by_point[:, 0, 0], by_point[:, 0, 1] = fx * xd_x / depth, fx * cross / depth
     by_point[:, 1, 0], by_point[:, 1, 1] = fy * cross / depth, fy * yd_y / depth

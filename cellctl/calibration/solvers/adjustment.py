@@ -10,6 +10,7 @@ from cellctl.errors.calibration import IllConditioned, SolveFailed
 from cellctl.geometry.pose import Array
 
 _MAX_CONDITION = 1e12
+"""Of the scaled Jacobian; its inverse normal matrix would have no correct digits beyond."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,10 +26,12 @@ class Adjustment:
 
 def weighted_least_squares(residuals: Callable[[Array], Array], start: Array) -> Adjustment:
     """Minimise; raises ``SolveFailed`` or ``IllConditioned``."""
+    # Central differences: the covariance comes from this Jacobian, so its accuracy counts.
     result = least_squares(residuals, start, jac="3-point", x_scale="jac", xtol=1e-13, ftol=1e-13)
     if not result.success:
         raise SolveFailed(str(result.message))
     jacobian = np.asarray(result.jac, dtype=float)
+    # Columns of one length: metres beside radians must not look like an ill-conditioned problem.
     scale = np.linalg.norm(jacobian, axis=0)
     if not scale.all() or np.linalg.cond(jacobian / scale) > _MAX_CONDITION:
         raise IllConditioned("some unknown has no influence on the data")
@@ -36,4 +39,5 @@ def weighted_least_squares(residuals: Callable[[Array], Array], start: Array) ->
     covariance = np.linalg.inv(scaled.T @ scaled) / np.outer(scale, scale)
     freedom = max(len(jacobian) - len(start), 1)
     chi2_ratio = float(2 * result.cost / freedom)
+    # Residuals that scatter less than stated may be luck, so the covariance never shrinks.
     return Adjustment(np.asarray(result.x), covariance * max(1.0, chi2_ratio), chi2_ratio)

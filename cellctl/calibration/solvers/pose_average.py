@@ -14,6 +14,7 @@ def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
 
     The covariance grows with the chi square where that is above 1.
     """
+    # The mean is found around a reference that moves: rotations have no mean of their own.
     mean = poses[0].pose
     if len(poses) == 1:
         return poses[0], 0.0
@@ -25,6 +26,7 @@ def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
         mean = _moved(mean, covariance @ pulls)
     deltas = [np.concatenate(pose_error(mean, pose.pose)) for pose in poses]
     squares = sum(float(d @ w @ d) for w, d in zip(weights, deltas, strict=True))
+    # Six unknowns are spent on the mean.
     chi2_ratio = squares / (6 * (len(poses) - 1))
     return UncertainPose(mean, covariance * max(1.0, chi2_ratio)), chi2_ratio
 

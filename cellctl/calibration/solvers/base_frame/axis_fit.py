@@ -22,6 +22,7 @@ from cellctl.interfaces.target_tracker import Target
 Indices = NDArray[np.intp]
 
 _STILL_RAD = 1e-4
+"""The other joints hold their place within their encoders' noise."""
 MIN_STOPS = 4
 
 
@@ -151,6 +152,7 @@ def _observations(stops: Sequence[AxisStop], angles: Array) -> _Observations:
         points=np.stack([target.position_m for _, _, target in rows]).astype(float),
         stop=np.array([stop for stop, _, _ in rows]),
         target=np.array([number for _, number, _ in rows]),
+        # A stated sigma of zero would give one target infinite weight.
         sigma=np.array([max(target.sigma_m, 1e-6) for _, _, target in rows]),
         angles=angles,
         names=tuple(f"{stop + 1}:{target.name}" for stop, _, target in rows),
@@ -168,6 +170,7 @@ def _start(data: _Observations) -> tuple[Array, Array, Array]:
     for number in range(int(data.target.max()) + 1):
         rows = data.target == number
         centre, a, b = np.linalg.lstsq(design[rows], data.points[rows], rcond=None)[0]
+        # Summed, not averaged: a target farther from the axis knows its direction better.
         normal += np.cross(a, b)
         centres.append(centre)
         positions.append(centre + a)
@@ -190,6 +193,8 @@ def _whitening(
     for stop in np.unique(data.stop):
         rows = np.flatnonzero(data.stop == stop)
         count = len(rows)
+        # All targets of a stop share the displacement of the arm and the error of its angle.
+        # Treated as independent, six targets would seem to average these away.
         tangent = np.cross(direction, data.points[rows] - point).ravel()
         covariance = np.diag(np.repeat(data.sigma[rows] ** 2, 3))
         covariance += np.kron(np.ones((count, count)), np.eye(3)) * noise.repeatability_m**2

@@ -124,6 +124,7 @@ def calibrate_base_frame(
     lines = np.concatenate([first.direction, first.point_m, second.direction, second.point_m])
     pose = _base(lines, arm.d1_m, a1_angle_rad)
     c_T_base = UncertainPose(pose, _covariance(lines, (first, second), arm.d1_m, a1_angle_rad))
+    # Not used for the frame itself: a1 and squareness check it against the data sheet.
     link_x = (pose.rotation * Rotation.from_euler("z", a1_angle_rad)).apply([1.0, 0.0, 0.0])
     a1_m = float((second.point_m - first.point_m) @ link_x)
     squareness_rad = float(np.arccos(first.direction @ second.direction) - np.pi / 2)
@@ -167,7 +168,7 @@ def _covariance(
 ) -> Array:
     """Of C_T_B, by central differences over the two lines."""
     jacobian = np.zeros((6, 12))
-    step = 1e-6
+    step = 1e-6  # m or rad: far above rounding, far below any curvature
     for index in range(12):
         change = step * np.eye(12)[index]
         high = _base(lines + change, d1_m, a1_angle_rad)

@@ -26,7 +26,9 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 
 _OUTLIER_CHI2 = 40.0
+"""Squared normalised residual (6 coordinates) of a pose with a gross error: p below 1e-6."""
 _MAX_START_M = 0.02
+"""The closed form puts the board this far off its place only with data of another setup."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,9 @@ def calibrate_hand_eye(
         solution, x, z = _maximum_likelihood(used, setup, noise, x, z)
         squares = _pose_squares(used, setup, noise, x, z)
         worst = int(np.argmax(squares))
+        # 5.35 is the median of a chi square with six degrees of freedom.
         typical = max(1.0, float(np.median(squares)) / 5.35)
+        # A fifth at most: with more gross errors nobody knows which poses are the good ones.
         spare = len(used) > max(MIN_POSES, 0.8 * len(poses))
         if squares[worst] <= _OUTLIER_CHI2 * typical or not spare:
             break

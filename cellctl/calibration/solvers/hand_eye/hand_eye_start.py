@@ -16,6 +16,7 @@ from cellctl.geometry.pose import Array
 
 MIN_POSES = 4
 _MIN_TURN_RAD, _MAX_TURN_RAD = np.radians(3), np.radians(170)
+"""Small turns have an uncertain axis; at half a turn the sign of the axis is arbitrary."""
 _MIN_SPREAD_RAD = np.radians(5)
 _MAX_ANGLE_DIFFERENCE_RAD = np.radians(1)
 
@@ -33,6 +34,7 @@ def closed_form(
     alpha = np.stack([motion.rotation.as_rotvec() for motion in robot])
     beta = np.stack([motion.rotation.as_rotvec() for motion in camera])
     angles = np.linalg.norm(alpha, axis=1)
+    # A rotation has the same angle in every frame, so robot and camera must agree on it.
     off = float(np.median(np.abs(angles - np.linalg.norm(beta, axis=1))))
     if off > _MAX_ANGLE_DIFFERENCE_RAD:
         raise RobotCameraMismatch(
@@ -43,6 +45,7 @@ def closed_form(
         raise PosesNotDiverse(
             f"the flange turns about one direction only; across it {np.degrees(spread[1]):.1f}° rms"
         )
+    # Rotation first: axes transform like vectors, R beta = alpha. Translation is linear then.
     rotation, _ = Rotation.align_vectors(alpha, beta)
     matrices = np.concatenate([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
     knowns = np.concatenate(
@@ -52,6 +55,7 @@ def closed_form(
     x = RigidTransform.from_components(translation, rotation)
     z = [turn * x * pose for turn, pose in zip(turns, camera_T_board, strict=True)]
     mean_rotation = Rotation.concatenate([pose.rotation for pose in z]).mean()
+    # The median: a gross error among the poses must not pull the start.
     mean_translation = np.median([pose.translation for pose in z], axis=0)
     return x, RigidTransform.from_components(mean_translation, mean_rotation), spread
 

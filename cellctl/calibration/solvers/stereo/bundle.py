@@ -79,6 +79,7 @@ def adjust(
 ) -> BundleResult:
     """Adjust from a start near the solution; raises ``SolveFailed``."""
     state, sigma_px = start, 1.0
+    # Robust weights need the noise, and the noise needs the residuals: some rounds settle both.
     for _ in range(_ROUNDS):
         sigma_px = _robust_sigma(_all_residuals(views, flat_m, modes, state))
         state = _minimise(views, flat_m, modes, state, sigma_px)
@@ -117,6 +118,7 @@ def _minimise(
                 return state
         else:
             damping *= 10
+            # No step lowers the cost, however short: this is the minimum within rounding.
             if damping > 1e6:
                 return state
     raise SolveFailed(f"no convergence in {_MAX_STEPS} steps of the stereo adjustment")
@@ -192,6 +194,7 @@ def _step(state: BundleState, normal: _Normal, damping: float) -> BundleState:
     own = _damped(normal.own, damping)
     rest = normal.own_gradient - np.einsum("vsk,s->vk", normal.mixed, delta)
     view_delta = np.linalg.solve(own, rest[:, :, None])[:, :, 0]
+    # Small rotations go to the left of the present ones: so the derivatives were taken.
     turns = Rotation.from_rotvec(view_delta[:, 3:]).as_matrix()
     return replace(
         state,
@@ -207,6 +210,8 @@ def _step(state: BundleState, normal: _Normal, damping: float) -> BundleState:
 
 def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
     """Normal equations of the shared unknowns alone."""
+    # The pose of a view occurs in its own two images only, so each is eliminated by itself and
+    # the cost grows linearly with the number of views.
     solved = np.linalg.solve(_damped(normal.own, damping), normal.mixed.transpose(0, 2, 1))
     reduced = _damped(normal.shared, damping) - np.einsum("vsk,vkt->st", normal.mixed, solved)
     gradient = normal.shared_gradient - np.einsum("vks,vk->s", solved, normal.own_gradient)
@@ -214,6 +219,7 @@ def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
 
 
 def _damped(matrices: Array, damping: float) -> Array:
+    # Marquardt: a share of the diagonal, so that pixels, metres and radians are damped alike.
     damped = matrices.copy()
     diagonal = np.einsum("...ii->...i", damped)
     diagonal *= 1 + damping

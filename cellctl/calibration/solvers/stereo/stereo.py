@@ -114,6 +114,7 @@ def calibrate_stereo(
 def _good_views(view_rms: Array) -> Mask:
     good = view_rms <= _BAD_VIEW * np.median(view_rms)
     allowed = int(_MAX_REJECTED_RATIO * len(view_rms))
+    # The worst may go, up to the share that is allowed; all others stay, however bad.
     for index in np.argsort(-view_rms)[allowed:]:
         good[index] = True
     return np.asarray(good, dtype=np.bool_)
@@ -145,6 +146,7 @@ def _validate(
     if len(views) < 2 * _MIN_HALF:
         return None
     modes = shape_modes(board, shape)
+    # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     parts = (list(views[0::2]), list(views[1::2]))
     halves = tuple(
@@ -156,6 +158,7 @@ def _validate(
 
 def _covariance(result: BundleResult, pitch_relative_sigma: float) -> Array:
     covariance = result.covariance[:24, :24].copy()
+    # A wrong pitch stretches everything that is measured, and with it the baseline.
     scale_m = result.state.translation_m * pitch_relative_sigma
     covariance[21:, 21:] += np.outer(scale_m, scale_m)
     return covariance

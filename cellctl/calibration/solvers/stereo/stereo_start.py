@@ -19,6 +19,7 @@ from cellctl.geometry.pose import Array
 
 _MAX_SPREAD_RAD = 0.035
 _MAX_SPREAD_OF_BASELINE = 0.15
+"""Views of single cameras agree on the relative pose within this, lenses being hardly known."""
 _UPSIDE_DOWN_RAD = np.pi / 2
 
 
@@ -83,10 +84,12 @@ def _common_pose(names: Sequence[str], relative: Array) -> tuple[Array, Array]:
     if bad.mean() > 0.3:
         worst = ", ".join(np.asarray(names)[bad][:8])
         raise PairsInconsistent(f"{bad.sum()} of {len(names)} pairs disagree: {worst}")
+    # The cameras of a head look the same way: a turn beyond 90° is an image upside down.
     if middle.magnitude() > _UPSIDE_DOWN_RAD:
         raise CalibrationCameraUpsideDown(
             f"the cameras appear turned by {np.degrees(middle.magnitude()):.0f}° to each other"
         )
+    # x_right = R x_left + t: with the right camera on the right side, t points to -x.
     if translation_m[0] > 0 and abs(translation_m[0]) > np.abs(translation_m[1:]).max():
         raise CalibrationCamerasSwapped(
             f"the right camera would stand {translation_m[0] * 1e3:.1f} mm left of the left one"

@@ -50,6 +50,7 @@ def cross_validate(
         )
     first = np.concatenate([pair[0] for pair in measured])
     second = np.concatenate([pair[1] for pair in measured])
+    # A motion common to all points is a choice of the camera frame, no error of measurement.
     rotation, shift = _motion(first, second)
     turns = [
         float((Rotation.from_matrix(_motion(a, b)[0] @ rotation.T)).magnitude())

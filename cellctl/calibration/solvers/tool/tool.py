@@ -26,9 +26,11 @@ from cellctl.geometry.uncertain import UncertainPose
 
 _MIN_POSES = 4
 _MIN_TURN_RAD = np.radians(10)
+"""Rms turn of the flange in the weakest direction, below which the tip is hardly determined."""
 _MIN_TRAVEL_M = 0.02
 _MIN_ANGLE_RAD = np.radians(10)
 _STILL_RAD = np.radians(0.1)
+"""The flange keeps its orientation between the three orienting poses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,9 @@ def _position(
     )
     solution = np.linalg.lstsq(design, -places.ravel(), rcond=None)[0]
     residuals = (design @ solution + places.ravel()).reshape(-1, 3)
+    # Six unknowns: the tip in the flange and the point in the base.
     estimated = float(np.sqrt((residuals**2).sum() / (3 * len(poses) - 6)))
+    # Four poses may fit by luck: never believe less than the touch itself is uncertain.
     sigma_m = max(estimated, touch_sigma_m)
     covariance = np.linalg.inv(design.T @ design)[:3, :3] * sigma_m**2
     distances = np.linalg.norm(residuals, axis=1)
