@@ -104,6 +104,8 @@ def test_command_exists(written: Written) -> None:
     elif words[:3] == ["python", "-m", "fakes"]:
         inner = {"demo": demo_app, "plc": plc_app}.get(words[3] if len(words) > 3 else "")
         options_exist(inner or fakes_app, words[4:] if inner else words[3:])
+    elif words[:3] == ["python", "-m", "pytest"]:
+        assert all((ROOT / word).exists() for word in words[3:] if not word.startswith("-"))
     elif words[:2] == ["python", "-m"]:
         module = ROOT.joinpath(*words[2].split("."))
         assert module.with_suffix(".py").is_file() or (module / "__main__.py").is_file()
