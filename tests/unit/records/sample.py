@@ -111,7 +111,7 @@ def calibrations(store: RunStore) -> dict[str, str]:
     now = datetime.now(UTC)
     camera = {"camera_matrix": [[3581.2, 0, 1224.3], [0, 3580.9, 995.1], [0, 0, 1]]}
     covariance = np.diag([1e-4] * 3 + [1e-8] * 3).tolist()
-    records = {
+    records: dict[str, dict[str, Any]] = {
         "head_1": {
             "verdict": "pass", "left": camera, "right": camera, "rms_px": 0.0312,
             "rotation": [[0.9397, 0, 0.342], [0, 1, 0], [-0.342, 0, 0.9397]],
