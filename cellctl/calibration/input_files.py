@@ -25,7 +25,7 @@ from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.target_tracker import Target
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import CameraModel
 
 T = TypeVar("T")
 _CAMERA_SIGMA_MM, _CAMERA_SIGMA_DEG = 0.02, 0.005

@@ -15,14 +15,20 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.candidates import Candidate
-from cellctl.vision.ellipse import Ellipse
-from cellctl.vision.features import Hole
-from cellctl.vision.layout import Expectation, Spot, assignments, pair_spots
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.triangulation import epipolar_distances_px, joint_covariance, triangulate
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import by_brightness
+from cellctl.vision.holes.candidates import Candidate
+from cellctl.vision.holes.correspondence import (
+    Expectation,
+    StereoCandidate,
+    assignments,
+    pair_spots,
+)
+from cellctl.vision.holes.search import WIDE, HeadImages, working_distance_m
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
-from cellctl.vision.search import WIDE, ImagePair, working_distance_m
-from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, triangulate
-from cellctl.vision.stereo_head import CameraModel, StereoHead
 
 CENTRE_SIGMA_PX = 0.03
 """Scatter of these centres on clean holes; the method itself gives none."""
@@ -57,7 +63,7 @@ def fitted_ellipses(image: Image) -> list[Ellipse]:
 
 
 def measure_pair_by_paper(
-    pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
+    pair: HeadImages, holes: Sequence[Hole], expectation: Expectation | None
 ) -> PairMeasurement:
     """Measure a pair by the paper's steps; raises ``HoleMissing`` when no layout fits."""
     head = pair.head
@@ -69,9 +75,8 @@ def measure_pair_by_paper(
         reach_m = expectation.radius_m
         depth_m = (float(depths.min()) - reach_m, float(depths.max()) + reach_m)
     ellipses = [fitted_ellipses(image) for image in (pair.left, pair.right)]
-    spots: list[Spot] = []
-    for bright in (False, True):
-        group = [hole for hole in holes if (hole.kind == "disc") == bright]
+    spots: list[StereoCandidate] = []
+    for bright, group in by_brightness(holes):
         screened = [
             _screened(found, camera, group, depth_m)
             for found, camera in zip(ellipses, (head.left, head.right), strict=True)
@@ -126,11 +131,11 @@ def _screened(
     return kept
 
 
-def _right_size(spot: Spot, holes: Sequence[Hole]) -> bool:
+def _right_size(spot: StereoCandidate, holes: Sequence[Hole]) -> bool:
     return any(abs(spot.diameter_m / hole.diameter_m - 1.0) < 0.12 for hole in holes)
 
 
-def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
+def _hole(head: StereoHead, hole: Hole, spot: StereoCandidate) -> HoleMeasurement:
     left, right = spot.left, spot.right
     if not (isinstance(left, _Found) and isinstance(right, _Found)):
         raise TypeError("spots of this method carry their ellipse")

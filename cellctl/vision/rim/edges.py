@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.plane_patch import PlanePatch
-from cellctl.vision.rim.robust import median, robust_sigma
+from cellctl.vision.camera.plane_patch import PlanePatch
+from cellctl.vision.rim.noise import median, robust_sigma
 
 _AZIMUTHS = 64
 _STEP_PX = 0.5

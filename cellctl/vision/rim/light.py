@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
+from cellctl.vision.rim.shape import Border, RimPixels, RimShape, wall_depth
 
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
@@ -25,7 +25,7 @@ _THREAD_BAND = 0.15
 
 
 @dataclass(frozen=True, slots=True)
-class Light:
+class LightModel:
     """Which terms are free beside the mean levels and an even gradient on the plate."""
 
     cone: bool = False
@@ -63,7 +63,7 @@ class Surface:
 
 
 def surfaces(
-    pixels: RimPixels, shape: RimShape, edges: Sequence[Border], light: Light
+    pixels: RimPixels, shape: RimShape, edges: Sequence[Border], light: LightModel
 ) -> list[Surface]:
     """The surfaces at a rim; the wall is what it adds to the dark inside.
 
@@ -121,7 +121,7 @@ def _around(points: Array, shape: RimShape) -> Array:
     return np.stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
 
 
-def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _plate(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     if not light.cone:
         flat = (points - shape.centre[:, None]) / shape.radius
         return _free(np.stack([np.ones_like(flat[0]), *flat]))
@@ -131,7 +131,7 @@ def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     return terms, np.array([*[np.inf] * 6, _CONE_SLOPE_GREY, _CONE_SLOPE_GREY])
 
 
-def _wall(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _wall(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     depth = wall_depth(points, shape)
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
@@ -145,7 +145,7 @@ def _wall(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     return terms, np.array([*[np.inf] * 3, *sigma, *[_WALL_GREY] * 3])
 
 
-def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     if light.turns_grey == 0.0:
         return _free(np.ones((1, points.shape[1])))
     radius, cos, sin = _polar(points, shape)

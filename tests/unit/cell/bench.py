@@ -29,10 +29,10 @@ from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurem
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
-from cellctl.vision.features import FeatureFile, read_features
+from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.misfit import Misfit
-from cellctl.vision.part_pose import PartPose
+from cellctl.vision.registration.chi_square import Misfit
+from cellctl.vision.registration.part_pose import PartPose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations

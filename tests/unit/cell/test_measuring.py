@@ -14,8 +14,8 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame import measuring
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement, PartMeasurer
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.misfit import Misfit
-from cellctl.vision.part_pose import PartPose
+from cellctl.vision.registration.chi_square import Misfit
+from cellctl.vision.registration.part_pose import PartPose
 from tests.unit.cell.bench import Bench
 
 PLACE = pose_from_xyzabc([10, 20, 500, 5, 1, 179])

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
-from cellctl.vision.camera import project, undistort
-from cellctl.vision.features import Hole
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.lens import project, undistort
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.features.hole import Hole
 
 SUB = 8
 

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.vision import HoleAmbiguous, HoleMissing
 from cellctl.geometry.pose import MM
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cellctl.errors.vision import FeatureFileInvalid
-from cellctl.vision.features import read_features
+from cellctl.vision.features.feature_file import read_features
 
 GOOD = """
 head_1 = ["P1"]

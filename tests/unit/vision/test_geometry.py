@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 import pytest
 
-from cellctl.vision.camera import distort, distort_jacobian, project, undistort
-from cellctl.vision.ellipse import conic_of_circle, eccentricity, ellipse_of_circle
-from cellctl.vision.plane_patch import plane_basis, plane_patch, to_plane
-from cellctl.vision.stereo import (
+from cellctl.vision.camera.ellipse import conic_of_circle, eccentricity, ellipse_of_circle
+from cellctl.vision.camera.lens import distort, distort_jacobian, project, undistort
+from cellctl.vision.camera.plane_patch import plane_basis, plane_patch, to_plane
+from cellctl.vision.camera.triangulation import (
     epipolar_distances_px,
     essential_matrix,
     fundamental_matrix,

@@ -10,7 +10,7 @@ from benchmarks.drawn_scenes import drawn_scene
 from benchmarks.metrology_figures import HoleErrors
 from benchmarks.metrology_looks import measure
 from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 
 WORST_PX = {

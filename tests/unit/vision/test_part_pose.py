@@ -5,10 +5,10 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.ellipse import Ellipse
-from cellctl.vision.features import Hole
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
-from cellctl.vision.part_pose import part_pose
+from cellctl.vision.registration.part_pose import part_pose
 
 XY_MM = [(-480, -180), (-480, -80), (-400, -230), (400, 230), (480, 180), (480, 80)]
 HOLES = tuple(

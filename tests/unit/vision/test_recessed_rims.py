@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.metrology_scenes import HEAD_HOLES, stereo_head
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import PairMeasurement
 from fakes.render import api

@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.plane_patch import X_AXIS, PlanePatch, plane_basis, plane_patch
-from cellctl.vision.rim.lay import lay_across, strokes
-from cellctl.vision.rim.noise import Noise, noise_of
+from cellctl.vision.camera.plane_patch import X_AXIS, PlanePatch, plane_basis, plane_patch
+from cellctl.vision.rim.noise import PixelNoise, noise_of, stroke_pattern, surface_lay
 from tests.unit.vision.plates import table_1_head
 
 MIDDLE_PX = np.array([1200.0, 1000.0])
@@ -36,7 +35,7 @@ def _brushed(angle_deg: float, height_grey: float, noise_grey: float, seed: int)
 
 @pytest.mark.parametrize("angle_deg", [0.0, 30.0, 100.0])
 def test_the_lay_is_found_to_a_degree(angle_deg: float) -> None:
-    across = lay_across(_brushed(angle_deg, 4.0, 2.0, 3), _patch(), MIDDLE_PX, 25.0)
+    across = surface_lay(_brushed(angle_deg, 4.0, 2.0, 3), _patch(), MIDDLE_PX, 25.0)
     assert across is not None
     wanted = np.array([-np.sin(np.radians(angle_deg)), np.cos(np.radians(angle_deg))])
     assert abs(across @ wanted) > np.cos(np.radians(1.0))
@@ -44,7 +43,7 @@ def test_the_lay_is_found_to_a_degree(angle_deg: float) -> None:
 
 def test_noise_alone_has_no_lay() -> None:
     found = [
-        lay_across(_brushed(0.0, 1e-3, 2.0, seed), _patch(), MIDDLE_PX, 25.0) for seed in (1, 2)
+        surface_lay(_brushed(0.0, 1e-3, 2.0, seed), _patch(), MIDDLE_PX, 25.0) for seed in (1, 2)
     ]
     assert found == [None, None]
 
@@ -58,19 +57,19 @@ def _offsets(rng: np.random.Generator) -> Array:
 @given(seed=st.integers(0, 2**31), height=st.floats(0.1, 8.0))
 def test_weighing_is_the_inverse_of_the_covariance(seed: int, height: float) -> None:
     rng = np.random.default_rng(seed)
-    pattern = strokes(_offsets(rng), np.array([0.0, 1.0]), 20.0) * height
+    pattern = stroke_pattern(_offsets(rng), np.array([0.0, 1.0]), 20.0) * height
     weights = rng.uniform(0.1, 1.0, 400)
     rows = rng.normal(size=(3, 400))
     dense = np.diag(1.0 / weights) + pattern.T @ pattern
     np.testing.assert_allclose(
-        Noise.of(weights, pattern).weigh(rows), np.linalg.solve(dense, rows.T).T, atol=1e-8
+        PixelNoise.of(weights, pattern).weigh(rows), np.linalg.solve(dense, rows.T).T, atol=1e-8
     )
 
 
 def test_noise_and_strokes_are_told_apart() -> None:
     rng = np.random.default_rng(5)
     offsets = _offsets(rng)
-    pattern = strokes(offsets, np.array([0.0, 1.0]), 20.0)
+    pattern = stroke_pattern(offsets, np.array([0.0, 1.0]), 20.0)
     heights = rng.normal(0.0, 4.0, len(pattern) // 2)
     residuals = heights @ pattern[: len(heights)] + rng.normal(0.0, 1.5, 400)
     noise = noise_of(residuals, np.ones(400), pattern)
@@ -80,7 +79,7 @@ def test_noise_and_strokes_are_told_apart() -> None:
 
 def test_without_strokes_in_the_residuals_none_are_assumed() -> None:
     rng = np.random.default_rng(6)
-    pattern = strokes(_offsets(rng), np.array([0.0, 1.0]), 20.0)
+    pattern = stroke_pattern(_offsets(rng), np.array([0.0, 1.0]), 20.0)
     counted = [
         len(noise_of(rng.normal(0.0, 2.0, 400), np.ones(400), pattern).strokes) for _ in range(20)
     ]

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cellctl.errors.vision import CalibrationFileInvalid
-from cellctl.vision.stereo_head import StereoHead, read_stereo_head, write_stereo_head
+from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head, write_stereo_head
 from tests.unit.vision.plates import table_1_head
 
 

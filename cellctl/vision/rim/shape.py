@@ -1,11 +1,13 @@
-"""What a rim looks like: where its edges lie in the image, and how each depends on the shape.
+"""The geometry of a rim: where its edges lie in the image, and how they move with its parameters.
 
 Up to four surfaces meet at a hole: the plate, the ring of a chamfer, the visible part of the wall,
 and the dark inside. Their borders are circles in coordinates of the rim's plane: the outer edge of
-the ring, the rim, and the lower edge of the wall, which lies h below a plane at distance D and is
-therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs all.
+the ring, the rim, and the lower edge of the wall. The lower edge lies h below a plane at distance D
+and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs
+all of them.
 
-Arrays hold one pixel a column: this is the inner loop of every measurement.
+Arrays hold one pixel a column, because this is the inner loop of every measurement: rows are then
+contiguous in memory.
 """
 
 from collections.abc import Sequence

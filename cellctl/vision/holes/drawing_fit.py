@@ -6,9 +6,9 @@ import numpy as np
 
 from cellctl.errors.vision import HoleAmbiguous, ResidualsTooLarge
 from cellctl.geometry.pose import MM, Array
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.registration import misfits_m, on_a_line
+from cellctl.vision.registration.rigid_fit import misfits_m, on_a_line
 
 _APART_M = 0.5e-3
 """Two measurements of a hole that are farther apart than this are of different features."""

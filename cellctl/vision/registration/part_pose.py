@@ -10,11 +10,11 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose, skew
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import Method, PairMeasurement
-from cellctl.vision.misfit import Misfit, misfit
 from cellctl.vision.paper import paper_frame
-from cellctl.vision.registration import by_pose, on_a_line, register
+from cellctl.vision.registration.chi_square import Misfit, misfit
+from cellctl.vision.registration.rigid_fit import by_pose, on_a_line, register
 
 RESIDUAL_LIMIT_M = 0.2e-3
 """Largest distance of a measured hole from its registered nominal position."""

@@ -10,11 +10,10 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import undistort
-from cellctl.vision.features import Hole
+from cellctl.vision.camera.lens import undistort
+from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.rim.edges import strongest_edges
-from cellctl.vision.rim.sight import Sight, patch_of
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.rim.roi import RimRoi
 
 _REACH_PX = 8.0
 _SQUEEZE = 0.25
@@ -38,20 +37,18 @@ class _Seen:
     """Shape (n, 3) each, in the frame of the camera, z = 1."""
 
 
-def measured_normal(
-    head: StereoHead, sights: Sequence[tuple[Sight, Sight]], holes: Sequence[Hole]
-) -> Array | None:
-    """Common normal of the rims, away from the left camera; None when their edges do not tell.
+def plane_from_edges(head: StereoHead, rois: Sequence[tuple[RimRoi, RimRoi]]) -> Array | None:
+    """Common unit normal of the rims, away from the left camera, in that camera, shape (3,).
 
-    ``sights`` look at each hole with any plausible normal.
+    None when their edges do not tell. ``rois`` look at each hole with any plausible normal.
     """
     rims = []
-    for (left, right), hole in zip(sights, holes, strict=True):
-        rays = _edge_rays(left, hole), _edge_rays(right, hole)
+    for left, right in rois:
+        rays = _edge_rays(left), _edge_rays(right)
         if min(len(rays[0]), len(rays[1])) < _FEWEST_EDGES:
             return None
-        rims.append(_Seen(left.centre_m, hole.diameter_m / 2.0, rays))
-    problem = _Problem(head, rims)
+        rims.append(_Seen(left.centre_m, left.hole.diameter_m / 2.0, rays))
+    problem = _PlaneProblem(head, rims)
     found = [
         least_squares(problem.residuals, problem.start(slopes), loss="soft_l1", f_scale=_SOFT_PX)
         for slopes in _STARTS
@@ -59,7 +56,7 @@ def measured_normal(
     return problem.normal(min(found, key=lambda one: float(one.cost)).x)
 
 
-class _Problem:
+class _PlaneProblem:
     """Residuals of all edge points for two slopes of the plane and the unknowns of each rim."""
 
     def __init__(self, head: StereoHead, rims: Sequence[_Seen]) -> None:
@@ -94,15 +91,15 @@ class _Problem:
         return np.concatenate(rows)
 
 
-def _edge_rays(sight: Sight, hole: Hole) -> Array:
-    patch = patch_of(sight, hole, _REACH_PX)
+def _edge_rays(roi: RimRoi) -> Array:
+    patch = roi.patch(_REACH_PX)
     if patch is None:
         return np.empty((0, 3))
-    radius = hole.diameter_m / 2.0 / sight.distance_m
-    centre = patch.basis @ sight.centre_m / sight.distance_m
+    radius = roi.nominal_radius
+    centre = patch.basis @ roi.centre_m / roi.distance_m
     reach = _REACH_PX * patch.unit_px + _SQUEEZE * radius
-    edges = strongest_edges(sight.image, patch, centre, radius, reach, bright=hole.kind == "disc")
-    rays = undistort(sight.camera, patch.to_px(edges))
+    edges = strongest_edges(roi.image, patch, centre, radius, reach, bright=roi.kind.bright)
+    rays = undistort(roi.camera, patch.to_px(edges))
     return np.column_stack([rays, np.ones(len(rays))])
 
 

@@ -7,11 +7,12 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.camera import project
-from cellctl.vision.candidates import Candidate, find_candidates
-from cellctl.vision.features import Hole
-from cellctl.vision.layout import Expectation, Spot, pair_spots
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.lens import project
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import by_brightness, kind_of
+from cellctl.vision.holes.candidates import Candidate, find_candidates
+from cellctl.vision.holes.correspondence import Expectation, StereoCandidate, pair_spots
 
 NEAR, WIDE = (0.8, 1.3), (0.45, 2.2)
 """Ranges of distance for the whole-image search, in parts of the head's working distance."""
@@ -21,7 +22,7 @@ _RADIUS_MARGIN = 0.12
 
 
 @dataclass(frozen=True, slots=True)
-class ImagePair:
+class HeadImages:
     """Two images of one exposure and the head that took them."""
 
     head: StereoHead
@@ -40,17 +41,14 @@ def working_distance_m(head: StereoHead) -> float:
 
 
 def spots_anywhere(
-    pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]
-) -> list[Spot]:
+    pair: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
+) -> list[StereoCandidate]:
     """Round features in the whole images at plausible distances."""
     head = pair.head
     distance_m = working_distance_m(head)
     depth_m = (reach[0] * distance_m, reach[1] * distance_m)
-    spots: list[Spot] = []
-    for bright in (False, True):
-        group = [hole for hole in holes if (hole.kind == "disc") == bright]
-        if not group:
-            continue
+    spots: list[StereoCandidate] = []
+    for bright, group in by_brightness(holes):
         found = [
             find_candidates(image, _radii(camera, group, depth_m), bright=bright)
             for image, camera in ((pair.left, head.left), (pair.right, head.right))
@@ -61,15 +59,14 @@ def spots_anywhere(
     return spots
 
 
-def spots_near(pair: ImagePair, holes: Sequence[Hole], expectation: Expectation) -> list[Spot]:
+def spots_near(
+    pair: HeadImages, holes: Sequence[Hole], expectation: Expectation
+) -> list[StereoCandidate]:
     """Round features within a window round each hole's predicted place."""
     head, camera_T_part, radius_m = pair.head, expectation.camera_T_part, expectation.radius_m
     right_T_part = head.right_T_left * camera_T_part
-    spots: list[Spot] = []
-    for bright in (False, True):
-        group = [hole for hole in holes if (hole.kind == "disc") == bright]
-        if not group:
-            continue
+    spots: list[StereoCandidate] = []
+    for bright, group in by_brightness(holes):
         found = [
             _in_windows(image, camera, group, Expectation(pose, radius_m))
             for image, camera, pose in (
@@ -109,7 +106,7 @@ def _in_windows(
         if window is None:
             continue
         radii_px = (radius_px * (1.0 - _RADIUS_MARGIN), radius_px * (1.0 + _RADIUS_MARGIN))
-        for item in find_candidates(window, radii_px, bright=hole.kind == "disc", limit=12):
+        for item in find_candidates(window, radii_px, bright=kind_of(hole).bright, limit=12):
             centre = item.centre_px + origin
             if not any(_same(centre, item.radius_px, other) for other in found):
                 found.append(Candidate(centre, item.radius_px, item.support))

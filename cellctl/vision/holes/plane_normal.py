@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.features import Hole
-from cellctl.vision.layout import Expectation
-from cellctl.vision.registration import kabsch, on_a_line
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.holes.correspondence import Expectation
+from cellctl.vision.registration.rigid_fit import kabsch, on_a_line
 
 _SAME_AXIS = float(np.cos(np.radians(1.0)))
 

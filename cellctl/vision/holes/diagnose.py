@@ -7,17 +7,22 @@ import numpy as np
 
 from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown, HoleMissing, VisionError
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.features import Hole
-from cellctl.vision.layout import Expectation, Spot, assignments, holes_without_spot
-from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.holes.correspondence import (
+    Expectation,
+    StereoCandidate,
+    assignments,
+    holes_without_spot,
+)
+from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, spots_anywhere
 
 _TOLERANCE_M = 1.5e-3
 
 
 def fault_without_layout(
-    pair: ImagePair,
+    pair: HeadImages,
     holes: Sequence[Hole],
-    spots: Sequence[Spot],
+    spots: Sequence[StereoCandidate],
     expectation: Expectation | None,
 ) -> VisionError:
     """The fault to raise when no assignment of ``spots`` fits the drawing."""
@@ -36,7 +41,7 @@ def fault_without_layout(
 
 
 def _wrong_images(
-    pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]
+    pair: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
 ) -> VisionError | None:
     """The fault when the holes are found once the images are exchanged or turned."""
     if _fits(replace(pair, left=pair.right, right=pair.left), holes, reach):
@@ -53,7 +58,7 @@ def _wrong_images(
     return None
 
 
-def _fits(pair: ImagePair, holes: Sequence[Hole], reach: tuple[float, float]) -> bool:
+def _fits(pair: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]) -> bool:
     spots = spots_anywhere(pair, holes, reach)
     return bool(assignments(holes, spots, tolerance_m=_TOLERANCE_M, expectation=None))
 
@@ -63,7 +68,7 @@ def _turned(image: Image) -> Image:
 
 
 def _largest_part(
-    holes: Sequence[Hole], spots: Sequence[Spot], expectation: Expectation | None
+    holes: Sequence[Hole], spots: Sequence[StereoCandidate], expectation: Expectation | None
 ) -> set[str]:
     """Names of the holes that fit when one hole is left out."""
     for left_out in holes if len(holes) > 3 else ():

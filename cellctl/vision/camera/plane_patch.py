@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import distort, undistort
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.lens import distort, undistort
+from cellctl.vision.camera.stereo_head import CameraModel
 
 X_AXIS = np.array([1.0, 0.0, 0.0])
 

@@ -1,38 +1,21 @@
-"""The named holes of a part, from its feature file."""
+"""The feature file of a part: its named holes, and which head sees which."""
 
 import math
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, cast, get_args
+from typing import Any, Literal
 
 import numpy as np
 
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.geometry.pose import MM, Array
-
-HoleKind = Literal["pin", "thread", "countersink", "disc"]
-"""``disc`` is a bright round target; the others are dark holes in a brighter part."""
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import KINDS
 
 _HOLE_KEYS = {"name", "kind", "diameter_mm", "position_mm", "countersink_mm"}
 _FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis"}
-
-
-@dataclass(frozen=True, slots=True)
-class Hole:
-    """One feature with its nominal geometry in the part frame."""
-
-    name: str
-    kind: HoleKind
-    diameter_m: float
-    """Of the rim that carries the nominal centre."""
-    position_m: Array
-    """Shape (3,)."""
-    countersink_m: float | None = None
-    """Diameter of the countersink's outer rim."""
-    outward: Array | None = None
-    """Unit vector out of the face that is seen, shape (3,); None when the drawing does not say."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,8 +89,8 @@ def _hole(table: Mapping[str, Any], index: int, outward: Array | None) -> Hole:
         raise ValueError(f"{where}: name must be a text")
     where = f"hole {name}"
     kind = table.get("kind")
-    if kind not in get_args(HoleKind):
-        raise ValueError(f"{where}: kind must be one of {', '.join(get_args(HoleKind))}")
+    if not isinstance(kind, str) or kind not in KINDS:
+        raise ValueError(f"{where}: kind must be one of {', '.join(KINDS)}")
     diameter_mm = _positive(table, "diameter_mm", where)
     countersink_mm = None
     if "countersink_mm" in table:
@@ -116,7 +99,7 @@ def _hole(table: Mapping[str, Any], index: int, outward: Array | None) -> Hole:
             raise ValueError(f"{where}: countersink_mm must exceed diameter_mm")
     return Hole(
         name,
-        cast(HoleKind, kind),
+        kind,
         diameter_mm * MM,
         _three_numbers(table, "position_mm", where) * MM,
         None if countersink_mm is None else countersink_mm * MM,

@@ -6,8 +6,8 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
-from cellctl.vision.camera import distort_jacobian, project, undistort
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.lens import distort_jacobian, project, undistort
+from cellctl.vision.camera.stereo_head import StereoHead
 
 _STEPS = 2
 """From half-way between the rays, the first step leaves less than 1e-6 px."""

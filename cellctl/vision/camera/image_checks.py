@@ -9,7 +9,7 @@ from cellctl.errors.vision import (
     ImageSizeMismatch,
 )
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_head import StereoHead
 
 _BLACK_GREY = 12
 _SATURATED_GREY = 254

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import CameraModel
 
 _UNDISTORT_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
 

@@ -7,11 +7,12 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.candidates import Candidate
-from cellctl.vision.features import Hole
-from cellctl.vision.registration import kabsch, misfits_m, on_a_line
-from cellctl.vision.stereo import epipolar_distances_px, midpoints
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.triangulation import epipolar_distances_px, midpoints
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import kind_of
+from cellctl.vision.holes.candidates import Candidate
+from cellctl.vision.registration.rigid_fit import kabsch, misfits_m, on_a_line
 
 _MAX_ASSIGNMENTS = 64
 _SIZE_TOLERANCE = 0.3
@@ -28,7 +29,7 @@ class Expectation:
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class StereoCandidate:
     """A round feature seen by both cameras, coarsely located."""
 
     position_m: Array
@@ -43,7 +44,7 @@ class Spot:
 class Assignment:
     """One way to give every hole a spot."""
 
-    spots: tuple[Spot, ...]
+    spots: tuple[StereoCandidate, ...]
     """In the order of the holes."""
     misfit_m: float
     """Largest distance of a spot from the fitted layout."""
@@ -67,7 +68,7 @@ def pair_spots(
     bright: bool,
     epipolar_px: float,
     depth_m: tuple[float, float],
-) -> list[Spot]:
+) -> list[StereoCandidate]:
     """All left-right pairs that agree in epipolar geometry, depth and size."""
     if not left or not right:
         return []
@@ -86,7 +87,7 @@ def pair_spots(
     good = (points[:, 2] > depth_m[0]) & (points[:, 2] < depth_m[1]) & (in_right[:, 2] > 0)
     good &= np.abs(left_m - right_m) < _SIZE_TOLERANCE * np.maximum(left_m, right_m)
     return [
-        Spot(
+        StereoCandidate(
             points[index],
             float(left_m[index] + right_m[index]) / 2.0,
             left[rows[index]],
@@ -99,7 +100,7 @@ def pair_spots(
 
 def assignments(
     holes: Sequence[Hole],
-    spots: Sequence[Spot],
+    spots: Sequence[StereoCandidate],
     *,
     tolerance_m: float,
     expectation: Expectation | None,
@@ -120,17 +121,19 @@ def assignments(
 
 
 def holes_without_spot(
-    holes: Sequence[Hole], spots: Sequence[Spot], expectation: Expectation | None
+    holes: Sequence[Hole], spots: Sequence[StereoCandidate], expectation: Expectation | None
 ) -> list[str]:
     """Names of holes for which nothing of the right kind and size was seen at all."""
     return [hole.name for hole in holes if not _choices(hole, spots, expectation)]
 
 
-def _choices(hole: Hole, spots: Sequence[Spot], expectation: Expectation | None) -> list[int]:
+def _choices(
+    hole: Hole, spots: Sequence[StereoCandidate], expectation: Expectation | None
+) -> list[int]:
     indices = [
         index
         for index, spot in enumerate(spots)
-        if spot.bright == (hole.kind == "disc")
+        if spot.bright == kind_of(hole).bright
         and abs(spot.diameter_m / hole.diameter_m - 1.0) < _SIZE_TOLERANCE
     ]
     if expectation is None:
@@ -146,7 +149,7 @@ def _choices(hole: Hole, spots: Sequence[Spot], expectation: Expectation | None)
 def _consistent(
     order: Sequence[int],
     choices: Sequence[Sequence[int]],
-    spots: Sequence[Spot],
+    spots: Sequence[StereoCandidate],
     wanted: Array,
     tolerance_m: float,
 ) -> Iterator[list[int]]:
@@ -176,7 +179,9 @@ def _consistent(
     yield from extend(0)
 
 
-def _checked(holes: Sequence[Hole], spots: Sequence[Spot], tolerance_m: float) -> Assignment | None:
+def _checked(
+    holes: Sequence[Hole], spots: Sequence[StereoCandidate], tolerance_m: float
+) -> Assignment | None:
     """The assignment, unless its layout is off or a face that is known would look away."""
     nominal = np.array([hole.position_m for hole in holes])
     measured = np.array([spot.position_m for spot in spots])
