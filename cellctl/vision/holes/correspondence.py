@@ -1,4 +1,4 @@
-"""Which round feature is which hole: size, mutual distances and, if known, where to expect it."""
+"""Which round feature is which hole: by size, mutual distances and, if known, expected place."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -15,7 +15,10 @@ from cellctl.vision.holes.candidates import Candidate
 from cellctl.vision.registration.rigid_fit import kabsch, misfits_m, on_a_line
 
 _MAX_ASSIGNMENTS = 64
+"""More is never measured: beyond this the drawing does not tell the features apart."""
 _SIZE_TOLERANCE = 0.3
+"""Relative. Voting at reduced scale finds a radius to a tenth, and the rim of a chamfer or a cone
+may win over the one that is meant."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,25 +45,27 @@ class StereoCandidate:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """One way to give every hole a spot."""
+    """One way to assign a feature to every hole."""
 
-    spots: tuple[StereoCandidate, ...]
+    candidates: tuple[StereoCandidate, ...]
     """In the order of the holes."""
     misfit_m: float
-    """Largest distance of a spot from the fitted layout."""
+    """Largest distance of a candidate from the fitted layout."""
 
     @property
     def positions_m(self) -> Array:
         """Shape (n, 3)."""
-        return np.array([spot.position_m for spot in self.spots])
+        return np.array([candidate.position_m for candidate in self.candidates])
 
     @property
     def places_px(self) -> Array:
         """Coarse places in both images, left first, shape (n, 2, 2)."""
-        return np.array([[spot.left.centre_px, spot.right.centre_px] for spot in self.spots])
+        return np.array(
+            [[candidate.left.centre_px, candidate.right.centre_px] for candidate in self.candidates]
+        )
 
 
-def pair_spots(
+def pair_candidates(
     head: StereoHead,
     left: Sequence[Candidate],
     right: Sequence[Candidate],
@@ -100,19 +105,20 @@ def pair_spots(
 
 def assignments(
     holes: Sequence[Hole],
-    spots: Sequence[StereoCandidate],
+    candidates: Sequence[StereoCandidate],
     *,
     tolerance_m: float,
     expectation: Expectation | None,
 ) -> list[Assignment]:
-    """Every assignment of distinct spots to all holes that fits the drawing, best first."""
+    """Every assignment of distinct candidates to all holes that fits the drawing, best first."""
     nominal = np.array([hole.position_m for hole in holes])
-    choices = [_choices(hole, spots, expectation) for hole in holes]
+    choices = [_choices(hole, candidates, expectation) for hole in holes]
+    # The hole with the fewest choices comes first: the search tree is then the smallest.
     order = sorted(range(len(holes)), key=lambda index: len(choices[index]))
     wanted = np.linalg.norm(nominal[:, None] - nominal[None], axis=2)
     found = []
-    for chosen in _consistent(order, choices, spots, wanted, 2.0 * tolerance_m):
-        assignment = _checked(holes, [spots[index] for index in chosen], tolerance_m)
+    for chosen in _consistent(order, choices, candidates, wanted, 2.0 * tolerance_m):
+        assignment = _checked(holes, [candidates[index] for index in chosen], tolerance_m)
         if assignment is not None:
             found.append(assignment)
         if len(found) >= _MAX_ASSIGNMENTS:
@@ -120,21 +126,21 @@ def assignments(
     return sorted(found, key=lambda item: item.misfit_m)
 
 
-def holes_without_spot(
-    holes: Sequence[Hole], spots: Sequence[StereoCandidate], expectation: Expectation | None
+def holes_without_candidate(
+    holes: Sequence[Hole], candidates: Sequence[StereoCandidate], expectation: Expectation | None
 ) -> list[str]:
     """Names of holes for which nothing of the right kind and size was seen at all."""
-    return [hole.name for hole in holes if not _choices(hole, spots, expectation)]
+    return [hole.name for hole in holes if not _choices(hole, candidates, expectation)]
 
 
 def _choices(
-    hole: Hole, spots: Sequence[StereoCandidate], expectation: Expectation | None
+    hole: Hole, candidates: Sequence[StereoCandidate], expectation: Expectation | None
 ) -> list[int]:
     indices = [
         index
-        for index, spot in enumerate(spots)
-        if spot.bright == kind_of(hole).bright
-        and abs(spot.diameter_m / hole.diameter_m - 1.0) < _SIZE_TOLERANCE
+        for index, candidate in enumerate(candidates)
+        if candidate.bright == kind_of(hole).bright
+        and abs(candidate.diameter_m / hole.diameter_m - 1.0) < _SIZE_TOLERANCE
     ]
     if expectation is None:
         return indices
@@ -142,19 +148,19 @@ def _choices(
     return [
         index
         for index in indices
-        if np.linalg.norm(spots[index].position_m - expected) < expectation.radius_m
+        if np.linalg.norm(candidates[index].position_m - expected) < expectation.radius_m
     ]
 
 
 def _consistent(
     order: Sequence[int],
     choices: Sequence[Sequence[int]],
-    spots: Sequence[StereoCandidate],
+    candidates: Sequence[StereoCandidate],
     wanted: Array,
     tolerance_m: float,
 ) -> Iterator[list[int]]:
-    """Depth-first search over spots whose mutual distances agree with the drawing."""
-    positions = np.array([spot.position_m for spot in spots]).reshape(-1, 3)
+    """Depth-first search over candidates whose mutual distances agree with the drawing."""
+    positions = np.array([candidate.position_m for candidate in candidates]).reshape(-1, 3)
     chosen = [-1] * len(order)
 
     def extend(depth: int) -> Iterator[list[int]]:
@@ -162,17 +168,19 @@ def _consistent(
             yield list(chosen)
             return
         hole = order[depth]
-        for spot in choices[hole]:
+        for candidate in choices[hole]:
+            # A distance between two holes does not depend on how the part lies: most wrong
+            # branches end here, before any pose is computed.
             if all(
-                spot != chosen[other]
+                candidate != chosen[other]
                 and abs(
-                    float(np.linalg.norm(positions[spot] - positions[chosen[other]]))
+                    float(np.linalg.norm(positions[candidate] - positions[chosen[other]]))
                     - wanted[hole, other]
                 )
                 < tolerance_m
                 for other in order[:depth]
             ):
-                chosen[hole] = spot
+                chosen[hole] = candidate
                 yield from extend(depth + 1)
                 chosen[hole] = -1
 
@@ -180,17 +188,21 @@ def _consistent(
 
 
 def _checked(
-    holes: Sequence[Hole], spots: Sequence[StereoCandidate], tolerance_m: float
+    holes: Sequence[Hole], candidates: Sequence[StereoCandidate], tolerance_m: float
 ) -> Assignment | None:
-    """The assignment, unless its layout is off or a face that is known would look away."""
+    """The assignment; None when it does not fit or when the face would look away from the head.
+
+    The layout of two holes, or of holes on a line, is given by their distances, which were compared
+    before.
+    """
     nominal = np.array([hole.position_m for hole in holes])
-    measured = np.array([spot.position_m for spot in spots])
+    measured = np.array([candidate.position_m for candidate in candidates])
     if on_a_line(nominal):
-        return Assignment(tuple(spots), 0.0)
+        return Assignment(tuple(candidates), 0.0)
     misfit_m = float(misfits_m(nominal, measured).max())
     if misfit_m > tolerance_m:
         return None
     outward = holes[0].outward
     if outward is not None and kabsch(nominal, measured)[0] @ outward @ measured.mean(axis=0) >= 0:
         return None
-    return Assignment(tuple(spots), misfit_m)
+    return Assignment(tuple(candidates), misfit_m)

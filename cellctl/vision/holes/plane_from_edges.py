@@ -1,6 +1,7 @@
-"""The plane of rims from their own shape, for when nothing else says how a part is turned.
+"""The plane of rims from their own shape, when nothing else says how a part is turned.
 
-A circle of known size seen by two cameras is two ellipses; one plane explains both.
+That is so with one or two holes, or with all of them on a line, and no predicted pose. A circle of
+known size seen by two cameras gives two ellipses; only one plane explains both.
 """
 
 from collections.abc import Sequence
@@ -19,8 +20,10 @@ _REACH_PX = 8.0
 _SQUEEZE = 0.25
 """How much smaller than its diameter a rim may look across its tilt."""
 _STARTS = ((0.0, 0.0), (0.35, 0.0), (-0.35, 0.0), (0.0, 0.35), (0.0, -0.35))
-"""Slopes against the line of sight."""
+"""Slopes against the line of sight. An ellipse nearly fits two opposite tilts, so the fit starts on
+all sides and the best result counts."""
 _SOFT_PX = 0.3
+"""Distance from which on an edge point counts less: some belong to a wall or to a chamfer."""
 _SIZE_SIGMA = 0.02
 _FEWEST_EDGES = 24
 _UNKNOWNS = 4

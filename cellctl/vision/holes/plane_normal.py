@@ -1,7 +1,8 @@
-"""Which way the holes of a part face: where their rims' plane lies before the rims are fitted.
+"""The normal of the plane in which the rims of a part lie, needed before the rims are fitted.
 
 Drawings differ: z may point out of the face or into the part, and the face may lie askew in the
-part's frame. Where the drawing does not say, the rims themselves decide.
+part's frame. Where the drawing leaves several normals open, each is tried, and the one in which the
+rims show most of their edges is taken.
 """
 
 from collections.abc import Sequence
@@ -38,7 +39,7 @@ def possible_normals(
 
 
 def _axes(holes: Sequence[Hole], nominal: Array) -> list[Array]:
-    """Of the holes in the part's frame, either way round."""
+    """Axes of the holes in the part's frame; the sign does not matter."""
     stated = holes[0].outward
     if stated is not None:
         return [stated]

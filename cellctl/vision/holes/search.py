@@ -1,4 +1,4 @@
-"""Find the holes of a part in a stereo pair: in the whole image, or near a predicted pose."""
+"""Find round features in a stereo pair: in the whole images, or near a predicted pose."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,13 +12,17 @@ from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.kinds import by_brightness, kind_of
 from cellctl.vision.holes.candidates import Candidate, find_candidates
-from cellctl.vision.holes.correspondence import Expectation, StereoCandidate, pair_spots
+from cellctl.vision.holes.correspondence import Expectation, StereoCandidate, pair_candidates
 
 NEAR, WIDE = (0.8, 1.3), (0.45, 2.2)
 """Ranges of distance for the whole-image search, in parts of the head's working distance."""
 
 _EPIPOLAR_PX = 7.0
+"""Distance from the epipolar line: candidates are found at quarter scale, to one or two pixels of
+the full image."""
 _RADIUS_MARGIN = 0.12
+_SMALLEST_PX = 3.0
+"""Smaller circles have too few edge pixels to vote."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,46 +44,46 @@ def working_distance_m(head: StereoHead) -> float:
     return float(along) if 1.5 * baseline < along < 12.0 * baseline else 5.0 * baseline
 
 
-def spots_anywhere(
-    pair: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
+def search_whole_images(
+    images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
 ) -> list[StereoCandidate]:
     """Round features in the whole images at plausible distances."""
-    head = pair.head
+    head = images.head
     distance_m = working_distance_m(head)
     depth_m = (reach[0] * distance_m, reach[1] * distance_m)
-    spots: list[StereoCandidate] = []
+    candidates: list[StereoCandidate] = []
     for bright, group in by_brightness(holes):
         found = [
             find_candidates(image, _radii(camera, group, depth_m), bright=bright)
-            for image, camera in ((pair.left, head.left), (pair.right, head.right))
+            for image, camera in ((images.left, head.left), (images.right, head.right))
         ]
-        spots += pair_spots(
+        candidates += pair_candidates(
             head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
         )
-    return spots
+    return candidates
 
 
-def spots_near(
-    pair: HeadImages, holes: Sequence[Hole], expectation: Expectation
+def search_windows(
+    images: HeadImages, holes: Sequence[Hole], expectation: Expectation
 ) -> list[StereoCandidate]:
     """Round features within a window round each hole's predicted place."""
-    head, camera_T_part, radius_m = pair.head, expectation.camera_T_part, expectation.radius_m
+    head, camera_T_part, radius_m = images.head, expectation.camera_T_part, expectation.radius_m
     right_T_part = head.right_T_left * camera_T_part
-    spots: list[StereoCandidate] = []
+    candidates: list[StereoCandidate] = []
     for bright, group in by_brightness(holes):
         found = [
             _in_windows(image, camera, group, Expectation(pose, radius_m))
             for image, camera, pose in (
-                (pair.left, head.left, camera_T_part),
-                (pair.right, head.right, right_T_part),
+                (images.left, head.left, camera_T_part),
+                (images.right, head.right, right_T_part),
             )
         ]
         depths = camera_T_part.apply(np.array([hole.position_m for hole in group]))[:, 2]
         depth_m = (float(depths.min()) - radius_m, float(depths.max()) + radius_m)
-        spots += pair_spots(
+        candidates += pair_candidates(
             head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
         )
-    return spots
+    return candidates
 
 
 def _radii(
@@ -88,7 +92,7 @@ def _radii(
     focal = float(camera.camera_matrix[0, 0])
     radii_m = [hole.diameter_m / 2.0 for hole in holes]
     smallest, largest = focal * min(radii_m) / depth_m[1], focal * max(radii_m) / depth_m[0]
-    return max(smallest, 3.0) * (1.0 - _RADIUS_MARGIN / 2), max(largest, 4.0)
+    return max(smallest, _SMALLEST_PX) * (1.0 - _RADIUS_MARGIN / 2), max(largest, 4.0)
 
 
 def _in_windows(

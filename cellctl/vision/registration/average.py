@@ -11,8 +11,9 @@ from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 
 _MAX_SCATTER_M = 0.1e-3
 _SYSTEMATIC_SHARE = 0.65
-"""Part of one frame's standard deviation that more frames do not average away: texture of the rim
-and the model of the light are the same in every frame. Measured on rendered machined parts."""
+"""Share of one frame's standard deviation that more frames do not average away: the texture of the
+rim and the errors of the light model are the same in every frame. Measured on rendered machined
+parts."""
 
 
 def average(measurements: Sequence[PairMeasurement]) -> PairMeasurement:

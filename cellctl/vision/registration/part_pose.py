@@ -12,8 +12,8 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import Method, PairMeasurement
-from cellctl.vision.paper import paper_frame
-from cellctl.vision.registration.chi_square import Misfit, misfit
+from cellctl.vision.registration.chi_square import ChiSquare, chi_square
+from cellctl.vision.registration.paper_frame import paper_frame
 from cellctl.vision.registration.rigid_fit import by_pose, on_a_line, register
 
 RESIDUAL_LIMIT_M = 0.2e-3
@@ -38,7 +38,7 @@ class PartPose:
     """Measured minus registered, shape (n, 3), in C1, in the order of ``names``."""
     outliers: tuple[str, ...]
     """Holes that were left out of the registration."""
-    misfit: Misfit
+    misfit: ChiSquare
     """Of the holes used."""
 
 
@@ -189,7 +189,7 @@ def _result(
 ) -> PartPose:
     design = by_pose(pose.rotation.apply(kept.nominal_m)).reshape(-1, 6)
     joint = kept.joint_covariance(transfer_covariance)
-    unexplained = misfit(_residuals_m(kept, pose), joint, design, gain)
+    unexplained = chi_square(_residuals_m(kept, pose), joint, design, gain)
     covariance = np.asarray(gain @ joint @ gain.T) * unexplained.growth
     return PartPose(
         UncertainPose(pose, covariance),

@@ -14,7 +14,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame import measuring
 from cellctl.processes.deck_to_frame.measuring import HeadGeometry, PartMeasurement, PartMeasurer
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.registration.chi_square import Misfit
+from cellctl.vision.registration.chi_square import ChiSquare
 from cellctl.vision.registration.part_pose import PartPose
 from tests.unit.cell.bench import Bench
 
@@ -50,7 +50,12 @@ class Eyes:
         assert one.frames == two.frames
         covariance = np.diag(SIGMA**2) / one.frames
         return PartPose(
-            UncertainPose(PLACE, covariance), covariance, (), np.zeros((0, 3)), (), Misfit(6.0, 6)
+            UncertainPose(PLACE, covariance),
+            covariance,
+            (),
+            np.zeros((0, 3)),
+            (),
+            ChiSquare(6.0, 6),
         )
 
 
