@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import HoleKind, RimEvidence, SecondEdge
 
 _NARROW_PX = 5.0
@@ -19,12 +18,12 @@ class Countersink(HoleKind):
     name = "countersink"
     cone = True
 
-    def second_edge(self, hole: Hole, evidence: RimEvidence) -> SecondEdge | None:
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """The outer edge of the cone, when it is so near that it disturbs the rim."""
         narrow = any(clear_px < _NARROW_PX for clear_px in evidence.clear_px)
         if not (narrow or evidence.ring_seen()):
             return None
-        stated = (hole.countersink_m or np.inf) / hole.diameter_m - 1.0
+        stated = (evidence.hole.countersink_m or np.inf) / evidence.hole.diameter_m - 1.0
         if stated < evidence.in_radii(_NARROW_PX):
             return SecondEdge(stated, _STATED_SHARE * stated)
         widths = [

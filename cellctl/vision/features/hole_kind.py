@@ -1,6 +1,5 @@
 """What a kind of hole looks like, and what that asks of the search and of the fit of its rim."""
 
-from abc import ABC
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -19,6 +18,10 @@ class SecondEdge:
 
 class RimEvidence(Protocol):
     """What both images show of a rim once it has been fitted with one edge."""
+
+    @property
+    def hole(self) -> Hole:
+        """The hole as the drawing gives it."""
 
     @property
     def clear_px(self) -> tuple[float, float]:
@@ -40,7 +43,7 @@ class RimEvidence(Protocol):
         """Whether the inside is uneven by more than chance in at least one image."""
 
 
-class HoleKind(ABC):
+class HoleKind:
     """One kind of hole. The attributes are those of a plain dark bore unless a kind says otherwise.
 
     A kind holds no state: there is one instance of each, in ``cellctl.vision.features.kinds``.
@@ -66,7 +69,5 @@ class HoleKind(ABC):
     """By how much chi square must fall for a ring to be accepted. Turns of a thread imitate a
     ring; real rings bring a fall of thousands."""
 
-    def second_edge(self, hole: Hole, evidence: RimEvidence) -> SecondEdge | None:
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """The second edge that must be fitted together with the rim; None when one edge does."""
-        del hole, evidence
-        return None

@@ -1,6 +1,5 @@
 """A bore for a pin: a dark hole with a sharp or slightly broken edge."""
 
-from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import HoleKind, RimEvidence, SecondEdge
 
 _BROKEN_EDGE = SecondEdge(0.07, 0.05)
@@ -16,7 +15,6 @@ class Pin(HoleKind):
     # A bore has no turns that a ring could be confused with.
     ring_cost = 0.0
 
-    def second_edge(self, hole: Hole, evidence: RimEvidence) -> SecondEdge | None:
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """A broken edge a pixel or two wide, when both images together ask for it."""
-        del hole
         return _BROKEN_EDGE if sum(evidence.ring_gains()) > _LEAST_GAIN else None

@@ -1,6 +1,5 @@
 """A threaded hole: turns inside the rim, and mostly a chamfer round it."""
 
-from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import HoleKind, RimEvidence, SecondEdge
 
 _CHAMFER = SecondEdge(0.1, 0.05)
@@ -16,12 +15,11 @@ class Thread(HoleKind):
     # Turns that fade into the dark look like blur.
     lends_blur = False
 
-    def second_edge(self, hole: Hole, evidence: RimEvidence) -> SecondEdge | None:
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """A chamfer, as soon as an even dark disc does not explain the images.
 
         The fit with a chamfer also models the turns, so uneven turns ask for it just as well.
         """
-        del hole
         if not evidence.both_converged():
             return _CHAMFER
         return _CHAMFER if evidence.ring_seen() or evidence.uneven_inside() else None

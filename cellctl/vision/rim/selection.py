@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import expit
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
 from cellctl.vision.rim.fit_input import RimFitInput
 from cellctl.vision.rim.light import LightModel
@@ -165,6 +166,11 @@ class StereoEvidence:
         self, given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]
     ) -> None:
         self._given, self._fits = given, [selected.fit for selected in fits]
+
+    @property
+    def hole(self) -> Hole:
+        """The hole as the drawing gives it."""
+        return self._given[0].roi.hole
 
     @property
     def clear_px(self) -> tuple[float, float]:

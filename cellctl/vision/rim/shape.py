@@ -148,7 +148,11 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
 
 
 def _bend_px(pixels: RimPixels, shape: RimShape) -> float:
-    """A blurred disc of radius r shows its half level nearer to its centre by blur²/(2 r)."""
+    """How far the half level of a blurred disc of radius r lies inside its edge: blur²/(2 r).
+
+    Blur takes more light from the outside of a curved edge than from its inside. Without this the
+    radius would come out too small.
+    """
     return 0.5 * shape.blur_px**2 * pixels.unit_px / shape.radius
 
 

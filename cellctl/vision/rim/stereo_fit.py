@@ -66,10 +66,10 @@ def measure_rims(
     ``blur_px`` is the blur of other rims in these images, where there are any. Raises
     ``HoleMissing`` when a fit is no measurement of this rim.
     """
-    kind, hole = rois[0].kind, rois[0].hole
+    kind = rois[0].kind
     given = _fit_inputs(rois, located, kind.first_ring_px)
     fits = fit_single_image(given[0]), fit_single_image(given[1])
-    second = kind.second_edge(hole, StereoEvidence(given, fits))
+    second = kind.second_edge(StereoEvidence(given, fits))
     if second is None:
         return _from_single_fits(given, fits)
     ring_px = max(_LEAST_RING_PX, second.width * given[0].radius / given[0].patch.unit_px)

@@ -69,7 +69,7 @@ def holes_triangle(kinds: tuple[str, str, str] = ("pin", "pin", "pin")) -> tuple
     return tuple(
         Hole(
             f"P{index}",
-            kind,  # type: ignore[arg-type]
+            kind,
             diameters[kind] * MM,
             np.array([x, y, 0.0]) * MM,
             10.0 * MM if kind == "countersink" else None,

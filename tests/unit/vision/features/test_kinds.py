@@ -20,11 +20,18 @@ class Evidence:
         gains: tuple[float, float] = (0.0, 0.0),
         clear_px: tuple[float, float] = (np.inf, np.inf),
         *,
+        hole: Hole | None = None,
         converged: bool = True,
         uneven: bool = False,
     ) -> None:
+        self._hole = hole
         self.gains, self.clear_px = gains, clear_px
         self.converged, self.uneven = converged, uneven
+
+    @property
+    def hole(self) -> Hole:
+        assert self._hole is not None
+        return self._hole
 
     def in_radii(self, length_px: float, image: int = 0) -> float:
         return length_px / (20.0, 25.0)[image]
@@ -54,7 +61,7 @@ def test_a_kind_is_found_by_the_name_in_the_feature_file(name: str) -> None:
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_sharp_edge_needs_no_second_one(name: str) -> None:
-    assert kind_of(hole(name)).second_edge(hole(name), Evidence()) is None
+    assert kind_of(hole(name)).second_edge(Evidence()) is None
 
 
 def test_dark_and_bright_features_are_searched_apart() -> None:
@@ -65,9 +72,8 @@ def test_dark_and_bright_features_are_searched_apart() -> None:
 
 
 def test_a_bore_is_deburred_when_both_images_together_say_so() -> None:
-    pin = hole("pin")
-    assert kind_of(pin).second_edge(pin, Evidence((12.0, 12.0))) is None
-    edge = kind_of(pin).second_edge(pin, Evidence((13.0, 13.0)))
+    assert KINDS["pin"].second_edge(Evidence((12.0, 12.0))) is None
+    edge = KINDS["pin"].second_edge(Evidence((13.0, 13.0)))
     assert edge is not None
     assert edge.width == 0.07
 
@@ -76,17 +82,17 @@ def test_a_bore_is_deburred_when_both_images_together_say_so() -> None:
     "evidence", [Evidence((16.0, 0.0)), Evidence(converged=False), Evidence(uneven=True)]
 )
 def test_a_thread_is_fitted_with_a_chamfer_once_an_even_disc_fails(evidence: Evidence) -> None:
-    thread = hole("thread")
-    edge = kind_of(thread).second_edge(thread, evidence)
+    edge = KINDS["thread"].second_edge(evidence)
     assert edge is not None
     assert edge.width == 0.1
 
 
 def test_the_width_of_a_narrow_cone_comes_from_the_drawing_or_else_from_the_image() -> None:
-    cone, near = kind_of(hole("countersink")), Evidence(clear_px=(4.0, np.inf))
-    stated = cone.second_edge(hole("countersink", 6.9e-3), near)
-    seen = cone.second_edge(hole("countersink"), near)
-    unseen = cone.second_edge(hole("countersink"), Evidence((20.0, 0.0)))
+    cone, silent = KINDS["countersink"], hole("countersink")
+    near = (4.0, np.inf)
+    stated = cone.second_edge(Evidence(clear_px=near, hole=hole("countersink", 6.9e-3)))
+    seen = cone.second_edge(Evidence(clear_px=near, hole=silent))
+    unseen = cone.second_edge(Evidence((20.0, 0.0), hole=silent))
     assert stated is not None
     assert seen is not None
     assert unseen is not None
@@ -94,7 +100,7 @@ def test_the_width_of_a_narrow_cone_comes_from_the_drawing_or_else_from_the_imag
     assert stated.sigma == pytest.approx(0.015)
     assert seen.width == pytest.approx(0.2)
     assert (unseen.width, unseen.sigma) == (0.15, 0.08)
-    assert cone.second_edge(hole("countersink"), Evidence(clear_px=(6.0, 6.0))) is None
+    assert cone.second_edge(Evidence(clear_px=(6.0, 6.0), hole=silent)) is None
 
 
 def test_no_module_compares_the_name_of_a_kind() -> None:
