@@ -19,8 +19,8 @@ from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_validation import intersect_rays
 from cellctl.geometry.pose import pose_error
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.camera import project, undistort
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.lens import project, undistort
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard
 from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.vision.features import HoleKind
-
 Array = NDArray[np.float64]
 Grey = Callable[[Array, Array], Array]
 """Grey values for ``q`` and ``m``; not a number where the plate is seen."""
@@ -24,7 +22,7 @@ PLATE, DARK = 180.0, 30.0
 class Look:
     """A kind of hole with the look of one example."""
 
-    kind: HoleKind
+    kind: str
     step: float
     """Typical difference of grey across the rim."""
     grey: Grey
@@ -140,7 +138,7 @@ def _ringed(outer: float, ring: float, uneven: float, phase: float) -> Look:
     return Look("countersink", ring - DARK, grey, outer)
 
 
-def _coned(kind: HoleKind, outer: float, cone: float, uneven: float, phase: float) -> Look:
+def _coned(kind: str, outer: float, cone: float, uneven: float, phase: float) -> Look:
     height = outer - 1.0
 
     def grey(q: Array, m: Array) -> Array:

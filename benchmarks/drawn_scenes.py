@@ -8,8 +8,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from benchmarks.drawn_looks import LOOKS, PLATE, Array, Look, disc
 from benchmarks.metrology_views import NOISE_GREY, HeadView
-from cellctl.vision.features import Hole
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.features.hole import Hole
 
 _SUB = 8
 _MARGIN_PX = 8

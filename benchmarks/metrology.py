@@ -25,10 +25,10 @@ from benchmarks.metrology_figures import HoleErrors, PoseErrors, band
 from benchmarks.metrology_scenes import parts
 from benchmarks.metrology_views import NOISE_GREY, HeadView, PartView
 from cellctl.errors.vision import VisionError
-from cellctl.vision.average import average
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
-from cellctl.vision.part_pose import part_pose
+from cellctl.vision.registration.average import average
+from cellctl.vision.registration.part_pose import part_pose
 from fakes.render import api
 
 CLEAN_GREY = {"pin": 132.0, "countersink": 100.0, "thread": 132.0}

@@ -9,7 +9,7 @@ from scipy.stats import chi2
 from benchmarks.metrology_views import NOISE_GREY, HeadView, PartView
 from cellctl.geometry.pose import pose_error
 from cellctl.vision.measurement import HoleMeasurement
-from cellctl.vision.part_pose import PartPose
+from cellctl.vision.registration.part_pose import PartPose
 
 Array = NDArray[np.float64]
 

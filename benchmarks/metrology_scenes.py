@@ -8,8 +8,8 @@ import numpy as np
 from benchmarks.metrology_views import HeadView, PartView
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.features import Hole
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.features.hole import Hole
 from fakes.render import api
 from fakes.world.scene import LensTruth, ScenePlate, StereoTruth
 

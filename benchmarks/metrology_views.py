@@ -8,8 +8,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.features import Hole
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.features.hole import Hole
 
 NOISE_GREY = 2.0
 """Standard deviation of the noise of every image."""

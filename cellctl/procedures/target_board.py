@@ -14,10 +14,10 @@ from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import TargetTracker
-from cellctl.vision.average import average
-from cellctl.vision.features import Hole
+from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.registration.average import average
 from cellctl.workers import VisionWorkers
 
 DISC_DIAMETER_M = 20 * MM

@@ -12,29 +12,39 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.diagnose import fault_without_layout
-from cellctl.vision.drawing_fit import check_layout, only_one
-from cellctl.vision.features import Hole
-from cellctl.vision.image_checks import check_pair
-from cellctl.vision.layout import Assignment, Expectation, Spot, assignments
-from cellctl.vision.locate import LOCATE_REACH_PX, locate_holes, or_missing, sights_of
+from cellctl.vision.camera.image_checks import check_pair
+from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.triangulation import epipolar_distances_px, triangulate
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import kind_of
+from cellctl.vision.holes.correspondence import (
+    Assignment,
+    Expectation,
+    StereoCandidate,
+    assignments,
+)
+from cellctl.vision.holes.diagnose import fault_without_layout
+from cellctl.vision.holes.drawing_fit import check_layout, only_one
+from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
+from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, search_whole_images, search_windows
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper import measure_pair_by_paper
-from cellctl.vision.rim.pair import RimPair, measure_rims, vague
-from cellctl.vision.rim.sight import SIDES
-from cellctl.vision.search import NEAR, WIDE, ImagePair, spots_anywhere, spots_near
-from cellctl.vision.stereo import epipolar_distances_px, triangulate
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.rim.roi import RimRoi
+from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 
 SEARCH_RADIUS_M = 12e-3
 LAYOUT_TOLERANCE_M = 0.3e-3
 """Largest deviation of a measured hole from the drawing."""
 
 _COARSE_TOLERANCE_M = 2.5e-3
+"""The same for features as they are first found, to one or two pixels."""
 _COARSE_M = 0.5e-3
-"""What holes located by their edges alone may be off."""
+"""How far off holes located by their edges alone may be."""
 _EPIPOLAR_PX = 0.35
+"""Largest distance of a measured centre from its epipolar line: measured centres are known to a
+tenth of it, so more means two different features or a worn calibration."""
 _SIZE_AGREEMENT = 0.02
+"""Largest difference of the diameters in both images, relative."""
 _MAX_BLUR_PX = 2.5
 _SAME_PLACE_PX = 1.0
 _MAX_TRIED = 10
@@ -58,21 +68,21 @@ def measure_pair(
     that could be either of two features, is a fault.
     """
     check_pair(left, right, head)
-    pair = ImagePair(head, left, right)
+    images = HeadImages(head, left, right)
     expectation = None
     if camera_T_part is not None:
         expectation = Expectation(camera_T_part, search_radius_m)
     if method == "paper":
-        return measure_pair_by_paper(pair, holes, expectation)
+        return measure_pair_by_paper(images, holes, expectation)
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
     tried: list[Array] = []
-    for assignment in _find(pair, holes, expectation):
+    for assignment in _find(images, holes, expectation):
         if _done_already(assignment.places_px, good, tried):
             continue
         tried.append(assignment.places_px)
         try:
-            good.append(_measure(pair, holes, assignment, expectation, layout_tolerance_m))
+            good.append(_measure(images, holes, assignment, expectation, layout_tolerance_m))
         except VisionError as fault:
             faults.append(fault)
         if len(tried) >= _MAX_TRIED:
@@ -83,21 +93,23 @@ def measure_pair(
 
 
 def _find(
-    pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
+    images: HeadImages, holes: Sequence[Hole], expectation: Expectation | None
 ) -> list[Assignment]:
     """Assignments of features to holes, best first; a fault when there is none."""
-    spots: list[Spot] = []
+    candidates: list[StereoCandidate] = []
     for reach in (NEAR, WIDE):
         if expectation is None:
-            spots = spots_anywhere(pair, holes, reach)
+            candidates = search_whole_images(images, holes, reach)
         else:
-            spots = spots_near(pair, holes, expectation)
-        found = assignments(holes, spots, tolerance_m=_COARSE_TOLERANCE_M, expectation=expectation)
+            candidates = search_windows(images, holes, expectation)
+        found = assignments(
+            holes, candidates, tolerance_m=_COARSE_TOLERANCE_M, expectation=expectation
+        )
         if found:
             return found
         if expectation is not None:
             break
-    raise fault_without_layout(pair, holes, spots, expectation)
+    raise fault_without_layout(images, holes, candidates, expectation)
 
 
 def _done_already(
@@ -113,37 +125,38 @@ def _done_already(
 
 
 def _measure(
-    pair: ImagePair,
+    images: HeadImages,
     holes: Sequence[Hole],
     assignment: Assignment,
     expectation: Expectation | None,
     tolerance_m: float,
 ) -> PairMeasurement:
-    located = locate_holes(pair, holes, assignment.positions_m, expectation)
+    located = locate_holes(images, holes, assignment.positions_m, expectation)
     check_layout(holes, located.positions_m, tolerance_m + _COARSE_M)
     measured: dict[str, HoleMeasurement] = {}
     blurs: list[tuple[float, float]] = []
-    for index in sorted(range(len(holes)), key=lambda index: holes[index].kind == "thread"):
-        hole, places = holes[index], located.places[index]
-        sights = sights_of(pair, located.positions_m[index], located.normal)
+    # Rims that show the blur of the images come first: the others are told it.
+    for index in sorted(range(len(holes)), key=lambda index: not kind_of(holes[index]).lends_blur):
+        hole = holes[index]
+        rois = rim_rois(images, hole, located.positions_m[index], located.normal)
         known = np.median(blurs, axis=0) if blurs else None
         blur_px = None if known is None else (float(known[0]), float(known[1]))
-        rims = or_missing(hole, measure_rims(sights, hole, places, blur_px))
-        if hole.kind != "thread":
+        rims = measure_rims(rois, located.places[index], blur_px)
+        if kind_of(hole).lends_blur:
             blurs.append((rims.left.blur_px, rims.right.blur_px))
-        _check_sharpness(hole, rims)
-        or_missing(hole, vague(rims) or rims)
-        measured[hole.name] = _stereo(pair.head, hole, rims)
+        _check_sharpness(rois, rims)
+        refuse_too_uncertain(rois, rims)
+        measured[hole.name] = _stereo(images.head, hole, rims)
     result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
     check_layout(holes, result.positions_m, tolerance_m)
     return result
 
 
-def _check_sharpness(hole: Hole, rims: RimPair) -> None:
-    for side, rim in zip(SIDES, (rims.left, rims.right), strict=True):
+def _check_sharpness(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
+    for roi, rim in zip(rois, (rims.left, rims.right), strict=True):
         if rim.blur_px > _MAX_BLUR_PX:
             raise ImageBlurred(
-                f"{side}: the rim of {hole.name} is blurred over {rim.blur_px:.1f} px, "
+                f"{roi.side}: the rim of {roi.hole.name} is blurred over {rim.blur_px:.1f} px, "
                 f"allowed {_MAX_BLUR_PX:.1f} px"
             )
 

@@ -6,8 +6,7 @@ from typing import Literal
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.ellipse import Ellipse
-from cellctl.vision.features import HoleKind
+from cellctl.vision.camera.ellipse import Ellipse
 
 Method = Literal["default", "paper"]
 Side = Literal["left", "right"]
@@ -18,7 +17,7 @@ class HoleMeasurement:
     """One hole, measured by both cameras of a head."""
 
     name: str
-    kind: HoleKind
+    kind: str
     left_px: Array
     """Raw pixel, shape (2,). Default method: onto which the circle's centre projects. Paper's
     method: centre of the ellipse."""

@@ -1,8 +1,8 @@
 """The paper's image steps (section 2.2.1), kept as the named baseline ``method="paper"``.
 
 (1) Smoothing, (2) Canny edges, (3) least-squares ellipse, (4) screening by area and perimeter; the
-raw centre of the ellipse is triangulated. Which ellipse is which hole the paper leaves open; the
-layout search of the default method is used for that.
+raw centre of the ellipse is triangulated. The paper leaves open which ellipse is which hole; the
+search for correspondence of the default method is used for that.
 """
 
 from collections.abc import Sequence
@@ -10,19 +10,23 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import HoleMissing
-from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.candidates import Candidate
-from cellctl.vision.ellipse import Ellipse
-from cellctl.vision.features import Hole
-from cellctl.vision.layout import Expectation, Spot, assignments, pair_spots
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.triangulation import epipolar_distances_px, joint_covariance, triangulate
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.features.kinds import by_brightness
+from cellctl.vision.holes.candidates import Candidate
+from cellctl.vision.holes.correspondence import (
+    Expectation,
+    StereoCandidate,
+    assignments,
+    pair_candidates,
+)
+from cellctl.vision.holes.search import WIDE, HeadImages, working_distance_m
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
-from cellctl.vision.search import WIDE, ImagePair, working_distance_m
-from cellctl.vision.stereo import epipolar_distances_px, joint_covariance, triangulate
-from cellctl.vision.stereo_head import CameraModel, StereoHead
 
 CENTRE_SIGMA_PX = 0.03
 """Scatter of these centres on clean holes; the method itself gives none."""
@@ -57,10 +61,10 @@ def fitted_ellipses(image: Image) -> list[Ellipse]:
 
 
 def measure_pair_by_paper(
-    pair: ImagePair, holes: Sequence[Hole], expectation: Expectation | None
+    images: HeadImages, holes: Sequence[Hole], expectation: Expectation | None
 ) -> PairMeasurement:
     """Measure a pair by the paper's steps; raises ``HoleMissing`` when no layout fits."""
-    head = pair.head
+    head = images.head
     distance_m = working_distance_m(head)
     depth_m = (WIDE[0] * distance_m, WIDE[1] * distance_m)
     if expectation is not None:
@@ -68,15 +72,14 @@ def measure_pair_by_paper(
         depths = expectation.camera_T_part.apply(nominal)[:, 2]
         reach_m = expectation.radius_m
         depth_m = (float(depths.min()) - reach_m, float(depths.max()) + reach_m)
-    ellipses = [fitted_ellipses(image) for image in (pair.left, pair.right)]
-    spots: list[Spot] = []
-    for bright in (False, True):
-        group = [hole for hole in holes if (hole.kind == "disc") == bright]
+    ellipses = [fitted_ellipses(image) for image in (images.left, images.right)]
+    candidates: list[StereoCandidate] = []
+    for bright, group in by_brightness(holes):
         screened = [
             _screened(found, camera, group, depth_m)
             for found, camera in zip(ellipses, (head.left, head.right), strict=True)
         ]
-        spots += pair_spots(
+        candidates += pair_candidates(
             head,
             screened[0],
             screened[1],
@@ -84,17 +87,19 @@ def measure_pair_by_paper(
             epipolar_px=_EPIPOLAR_PX,
             depth_m=depth_m,
         )
-    spots = [spot for spot in spots if _right_size(spot, holes)]
+    candidates = [candidate for candidate in candidates if _right_size(candidate, holes)]
     found = assignments(
         holes,
-        spots,
+        candidates,
         tolerance_m=_LAYOUT_TOLERANCE_M,
         expectation=expectation,
     )
     if not found:
         raise HoleMissing("no arrangement of the ellipses that pass the screening fits the drawing")
-    pairs = zip(holes, found[0].spots, strict=True)
-    return PairMeasurement("paper", tuple(_hole(head, hole, spot) for hole, spot in pairs))
+    pairs = zip(holes, found[0].candidates, strict=True)
+    return PairMeasurement(
+        "paper", tuple(_hole(head, hole, candidate) for hole, candidate in pairs)
+    )
 
 
 def _screened(
@@ -126,14 +131,14 @@ def _screened(
     return kept
 
 
-def _right_size(spot: Spot, holes: Sequence[Hole]) -> bool:
-    return any(abs(spot.diameter_m / hole.diameter_m - 1.0) < 0.12 for hole in holes)
+def _right_size(candidate: StereoCandidate, holes: Sequence[Hole]) -> bool:
+    return any(abs(candidate.diameter_m / hole.diameter_m - 1.0) < 0.12 for hole in holes)
 
 
-def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
-    left, right = spot.left, spot.right
+def _hole(head: StereoHead, hole: Hole, candidate: StereoCandidate) -> HoleMeasurement:
+    left, right = candidate.left, candidate.right
     if not (isinstance(left, _Found) and isinstance(right, _Found)):
-        raise TypeError("spots of this method carry their ellipse")
+        raise TypeError("candidates of this method carry their ellipse")
     covariance = np.eye(2) * CENTRE_SIGMA_PX**2
     point = triangulate(
         head, left.centre_px, right.centre_px, joint_covariance(covariance, covariance)
@@ -150,24 +155,6 @@ def _hole(head: StereoHead, hole: Hole, spot: Spot) -> HoleMeasurement:
         covariance_m2=point.covariance_m2,
         left_ellipse=left.ellipse,
         right_ellipse=right.ellipse,
-        diameter_m=spot.diameter_m,
+        diameter_m=candidate.diameter_m,
         epipolar_px=float(epipolar[0, 0]),
     )
-
-
-def paper_frame(points_m: Array) -> RigidTransform:
-    """Frame on six holes (section 2.2.1), shape (6, 3) in the order P1…P6, in one camera's frame.
-
-    Plane through all points by least squares, points projected on it, origin at P1'', x along
-    P1''→P5'', z the plane's normal towards the camera, y right-handed.
-    """
-    middle = points_m.mean(axis=0)
-    normal = np.linalg.svd(points_m - middle)[2][2]
-    normal = normal if normal @ middle < 0 else -normal
-    flat = points_m - np.outer((points_m - middle) @ normal, normal)
-    along = flat[4] - flat[0]
-    along /= np.linalg.norm(along)
-    matrix = np.eye(4)
-    matrix[:3, :3] = np.column_stack([along, np.cross(normal, along), normal])
-    matrix[:3, 3] = flat[0]
-    return RigidTransform.from_matrix(matrix)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.ellipse import Ellipse
+from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement, Side
 
 Picture = NDArray[np.uint8]

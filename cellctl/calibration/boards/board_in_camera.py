@@ -8,7 +8,7 @@ from cellctl.calibration.boards.projection import camera_vector, project
 from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import CameraModel
 
 _MIN_CORNERS = 6
 """Four give a pose, but nothing that would show how good it is."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import CameraModel
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,13 +20,14 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.features import FeatureFile, Hole, read_features
+from cellctl.vision.camera.stereo_head import read_stereo_head
+from cellctl.vision.features.feature_file import FeatureFile, read_features
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
-from cellctl.vision.part_pose import PartPose, part_pose
 from cellctl.vision.picture import annotate
-from cellctl.vision.registration import on_a_line
-from cellctl.vision.stereo_head import read_stereo_head
+from cellctl.vision.registration.part_pose import PartPose, part_pose
+from cellctl.vision.registration.rigid_fit import on_a_line
 
 EXIT_REFUSED = 1
 EXIT_NOT_FOUND = 3

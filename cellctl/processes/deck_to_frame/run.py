@@ -19,7 +19,7 @@ from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, obey_hold
-from cellctl.vision.features import FeatureFile
+from cellctl.vision.features.feature_file import FeatureFile
 
 SHARE_OF_ONE_PART = 1 / np.sqrt(2)
 """Frame and deck contribute alike to the uncertainty of the deck in the frame."""

@@ -12,17 +12,21 @@ from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.plane_patch import PlanePatch
-from cellctl.vision.rim.robust import median, robust_sigma
+from cellctl.vision.camera.plane_patch import PlanePatch
+from cellctl.vision.rim.noise import median, robust_sigma
 
 _AZIMUTHS = 64
 _STEP_PX = 0.5
 _TRIALS = 70
+"""Random triples of edge points. With half of the points on the rim one triple in eight is clean:
+that none of 70 is happens once in ten thousand rims."""
 _FEWEST = 10
 _REFINEMENTS = 3
 _TOLERANCE_PX = 0.8
 _WEAKEST = 0.2
 """Edges below this share of the typical strength do not count."""
+_LEAST_SLOPE_GREY = 0.4
+"""In a step along the ray; less is noise."""
 
 _ANGLES: Array = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
 _DIRECTIONS: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
@@ -93,7 +97,8 @@ def _radial_edges(
     slope = sign * np.asarray(np.gradient(profile, axis=1))
     middle, before, after = slope[:, 1:-1], slope[:, :-2], slope[:, 2:]
     typical = median(slope.max(axis=1))
-    peak = (middle >= before) & (middle > after) & (middle > max(_WEAKEST * typical, 0.4))
+    limit = max(_WEAKEST * typical, _LEAST_SLOPE_GREY)
+    peak = (middle >= before) & (middle > after) & (middle > limit)
     which, index = np.nonzero(peak)
     value, low, high = (part[which, index] for part in (middle, before, after))
     shift = 0.5 * (low - high) / np.minimum(low - 2.0 * value + high, -1e-9)
@@ -132,8 +137,9 @@ def _bilinear(image: Array, pixels: Array) -> Array:
 def _consensus(
     edges: _Edges, radius: float, radius_tolerance: float, px: float
 ) -> tuple[Array, float] | None:
-    """Best of many circles through three edge points, by the azimuths that agree."""
+    """Best of many circles through three edge points, by the edge points that agree (MSAC)."""
     count = len(edges.points)
+    # The seed makes the same image give the same result.
     picks = np.random.default_rng(count).integers(0, count, size=(_TRIALS, 3))
     centres, radii = _circles(edges.points[picks])
     plausible = np.abs(radii / radius - 1.0) < radius_tolerance
@@ -163,7 +169,11 @@ def _circles(triples: Array) -> tuple[Array, Array]:
 
 
 def _refined(edges: _Edges, start: tuple[Array, float], patch: PlanePatch) -> EdgeCircle | None:
-    """Iteratively re-weighted geometric circle fit."""
+    """Iteratively re-weighted geometric circle fit, with Tukey's biweight.
+
+    The tolerance shrinks with the scatter of the points, so that a wall or a chamfer close to the
+    rim loses its influence from step to step.
+    """
     centre, radius = start
     px = patch.unit_px
     tolerance = 1.5 * _TOLERANCE_PX * px

@@ -1,7 +1,8 @@
-"""How grey values vary over the surfaces at a rim: few smooth terms for each.
+"""How grey values vary over the surfaces at a rim: a few smooth terms for each surface.
 
 Terms that the grey values of one hole hardly determine carry a prior: a standard deviation of
-their amplitude about zero. So what is not known widens the covariance of the centre.
+their amplitude about zero. What is not known thus widens the covariance of the centre instead of
+shifting the centre.
 """
 
 from collections.abc import Sequence
@@ -10,14 +11,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.model import Border, RimPixels, RimShape, wall_depth
+from cellctl.vision.rim.shape import Border, RimPixels, RimShape, wall_depth
 
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
 _WALL_GREY, _RELIEF_GREY = 40.0, 10.0
-"""How much the light of a wall may differ from an even fade at that rate; less above turns, which
-are as free themselves."""
+"""How much the light of a wall may differ from an even fade at that rate. A relief above the turns
+of a thread gets less freedom, because the turns below it have terms of their own."""
 _CONE_SLOPE_GREY = 25.0
 """Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
 _THREAD_BAND = 0.15
@@ -25,7 +26,7 @@ _THREAD_BAND = 0.15
 
 
 @dataclass(frozen=True, slots=True)
-class Light:
+class LightModel:
     """Which terms are free beside the mean levels and an even gradient on the plate."""
 
     cone: bool = False
@@ -63,13 +64,11 @@ class Surface:
 
 
 def surfaces(
-    pixels: RimPixels, shape: RimShape, edges: Sequence[Border], light: Light
+    pixels: RimPixels, shape: RimShape, edges: Sequence[Border], light: LightModel
 ) -> list[Surface]:
-    """The surfaces at a rim; the wall is what it adds to the dark inside.
+    """The surfaces at a rim, from the outermost to the innermost.
 
-    A pixel collects light from its surroundings. Where a surface covers only part of them, its
-    grey is that at the middle of this part: blur² times the gradient of the coverage, over the
-    coverage, away from the pixel. Exact for a grey that changes linearly.
+    The wall stands for what it adds to the dark inside, whose own terms reach up to the rim.
     """
     rim = 0 if shape.ring_ratio is None else 1
 
@@ -93,7 +92,12 @@ def _middle(
     outer: int | None,
     inner: int | None,
 ) -> Array:
-    """Middle of what each pixel collects of a surface, shape (2, n)."""
+    """Middle of what each pixel collects of a surface, shape (2, n).
+
+    A pixel collects light from its surroundings. Where a surface covers only part of them, its grey
+    is that at the middle of this part: blur² times the gradient of the coverage, over the coverage,
+    away from the pixel. This is exact for a grey that changes linearly.
+    """
     share = np.ones_like(pixels.grey) if inner is None else edges[inner].outside
     slope = np.zeros_like(pixels.points) if inner is None else edges[inner].by_pixel
     if outer is not None:
@@ -117,11 +121,12 @@ def _polar(points: Array, shape: RimShape) -> tuple[Array, Array, Array]:
 
 
 def _around(points: Array, shape: RimShape) -> Array:
+    """Harmonics of the azimuth up to the second, shape (5, n)."""
     _, cos, sin = _polar(points, shape)
     return np.stack([np.ones_like(cos), cos, sin, cos * cos - sin * sin, 2.0 * sin * cos])
 
 
-def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _plate(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     if not light.cone:
         flat = (points - shape.centre[:, None]) / shape.radius
         return _free(np.stack([np.ones_like(flat[0]), *flat]))
@@ -131,7 +136,7 @@ def _plate(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     return terms, np.array([*[np.inf] * 6, _CONE_SLOPE_GREY, _CONE_SLOPE_GREY])
 
 
-def _wall(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _wall(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     depth = wall_depth(points, shape)
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
@@ -145,7 +150,7 @@ def _wall(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
     return terms, np.array([*[np.inf] * 3, *sigma, *[_WALL_GREY] * 3])
 
 
-def _inside(points: Array, shape: RimShape, light: Light) -> tuple[Array, Array]:
+def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     if light.turns_grey == 0.0:
         return _free(np.ones((1, points.shape[1])))
     radius, cos, sin = _polar(points, shape)

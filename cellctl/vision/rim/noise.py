@@ -1,45 +1,55 @@
-"""How noisy the pixels at a rim are, and how far their errors hang together."""
+"""How noisy the pixels at a rim are: their own noise, and the lay of the face that they share.
+
+The lay is the direction of the strokes that a tool leaves on a machined face (ISO 21920-1). A
+stroke along the rim shifts its edge and leaves no residual there. It does not end at the rim,
+though: seen beside it, it tells how much it adds at it. To the fit strokes are therefore noise that
+is correlated along the lay and not across it.
+"""
 
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
-from numpy.typing import NDArray
-from scipy.fft import irfft2, next_fast_len, rfft2
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.robust import robust_sigma
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.camera.plane_patch import PlanePatch
 
-IntArray = NDArray[np.intp]
-
+_SIGMA_OVER_MEDIAN = 1.4826
+"""Of absolute deviations that are normally distributed."""
 _HUBER = 2.5
+"""Residuals beyond so many standard deviations lose weight (Huber): scratches, reflexes, dust."""
 _LEAST_GREY = 0.35
 """Rounding to 8 bit alone leaves about this much."""
-_BINS, _REACH = 36, 6
-"""Sectors of azimuth, and over how many of them errors may hang together."""
-_LOST = 1.4
-"""What the fit takes out of these sums by bringing their total to zero."""
-_SHRINK = 0.3
-_CHANCE = 2.1
-"""Sums over a few arcs reach this share of what independent errors give by chance alone."""
-_LAG = 24
-"""Distance in px over which texture is followed."""
-_FEWEST_PAIRS = 40
-_NEIGHBOURS = ((0, 1), (1, 0), (1, 2), (2, 1), (0, 3), (3, 0))
-_WHITE_SIGMAS = 3.0
-"""Steps between pixels of the band, and what their products may be by chance."""
-_CLIP_GREY = 30.0
+_BRIGHT, _DARK = 0.95, 0.05
+"""Shares outside the rim from which on a pixel belongs to one side."""
 _CLIP_SIGMAS = 4.0
 _LEAST_STROKE_GREY = 0.3
 """Lower strokes are not worth the work."""
 _FEWEST_IN_STROKE, _FEWEST_STROKES = 4, 8
 
+_LAY_REACH_PX = 14.0
+"""How far beyond the rim the face is looked at."""
+_ANISOTROPY = 0.2
+"""From this share of directed gradients on there is a lay; noise alone stays below a tenth."""
+_GRADIENT_CLIP = 3.0
+_ALONG = 0.3
+"""Change of a stroke over one radius, of its own height."""
 
-_STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
-_KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
+
+def median(values: Array) -> float:
+    """The upper median of values of shape (n,), n > 0; far faster than ``np.median`` on few."""
+    middle = len(values) // 2
+    return float(np.partition(values, middle)[middle])
+
+
+def robust_sigma(residuals: Array) -> float:
+    """Standard deviation of residuals about zero, shape (n,), n > 0, unmoved by outliers."""
+    return _SIGMA_OVER_MEDIAN * median(np.abs(residuals))
 
 
 @dataclass(frozen=True, slots=True)
-class Noise:
+class PixelNoise:
     """Errors of the pixels: independent ones, and strokes of the face that many pixels share."""
 
     weights: Array
@@ -50,13 +60,17 @@ class Noise:
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
 
     @classmethod
-    def of(cls, weights: Array, strokes: Array) -> "Noise":
+    def of(cls, weights: Array, strokes: Array) -> "PixelNoise":
         """With the strokes' heights still unknown."""
         normal = (strokes * weights) @ strokes.T + np.eye(len(strokes))
         return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
 
     def weigh(self, rows: Array) -> Array:
-        """Rows (…, n) times the inverse of the errors' covariance."""
+        """Rows (…, n) times the inverse of the errors' covariance.
+
+        The covariance is diagonal plus one term for each stroke; by Woodbury's identity its inverse
+        needs only the small matrix ``posterior``.
+        """
         weighted = rows * self.weights
         if len(self.strokes) == 0:
             return np.asarray(weighted)
@@ -69,27 +83,27 @@ class Noise:
         return np.asarray(residuals - heights @ self.strokes)
 
 
-def noise_of(residuals: Array, outside: Array, strokes: Array) -> Noise:
+def noise_of(residuals: Array, outside: Array, strokes: Array) -> PixelNoise:
     """The noise that the residuals (n,) show; ``strokes`` (k, n) of unit height, k may be 0.
 
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
-    them its variance goes with the share that the bright side covers.
+    them its variance goes with ``outside``, the share of each pixel that the bright side covers.
     """
-    bright, dark = outside > 0.95, _sigma_grey(residuals[outside < 0.05])
+    bright, dark = outside > _BRIGHT, _sigma_grey(residuals[outside < _DARK])
     own, height = _sigma_grey(residuals[bright]), 0.0
     if len(strokes):
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
     sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
     seen = strokes * height if height > _LEAST_STROKE_GREY else strokes[:0]
-    noise = Noise.of(sigma**-2.0, seen)
+    noise = PixelNoise.of(sigma**-2.0, seen)
     scaled = np.abs(noise.own(residuals)) / sigma
-    return Noise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
+    return PixelNoise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
 
 
 def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
     """Standard deviations of the pixels' own errors and of the strokes' heights.
 
-    Analysis of variance: each pixel belongs to the stroke nearest to it.
+    One-way analysis of variance: each pixel belongs to the stroke nearest to it.
     """
     limit = _CLIP_SIGMAS * _sigma_grey(residuals)
     clipped = np.clip(residuals, -limit, limit)
@@ -107,76 +121,48 @@ def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
     return own, float(np.sqrt(max(between, 0.0)))
 
 
-def arc_covariance(scores: Array, azimuth: Array) -> Array:
-    """Covariance of the centre from what its scores sum to over arcs, shape (k, k).
-
-    ``scores`` (k, n) is what each pixel's residual contributes to the centre. Errors of scratches
-    and of an imperfect model of the light are alike in neighbouring pixels.
-    """
-    sector = ((azimuth + np.pi) / (2.0 * np.pi) * _BINS).astype(int) % _BINS
-    sums = np.stack([np.bincount(sector, row, minlength=_BINS) for row in scores])
-    return np.asarray(_LOST * sums @ _KERNEL @ sums.T)
-
-
-def texture_covariance(
-    place: IntArray, residuals: Array, outside: Array, influence: Array
-) -> Array:
-    """Covariance of the centre from the texture of the bright side, shape (k, k).
-
-    A stroke along the rim moves the fit and leaves no residual there. But texture is the same all
-    over the surface: its autocorrelation, seen where it does no harm, tells how much of it gets
-    through to the centre. ``place`` (2, n) are columns and rows, ``influence`` (k, n) is the
-    derivative of the centre by each pixel.
-    """
-    columns, rows = place - place.min(axis=1, keepdims=True)
-    size = next_fast_len(int(max(columns.max(), rows.max())) + _LAG, real=True)
-    bright = outside > 0.95
-    clipped = np.clip(residuals, -_CLIP_GREY, _CLIP_GREY)
-    shares = influence * outside
-    images = np.zeros((2 + len(shares), size, size), dtype=np.float32)
-    images[:, rows, columns] = np.vstack([clipped * bright, bright, shares])
-    if _is_white(images[0], images[1]):
-        return np.zeros((len(shares), len(shares)))
-    spectra = rfft2(images)
-    seen, pairs = irfft2(np.abs(spectra[:2]) ** 2, s=(size, size))
-    lags = np.minimum(np.arange(size), size - np.arange(size))
-    near = (lags[:, None] <= _LAG) & (lags[None, :] <= _LAG) & (pairs > _FEWEST_PAIRS)
-    texture = np.where(near, seen / np.maximum(pairs, 1.0), 0.0)
-    # By Parseval's theorem; the spectrum of a real image holds half of the frequencies.
-    counted = np.full(spectra.shape[2], 2.0)
-    counted[0] = 1.0
-    counted[-1] = 2.0 - (size + 1) % 2
-    passed = spectra[2:] * (rfft2(texture).real * counted)
-    rows_of = (len(shares), -1)
-    found = (passed.reshape(rows_of) @ spectra[2:].reshape(rows_of).conj().T).real
-    return np.asarray(found / size**2)
-
-
-def _is_white(residuals: Array, used: Array) -> bool:
-    """Whether neighbours in an image (h, w) are as independent as noise; ``used`` is 0 or 1."""
-    variance = float((residuals * residuals).sum()) / max(float(used.sum()), 1.0)
-    for down, right in _NEIGHBOURS:
-        here, there = slice(down, None), slice(None, -down or None)
-        east, west = slice(right, None), slice(None, -right or None)
-        products = float((residuals[here, east] * residuals[there, west]).sum())
-        pairs = float((used[here, east] * used[there, west]).sum())
-        if abs(products) > _WHITE_SIGMAS * variance * np.sqrt(max(pairs, 1.0)):
-            return False
-    return True
-
-
-def widened(covariance: Array, seen: Array) -> Array:
-    """The covariance, enlarged where ``seen`` exceeds it by more than chance."""
-    root = np.linalg.cholesky(covariance)
-    inverse = np.linalg.inv(root)
-    whitened = inverse @ seen @ inverse.T
-    even = np.trace(whitened) / len(seen) * np.eye(len(seen))
-    values, vectors = np.linalg.eigh((1.0 - _SHRINK) * whitened + _SHRINK * even)
-    wide = root @ vectors
-    return np.asarray((wide * np.where(values > _CHANCE, values, 1.0)) @ wide.T)
-
-
 def _sigma_grey(residuals: Array) -> float:
     if len(residuals) < 8:
         return _LEAST_GREY
     return max(robust_sigma(residuals), _LEAST_GREY)
+
+
+def surface_lay(image: Image, patch: PlanePatch, middle_px: Array, clear_px: float) -> Array | None:
+    """Unit vector across the lay in the plane, shape (2,); None where the face has no lay.
+
+    Looks at the ring from ``clear_px`` to a little more round a hole: the structure tensor of its
+    grey values, with strong edges clipped so that a scratch or a neighbouring hole does not decide.
+    """
+    reach = clear_px + _LAY_REACH_PX
+    x0, y0 = np.maximum(np.floor(middle_px - reach).astype(int), 0)
+    x1, y1 = np.ceil(middle_px + reach).astype(int) + 1
+    cut = cv2.GaussianBlur(image[y0:y1, x0:x1].astype(np.float32), (0, 0), 0.8)
+    rows, columns = np.indices(cut.shape)
+    distance = np.hypot(columns + x0 - middle_px[0], rows + y0 - middle_px[1])
+    ring = (distance > clear_px) & (distance < reach)
+    gradient = np.stack(
+        [cv2.Sobel(cut, cv2.CV_32F, 1, 0)[ring], cv2.Sobel(cut, cv2.CV_32F, 0, 1)[ring]]
+    ).astype(float)
+    gradient -= gradient.mean(axis=1, keepdims=True)
+    size = np.hypot(*gradient)
+    limit = _GRADIENT_CLIP * max(median(size), 1e-3)
+    gradient *= np.minimum(1.0, limit / np.maximum(size, 1e-9))
+    # Gradients are covectors: they go to the plane by the transposed inverse of the Jacobian.
+    _, jacobian = patch.from_px(middle_px[:1], middle_px[1:])
+    in_plane = np.linalg.solve(jacobian[:, :, 0].T * (1.0 / patch.unit_px), gradient)
+    values, vectors = np.linalg.eigh(in_plane @ in_plane.T)
+    if values[1] - values[0] < _ANISOTROPY * values.sum():
+        return None
+    return np.asarray(vectors[:, 1])
+
+
+def stroke_pattern(offsets_px: Array, across: Array, radius_px: float) -> Array:
+    """Strokes a pixel wide that change slowly along the lay, shape (2 k, n).
+
+    ``offsets_px`` (2, n) lie in the plane, from the centre of the rim.
+    """
+    position = across @ offsets_px
+    along = np.array([-across[1], across[0]]) @ offsets_px / radius_px
+    knots = np.arange(np.floor(position.min()), np.ceil(position.max()) + 1.0)
+    heights = np.maximum(1.0 - np.abs(position - knots[:, None]), 0.0)
+    return np.concatenate([heights, _ALONG * along * heights])

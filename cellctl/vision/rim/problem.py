@@ -1,7 +1,8 @@
-"""A rim in one or more images as a least-squares problem, and the best light for a given shape.
+"""A rim in one or both images as a least-squares problem, and the best light for a given shape.
 
-Light enters linearly and is eliminated for each trial shape. Priors on shape and light are part of
-the cost.
+Grey values depend linearly on the light and nonlinearly on the few numbers of the shape. The light
+is therefore solved for exactly at each trial shape (variable projection), and only the shape is
+searched. Priors on shape and light are part of the cost.
 """
 
 from collections.abc import Sequence
@@ -11,19 +12,33 @@ from functools import cached_property
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.lay import strokes
-from cellctl.vision.rim.light import Light, Surface, surfaces
-from cellctl.vision.rim.matrix import add_to_diagonal, with_unit_diagonal
-from cellctl.vision.rim.model import Border, RimPixels, RimShape, borders
-from cellctl.vision.rim.noise import Noise, noise_of
+from cellctl.vision.rim.light import LightModel, Surface, surfaces
+from cellctl.vision.rim.noise import PixelNoise, noise_of, stroke_pattern
+from cellctl.vision.rim.shape import Border, RimPixels, RimShape, borders
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
 _WALL_LIMITS = (0.0, 0.2)
 _RING_LIMITS = (1.02, 1.7)
+"""Outside of these a model means something else: a ring of no width has the rim's own edge."""
 _RIDGE = 1e-11
 """Of a normal matrix with a unit diagonal: terms that no pixel shows stay finite."""
 _FLAT_WEIGHT = 0.04
 """Of every pixel before its noise is known, 1/grey²."""
+
+
+def add_to_diagonal(matrix: Array, values: Array | float) -> None:
+    """Add to the diagonal of a square matrix, in place."""
+    matrix.flat[:: len(matrix) + 1] += values
+
+
+def with_unit_diagonal(normal: Array) -> tuple[Array, Array]:
+    """A normal matrix (n, n) for unknowns in units of their own size (n,), and these sizes.
+
+    Grey values, pixels and ratios differ by orders of magnitude: without this the matrix is close
+    to singular in floating point.
+    """
+    size = np.sqrt(normal.diagonal()) + 1e-12
+    return normal / (size[:, None] * size), size
 
 
 def _inside(value: float, limits: tuple[float, float]) -> float:
@@ -54,11 +69,11 @@ class RimView:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class RimProblem:
     """All images of one rim, and what is known beforehand."""
 
     views: tuple[RimView, ...]
-    light: Light
+    light: LightModel
     mean: Array
     """Prior of the joint parameters, shape (m,)."""
     sigma: Array
@@ -77,16 +92,16 @@ class Problem:
 
 
 @dataclass(frozen=True)
-class Solution:
+class RimSolution:
     """Best light for one vector of joint parameters, and what the next step needs."""
 
     vector: Array
     parts: tuple[Sequence[Surface], ...]
     """Surfaces of each view."""
-    noise: Noise
+    noise: PixelNoise
     residuals: Array
     design: Array
-    """Rows: light, then joint parameters, shape (lights + m, n)."""
+    """Derivatives of all pixels by the light, then by the joint parameters: (lights + m, n)."""
     precision: Array
     """Of the priors, shape (lights + m,)."""
     pull: Array
@@ -111,7 +126,7 @@ class Solution:
         """Weighted squares of residuals and priors."""
         return self.cost_under(self.noise)
 
-    def cost_under(self, noise: Noise) -> float:
+    def cost_under(self, noise: PixelNoise) -> float:
         """The same under another noise, to compare models of the same pixels."""
         squares = self.residuals @ noise.weigh(self.residuals)
         return float(squares + self.precision @ self.pull**2)
@@ -131,22 +146,22 @@ class Solution:
         return np.asarray(np.linalg.inv(scaled) / (size[:, None] * size))
 
 
-def first(problem: Problem, vector: Array) -> Solution:
-    """Solution at the start: equal weights."""
+def initial_solution(problem: RimProblem, vector: Array) -> RimSolution:
+    """Solution at the start, where the noise is not known yet: equal weights."""
     count = sum(len(view.pixels.grey) for view in problem.views)
-    noise = Noise.of(np.full(count, _FLAT_WEIGHT), np.empty((0, count)))
-    return solved(problem, vector, noise)
+    noise = PixelNoise.of(np.full(count, _FLAT_WEIGHT), np.empty((0, count)))
+    return solve_light(problem, vector, noise)
 
 
-def refreshed(problem: Problem, solution: Solution, *, weigh: bool = True) -> Solution:
+def relinearised(problem: RimProblem, solution: RimSolution, *, weigh: bool = True) -> RimSolution:
     """The same shape with the terms of the light brought up to date, and the noise on request."""
     noise = solution.noise
     if weigh:
         noise = noise_of(solution.residuals, solution.outside, _strokes(problem, solution))
-    return solved(problem, solution.vector, noise)
+    return solve_light(problem, solution.vector, noise)
 
 
-def _strokes(problem: Problem, solution: Solution) -> Array:
+def _strokes(problem: RimProblem, solution: RimSolution) -> Array:
     """Strokes of unit height, shape (k, n): all views see the same ones."""
     if problem.across_lay is None:
         return np.empty((0, len(solution.residuals)))
@@ -156,16 +171,16 @@ def _strokes(problem: Problem, solution: Solution) -> Array:
         offsets.append((view.pixels.points - centre[:, None]) / problem.unit_px)
         gains.append(np.full(len(view.pixels.grey), view.gain))
     radius_px = problem.views[0].shape(solution.vector).radius / problem.unit_px
-    pattern = strokes(np.concatenate(offsets, axis=1), problem.across_lay, radius_px)
+    pattern = stroke_pattern(np.concatenate(offsets, axis=1), problem.across_lay, radius_px)
     return np.asarray(pattern * (solution.face * np.concatenate(gains)))
 
 
-def solved(
-    problem: Problem,
+def solve_light(
+    problem: RimProblem,
     vector: Array,
-    noise: Noise,
+    noise: PixelNoise,
     parts: tuple[Sequence[Surface], ...] | None = None,
-) -> Solution:
+) -> RimSolution:
     """Best light by linear least squares, and the derivatives of all pixels.
 
     A pixel is the sum of its surfaces' greys times the shares that they cover. The terms of the
@@ -178,27 +193,29 @@ def solved(
             surfaces(view.pixels, shape, edge, problem.light)
             for view, shape, edge in zip(problem.views, shapes, edges, strict=True)
         )
-    layout = _Layout.of(problem, parts)
-    terms = np.zeros((layout.lights, len(noise.weights)))
-    for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
-        terms[rows, columns] = part.terms * (gain * part.share(edge))
+    blocks, light_precision = _blocks(problem, parts, edges)
+    terms = np.zeros((len(light_precision), len(noise.weights)))
+    for block in blocks:
+        share = block.view.gain * block.surface.share(block.borders)
+        terms[block.rows, block.columns] = block.surface.terms * share
     grey = np.concatenate([view.pixels.grey for view in problem.views])
     weighted = noise.weigh(terms)
     gram = weighted @ terms.T
-    add_to_diagonal(gram, layout.precision + 1e-9 * float(gram.diagonal().max()))
+    add_to_diagonal(gram, light_precision + 1e-9 * float(gram.diagonal().max()))
     levels = np.linalg.solve(gram, weighted @ grey)
     by_vector = np.zeros((len(vector), len(noise.weights)))
-    for rows, columns, gain, part, edge in layout.blocks(problem, parts, edges):
-        view = problem.views[layout.view_of(columns)]
-        by_vector[:, columns] += view.selection.T @ part.by_shape(edge, gain * levels[rows])
+    for block in blocks:
+        amplitudes = block.view.gain * levels[block.rows]
+        by_shape = block.surface.by_shape(block.borders, amplitudes)
+        by_vector[:, block.columns] += block.view.selection.T @ by_shape
     rims = [0 if view.model.ring_ratio is None else 1 for view in problem.views]
-    return Solution(
+    return RimSolution(
         vector,
         parts,
         noise,
         grey - levels @ terms,
         np.concatenate([terms, by_vector]),
-        np.concatenate([layout.precision, problem.sigma**-2.0]),
+        np.concatenate([light_precision, problem.sigma**-2.0]),
         np.concatenate([-levels, problem.mean - vector]),
         np.concatenate([edge[rim].outside for edge, rim in zip(edges, rims, strict=True)]),
         np.concatenate([edge[0].outside for edge in edges]),
@@ -206,58 +223,39 @@ def solved(
 
 
 @dataclass(frozen=True, slots=True)
-class _Layout:
-    """Where each surface's terms lie in the design: rings share their rows between views."""
+class _Block:
+    """The pixels of one view and the terms of one surface: where they lie in the design."""
 
-    lights: int
-    precision: Array
-    rows: tuple[tuple[tuple[int, int, slice], ...], ...]
-    """For each view: (part index, which copy, rows)."""
-    columns: tuple[slice, ...]
+    view: RimView
+    surface: Surface
+    borders: Sequence[Border]
+    rows: slice
+    columns: slice
 
-    @classmethod
-    def of(cls, problem: Problem, parts: tuple[Sequence[Surface], ...]) -> "_Layout":
-        used, precision, ring = 0, [], None
-        rows, columns, pixel = [], [], 0
-        for view, surfaces_of_view in zip(problem.views, parts, strict=True):
-            mine = []
-            for index, part in enumerate(surfaces_of_view):
-                count = len(part.terms)
-                sigma = part.sigma_grey
-                if part.ring and ring is not None:
-                    mine.append((index, 0, ring))
-                    sigma = np.full(count, problem.ring_variation_grey)
-                    sigma[0] = problem.ring_level_grey
-                block = slice(used, used + count)
-                if part.ring and ring is None:
-                    ring = block
-                mine.append((index, 1, block))
-                used += count
-                precision.append(sigma**-2.0)
-            rows.append(tuple(mine))
-            columns.append(slice(pixel, pixel + len(view.pixels.grey)))
-            pixel += len(view.pixels.grey)
-        return cls(used, np.concatenate(precision), tuple(rows), tuple(columns))
 
-    def blocks(
-        self,
-        problem: Problem,
-        parts: tuple[Sequence[Surface], ...],
-        edges: Sequence[Sequence[Border]],
-    ) -> list[tuple[slice, slice, float, Surface, Sequence[Border]]]:
-        """Rows, columns, gain, surface and borders of every block of the design."""
-        return [
-            (
-                rows,
-                self.columns[which],
-                problem.views[which].gain,
-                parts[which][index],
-                edges[which],
-            )
-            for which, mine in enumerate(self.rows)
-            for index, _, rows in mine
-        ]
+def _blocks(
+    problem: RimProblem, parts: Sequence[Sequence[Surface]], edges: Sequence[Sequence[Border]]
+) -> tuple[list[_Block], Array]:
+    """All blocks, and the prior precision of the terms of the light.
 
-    def view_of(self, columns: slice) -> int:
-        """Index of the view whose pixels these are."""
-        return self.columns.index(columns)
+    The first view that shows a ring owns its terms. Every later view uses the same rows, so that
+    both see the same ring, and has rows of its own for the little by which they may differ.
+    """
+    blocks: list[_Block] = []
+    precision: list[Array] = []
+    used, pixel, ring = 0, 0, None
+    for view, surfaces_of_view, borders_of_view in zip(problem.views, parts, edges, strict=True):
+        columns = slice(pixel, pixel + len(view.pixels.grey))
+        pixel = columns.stop
+        for surface in surfaces_of_view:
+            rows, sigma = slice(used, used + len(surface.terms)), surface.sigma_grey
+            used = rows.stop
+            if surface.ring and ring is None:
+                ring = rows
+            elif surface.ring and ring is not None:
+                blocks.append(_Block(view, surface, borders_of_view, ring, columns))
+                sigma = np.full(len(surface.terms), problem.ring_variation_grey)
+                sigma[0] = problem.ring_level_grey
+            blocks.append(_Block(view, surface, borders_of_view, rows, columns))
+            precision.append(sigma**-2.0)
+    return blocks, np.concatenate(precision)

@@ -12,8 +12,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.solvers.transfer.board_transfer import head_2_in_head_1
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose, skew
-from cellctl.vision.camera import distort
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.lens import distort
+from cellctl.vision.camera.stereo_head import CameraModel
 
 Array = NDArray[np.float64]
 

@@ -29,10 +29,10 @@ from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, Pa
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
-from cellctl.vision.features import FeatureFile, read_features
+from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.misfit import Misfit
-from cellctl.vision.part_pose import PartPose
+from cellctl.vision.registration.chi_square import ChiSquare
+from cellctl.vision.registration.part_pose import PartPose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations
@@ -269,7 +269,7 @@ def measurement(
     names = tuple(hole.name for hole in features.holes)
     pose = PartPose(
         UncertainPose(c1_T_part, covariance), covariance, names,
-        np.zeros((len(names), 3)), (), Misfit(12.0, 12),
+        np.zeros((len(names), 3)), (), ChiSquare(12.0, 12),
     )  # fmt: skip
     image = np.zeros((4, 6), np.uint8)
     pair = StereoPair(image, image, now_s(), 1)

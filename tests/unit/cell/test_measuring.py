@@ -18,8 +18,8 @@ from cellctl.processes.deck_to_frame.poses.part_measurer import (
     PartMeasurer,
 )
 from cellctl.vision.measurement import PairMeasurement
-from cellctl.vision.misfit import Misfit
-from cellctl.vision.part_pose import PartPose
+from cellctl.vision.registration.chi_square import ChiSquare
+from cellctl.vision.registration.part_pose import PartPose
 from tests.unit.cell.bench import Bench
 
 PLACE = pose_from_xyzabc([10, 20, 500, 5, 1, 179])
@@ -54,7 +54,12 @@ class Eyes:
         assert one.frames == two.frames
         covariance = np.diag(SIGMA**2) / one.frames
         return PartPose(
-            UncertainPose(PLACE, covariance), covariance, (), np.zeros((0, 3)), (), Misfit(6.0, 6)
+            UncertainPose(PLACE, covariance),
+            covariance,
+            (),
+            np.zeros((0, 3)),
+            (),
+            ChiSquare(6.0, 6),
         )
 
 

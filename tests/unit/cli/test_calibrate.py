@@ -17,8 +17,8 @@ from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
-from cellctl.vision.camera import project
-from cellctl.vision.stereo_head import read_stereo_head
+from cellctl.vision.camera.lens import project
+from cellctl.vision.camera.stereo_head import read_stereo_head
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard, StereoTruth
 from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case

@@ -25,8 +25,8 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_1,
 )
 from cellctl.runtime.procedure import ProcedureOutcome
-from cellctl.vision.ellipse import Ellipse
-from cellctl.vision.features import Hole
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.unit.procedures.rig import ProcedureRig

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
-from cellctl.vision.camera import project, undistort
-from cellctl.vision.features import Hole
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.lens import project, undistort
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.features.hole import Hole
 
 SUB = 8
 
@@ -69,7 +69,7 @@ def holes_triangle(kinds: tuple[str, str, str] = ("pin", "pin", "pin")) -> tuple
     return tuple(
         Hole(
             f"P{index}",
-            kind,  # type: ignore[arg-type]
+            kind,
             diameters[kind] * MM,
             np.array([x, y, 0.0]) * MM,
             10.0 * MM if kind == "countersink" else None,

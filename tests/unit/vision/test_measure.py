@@ -18,10 +18,10 @@ from cellctl.errors.vision import (
     VisionError,
 )
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.vision.average import average
-from cellctl.vision.features import Hole
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.picture import annotate, residual_arrows
+from cellctl.vision.registration.average import average
 from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
 
 HEAD = table_1_head()

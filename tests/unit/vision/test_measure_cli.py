@@ -8,7 +8,7 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.cli.offline.measure import measure
-from cellctl.vision.stereo_head import write_stereo_head
+from cellctl.vision.camera.stereo_head import write_stereo_head
 from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
 
 HEAD, POSE = table_1_head(), plate_facing(3.0, -2.0, 2.0)

@@ -16,7 +16,7 @@ from cellctl.calibration.input_file import (
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import CameraModel
 
 
 def _camera_matrix(values: Any) -> Array:

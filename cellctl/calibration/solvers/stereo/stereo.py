@@ -26,7 +26,7 @@ from cellctl.calibration.solvers.stereo.stereo_start import start_values
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation, cross_validate
 from cellctl.errors.calibration import TooFewViews
 from cellctl.geometry.pose import Array
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_head import StereoHead
 
 Mask = NDArray[np.bool_]
 

@@ -16,7 +16,7 @@ from cellctl.calibration.checks import (
 from cellctl.calibration.solvers.stereo.stereo_coverage import Coverage
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation
 from cellctl.geometry.pose import MM, Array
-from cellctl.vision.stereo_head import CameraModel, StereoHead, stereo_head_to_json
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead, stereo_head_to_json
 
 
 @dataclass(frozen=True, slots=True)

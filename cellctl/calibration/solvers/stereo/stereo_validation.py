@@ -14,7 +14,7 @@ from cellctl.calibration.boards.board import BoardView, Ids
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.solvers.stereo.bundle import BundleState
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import undistort
+from cellctl.vision.camera.lens import undistort
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,8 +8,8 @@ import numpy as np
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.vision.features import FeatureFile, read_features
-from cellctl.vision.registration import on_a_line
+from cellctl.vision.features.feature_file import FeatureFile, read_features
+from cellctl.vision.registration.rigid_fit import on_a_line
 
 
 def feature_issues(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:

@@ -13,7 +13,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_1,
     STEREO_HEAD_2,
 )
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_head import StereoHead
 
 
 @dataclass(frozen=True, slots=True)

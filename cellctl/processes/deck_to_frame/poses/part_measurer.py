@@ -15,12 +15,13 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.processes.deck_to_frame.stations import DeckCell
-from cellctl.vision.average import average
-from cellctl.vision.features import FeatureFile, Hole
+from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.features.feature_file import FeatureFile
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
-from cellctl.vision.part_pose import PartPose, part_pose
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.registration.average import average
+from cellctl.vision.registration.part_pose import PartPose, part_pose
 
 _log = log.get(__name__)
 

@@ -7,7 +7,7 @@ from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.errors.vision import PartMisplaced
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.vision.features import FeatureFile
+from cellctl.vision.features.feature_file import FeatureFile
 
 LEAST_CLEARANCE = 0.5
 """No correction may bring a corner of the deck nearer to the frame, in parts of the stand-off."""

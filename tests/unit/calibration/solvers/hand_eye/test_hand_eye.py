@@ -19,8 +19,8 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
 from cellctl.errors.calibration import BoardPoseInvalid, PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.camera import project
-from cellctl.vision.stereo_head import CameraModel
+from cellctl.vision.camera.lens import project
+from cellctl.vision.camera.stereo_head import CameraModel
 
 Array = NDArray[np.float64]
 CAMERA = CameraModel(

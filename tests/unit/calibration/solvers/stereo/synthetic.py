@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Corners
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import project
-from cellctl.vision.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.lens import project
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 
 IMAGE_SIZE = (2448, 2048)
 BOARD = CalibrationBoard(13, 10, 0.016)

@@ -19,8 +19,8 @@ from cellctl.errors.calibration import (
     TooFewViews,
 )
 from cellctl.geometry.pose import Array
-from cellctl.vision.camera import project, undistort
-from cellctl.vision.stereo_head import StereoHead
+from cellctl.vision.camera.lens import project, undistort
+from cellctl.vision.camera.stereo_head import StereoHead
 from tests.unit.calibration.solvers.stereo.synthetic import (
     BOARD,
     IMAGE_SIZE,

@@ -1,0 +1,47 @@
+"""Projection of one camera: rays to raw pixels and back."""
+
+import cv2
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.camera.stereo_head import CameraModel
+
+# The default stops after five iterations, which leaves pixels of error with a strong distortion.
+_UNDISTORT_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-12)
+
+
+def project(camera: CameraModel, points: Array) -> Array:
+    """Raw pixels, shape (n, 2), of points, shape (n, 3), in the frame of the camera."""
+    return distort(camera, points[:, :2] / points[:, 2:])
+
+
+def distort(camera: CameraModel, rays: Array) -> Array:
+    """Raw pixels, shape (n, 2), of undistorted rays x/z, y/z, shape (n, 2)."""
+    # ``cv2.projectPoints`` gives the same, but its fixed cost is too high for the many calls with
+    # few points that the fit of a rim makes.
+    k1, k2, p1, p2, k3 = camera.distortion.tolist()
+    x, y = rays[:, 0], rays[:, 1]
+    xx, yy, twice_xy = x * x, y * y, 2.0 * x * y
+    r2 = xx + yy
+    radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3))
+    bent = np.empty_like(rays)
+    bent[:, 0] = x * radial + p1 * twice_xy + p2 * (r2 + 2.0 * xx)
+    bent[:, 1] = y * radial + p1 * (r2 + 2.0 * yy) + p2 * twice_xy
+    return bent @ camera.camera_matrix[:2, :2].T + camera.camera_matrix[:2, 2]
+
+
+def undistort(camera: CameraModel, pixels: Array) -> Array:
+    """Undistorted rays x/z, y/z, shape (n, 2), of raw pixels, shape (n, 2)."""
+    points = np.ascontiguousarray(pixels, dtype=float).reshape(-1, 1, 2)
+    rays = cv2.undistortPoints(
+        points, camera.camera_matrix, camera.distortion, criteria=_UNDISTORT_CRITERIA
+    )
+    return np.asarray(rays, dtype=float).reshape(-1, 2)
+
+
+def distort_jacobian(camera: CameraModel, ray: Array) -> Array:
+    """Derivative of ``distort`` at one ray, shape (2, 2), px."""
+    step = 1e-6
+    offsets = np.array([[step, 0.0], [-step, 0.0], [0.0, step], [0.0, -step]])
+    pixels = distort(camera, np.asarray(ray) + offsets)
+    return np.column_stack([pixels[0] - pixels[1], pixels[2] - pixels[3]]) / (2.0 * step)

@@ -1,0 +1,110 @@
+"""Two rays to a point: epipolar distance, triangulation and its covariance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skew
+from cellctl.vision.camera.lens import distort_jacobian, project, undistort
+from cellctl.vision.camera.stereo_head import StereoHead
+
+_STEPS = 2
+"""From half-way between the rays, the first step leaves less than 1e-6 px."""
+
+
+@dataclass(frozen=True, slots=True)
+class StereoPoint:
+    """A point seen by both cameras."""
+
+    position_m: Array
+    """Shape (3,), in the left camera."""
+    covariance_m2: Array
+    """Shape (3, 3)."""
+    misfit_sigmas: float
+    """How far the two image points are from one ray pair, in standard deviations."""
+
+
+def essential_matrix(rotation: Array, translation: Array) -> Array:
+    """E = [t]× R, with ``x_rightᵀ E x_left = 0`` for normalised rays (paper, table 1)."""
+    return skew(translation) @ rotation
+
+
+def fundamental_matrix(head: StereoHead) -> Array:
+    """F ∝ K_right⁻ᵀ E K_left⁻¹ for undistorted pixels, shape (3, 3), scaled to F[2, 2] = 1."""
+    essential = essential_matrix(head.rotation, head.translation_m)
+    fundamental = (
+        np.linalg.inv(head.right.camera_matrix).T
+        @ essential
+        @ np.linalg.inv(head.left.camera_matrix)
+    )
+    return np.asarray(fundamental / fundamental[2, 2])
+
+
+def epipolar_distances_px(head: StereoHead, left_px: Array, right_px: Array) -> Array:
+    """Distance of each right point from the epipolar line of each left point, shape (n, m)."""
+    left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
+    right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
+    lines = left @ essential_matrix(head.rotation, head.translation_m).T
+    lines /= np.linalg.norm(lines[:, :2], axis=1)[:, None]
+    return np.asarray(np.abs(lines @ right.T) * head.right.camera_matrix[0, 0])
+
+
+def midpoints(head: StereoHead, left_px: Array, right_px: Array) -> Array:
+    """Points half-way between the two rays of each pair, shape (n, 3), left camera, m."""
+    left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
+    right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
+    origin = -head.rotation.T @ head.translation_m
+    right = right @ head.rotation
+    ll, rr, lr = (left**2).sum(1), (right**2).sum(1), (left * right).sum(1)
+    lo, ro = left @ origin, right @ origin
+    determinant = ll * rr - lr**2
+    along_left = (rr * lo - lr * ro) / determinant
+    along_right = (lr * lo - ll * ro) / determinant
+    return np.asarray((left * along_left[:, None] + origin + right * along_right[:, None]) / 2.0)
+
+
+def triangulate(
+    head: StereoHead, left_px: Array, right_px: Array, covariance_px2: Array
+) -> StereoPoint:
+    """Maximum-likelihood point for two image points with their joint covariance, shape (4, 4)."""
+    point = midpoints(head, left_px[None], right_px[None])[0]
+    weight = np.linalg.inv(covariance_px2)
+    for _ in range(_STEPS):
+        residual, jacobian = _reprojection(head, point, left_px, right_px)
+        normal = jacobian.T @ weight @ jacobian
+        step = np.linalg.solve(normal, jacobian.T @ weight @ residual)
+        point = point + step
+    residual = residual - jacobian @ step
+    misfit = float(np.sqrt(max(float(residual @ weight @ residual), 0.0)))
+    return StereoPoint(point, np.asarray(np.linalg.inv(normal), dtype=float), misfit)
+
+
+def joint_covariance(left_px2: Array, right_px2: Array) -> Array:
+    """Covariance of two independent image points, shape (4, 4)."""
+    joint = np.zeros((4, 4))
+    joint[:2, :2], joint[2:, 2:] = left_px2, right_px2
+    return joint
+
+
+def _reprojection(
+    head: StereoHead, point: Array, left_px: Array, right_px: Array
+) -> tuple[Array, Array]:
+    in_right = head.rotation @ point + head.translation_m
+    seen = np.concatenate(
+        [project(head.left, point[None])[0], project(head.right, in_right[None])[0]]
+    )
+    jacobian = np.vstack(
+        [
+            distort_jacobian(head.left, point[:2] / point[2]) @ _perspective(point),
+            distort_jacobian(head.right, in_right[:2] / in_right[2])
+            @ _perspective(in_right)
+            @ head.rotation,
+        ]
+    )
+    return np.concatenate([left_px, right_px]) - seen, jacobian
+
+
+def _perspective(point: Array) -> Array:
+    x, y, z = point
+    return np.array([[1.0 / z, 0.0, -x / z**2], [0.0, 1.0 / z, -y / z**2]])

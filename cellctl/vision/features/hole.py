@@ -1,0 +1,22 @@
+"""A hole as the drawing gives it."""
+
+from dataclasses import dataclass
+
+from cellctl.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Hole:
+    """One feature with its nominal geometry in the part frame."""
+
+    name: str
+    kind: str
+    """A key of ``cellctl.vision.features.kinds.KINDS``."""
+    diameter_m: float
+    """Of the rim that carries the nominal centre."""
+    position_m: Array
+    """Shape (3,)."""
+    countersink_m: float | None = None
+    """Diameter of the countersink's outer rim."""
+    outward: Array | None = None
+    """Unit vector out of the face that is seen, shape (3,); None when the drawing does not say."""

@@ -1,0 +1,73 @@
+"""What a kind of hole looks like, and what that asks of the search and of the fit of its rim."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+from cellctl.vision.features.hole import Hole
+
+
+@dataclass(frozen=True, slots=True)
+class SecondEdge:
+    """What is known beforehand of a second edge round a rim, such as that of a chamfer."""
+
+    width: float
+    """Distance between both edges over the radius of the rim."""
+    sigma: float
+    """Standard deviation of ``width``."""
+
+
+class RimEvidence(Protocol):
+    """What both images show of a rim once it has been fitted with one edge."""
+
+    @property
+    def hole(self) -> Hole:
+        """The hole as the drawing gives it."""
+
+    @property
+    def clear_px(self) -> tuple[float, float]:
+        """Distance to the next edge outside the rim, left and right; infinite when none is near."""
+
+    def in_radii(self, length_px: float, image: int = 0) -> float:
+        """A length in one image (0 left, 1 right) over the radius of the rim there."""
+
+    def both_converged(self) -> bool:
+        """Whether the fits of both images settled."""
+
+    def ring_gains(self) -> tuple[float, float]:
+        """Fall of chi square, left and right, if a narrow ring of another grey were modelled."""
+
+    def ring_seen(self) -> bool:
+        """Whether a narrow ring explains more than chance in at least one image."""
+
+    def uneven_inside(self) -> bool:
+        """Whether the inside is uneven by more than chance in at least one image."""
+
+
+class HoleKind:
+    """One kind of hole. The attributes are those of a plain dark bore unless a kind says otherwise.
+
+    A kind holds no state: there is one instance of each, in ``cellctl.vision.features.kinds``.
+    """
+
+    name: ClassVar[str]
+    """As it is written in the feature file."""
+    bright: ClassVar[bool] = False
+    """The feature is brighter than what surrounds it."""
+    cone: ClassVar[bool] = False
+    """The surface round the rim is a cone. Its grey varies with the azimuth instead of evenly over
+    the image, it has no lay, and it ends at an edge that must be kept out of the fit."""
+    may_show_wall: ClassVar[bool] = True
+    """A wall may be seen below the rim."""
+    face_begins_radii: ClassVar[float] = 1.0
+    """From this radius on, in radii of the rim, the flat face of the part is seen."""
+    first_ring_px: ClassVar[float | None] = None
+    """Width of a ring that the very first fit must already cover; None when none is expected."""
+    lends_blur: ClassVar[bool] = True
+    """The blur of the image can be read off its rim. Other kinds are measured last and are told
+    the blur that the rims before them have shown."""
+    ring_cost: ClassVar[float] = 80.0
+    """By how much chi square must fall for a ring to be accepted. Turns of a thread imitate a
+    ring; real rings bring a fall of thousands."""
+
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
+        """The second edge that must be fitted together with the rim; None when one edge does."""

@@ -1,0 +1,20 @@
+"""A bore for a pin: a dark hole with a sharp or slightly broken edge."""
+
+from cellctl.vision.features.hole_kind import HoleKind, RimEvidence, SecondEdge
+
+_BROKEN_EDGE = SecondEdge(0.07, 0.05)
+_LEAST_GAIN = 25.0
+"""Fall of chi square in both images together from which on a bore counts as deburred. Walls in
+uneven light alone stay below it."""
+
+
+class Pin(HoleKind):
+    """A bore, deburred or not."""
+
+    name = "pin"
+    # A bore has no turns that a ring could be confused with.
+    ring_cost = 0.0
+
+    def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
+        """A broken edge a pixel or two wide, when both images together ask for it."""
+        return _BROKEN_EDGE if sum(evidence.ring_gains()) > _LEAST_GAIN else None

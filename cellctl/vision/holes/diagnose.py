@@ -1,0 +1,81 @@
+"""Why no assignment of features fits: holes missing, images exchanged, or a camera turned.
+
+Exchanged or turned images are recognised by trying: with the mistake undone the holes are found.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown, HoleMissing, VisionError
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.features.hole import Hole
+from cellctl.vision.holes.correspondence import (
+    Expectation,
+    StereoCandidate,
+    assignments,
+    holes_without_candidate,
+)
+from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, search_whole_images
+
+_TOLERANCE_M = 1.5e-3
+
+
+def fault_without_layout(
+    images: HeadImages,
+    holes: Sequence[Hole],
+    candidates: Sequence[StereoCandidate],
+    expectation: Expectation | None,
+) -> VisionError:
+    """The fault to raise when no assignment of ``candidates`` fits the drawing."""
+    for reach in (NEAR, WIDE) if len(holes) >= 3 else ():
+        if (fault := _wrong_images(images, holes, reach)) is not None:
+            return fault
+    missing = holes_without_candidate(holes, candidates, expectation)
+    if missing:
+        return HoleMissing(f"nothing like {', '.join(missing)} was seen by both cameras")
+    partial = _largest_part(holes, candidates, expectation)
+    absent = [hole.name for hole in holes if hole.name not in partial]
+    if len(partial) >= 3:
+        return HoleMissing(f"{', '.join(absent)} not where the other holes say")
+    names = ", ".join(hole.name for hole in holes)
+    return HoleMissing(f"no arrangement of the features seen fits the drawing of {names}")
+
+
+def _wrong_images(
+    images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
+) -> VisionError | None:
+    """The fault when the holes are found once the images are exchanged or turned."""
+    if _fits(replace(images, left=images.right, right=images.left), holes, reach):
+        return CamerasSwapped("the holes are found with the images exchanged")
+    left, right = _turned(images.left), _turned(images.right)
+    turned = {
+        "the left image": replace(images, left=left),
+        "the right image": replace(images, right=right),
+        "both images": replace(images, left=left, right=right),
+    }
+    for which, other in turned.items():
+        if _fits(other, holes, reach):
+            return CameraUpsideDown(f"the holes are found with {which} turned by 180°")
+    return None
+
+
+def _fits(images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]) -> bool:
+    candidates = search_whole_images(images, holes, reach)
+    return bool(assignments(holes, candidates, tolerance_m=_TOLERANCE_M, expectation=None))
+
+
+def _turned(image: Image) -> Image:
+    return np.ascontiguousarray(image[::-1, ::-1])
+
+
+def _largest_part(
+    holes: Sequence[Hole], candidates: Sequence[StereoCandidate], expectation: Expectation | None
+) -> set[str]:
+    """Names of the holes that fit when one hole is left out."""
+    for left_out in holes if len(holes) > 3 else ():
+        rest = [hole for hole in holes if hole is not left_out]
+        if assignments(rest, candidates, tolerance_m=_TOLERANCE_M, expectation=expectation):
+            return {hole.name for hole in rest}
+    return set()

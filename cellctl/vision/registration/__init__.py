@@ -1,0 +1,1 @@
+"""From measured points to the pose of a part: weighted fit, its covariance, and its consistency."""

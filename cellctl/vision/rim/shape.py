@@ -1,0 +1,193 @@
+"""The geometry of a rim: where its edges lie in the image, and how they move with its parameters.
+
+Up to four surfaces meet at a hole: the plate, the ring of a chamfer, the visible part of the wall,
+and the dark inside. Their borders are circles in coordinates of the rim's plane: the outer edge of
+the ring, the rim, and the lower edge of the wall. The lower edge lies h below a plane at distance D
+and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs
+all of them.
+
+Arrays hold one pixel a column, because this is the inner loop of every measurement: rows are then
+contiguous in memory.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from cellctl.geometry.pose import Array
+
+_SQRT_2PI = float(np.sqrt(2.0 * np.pi))
+
+
+@dataclass(frozen=True, slots=True)
+class RimPixels:
+    """The pixels of a fit."""
+
+    points: Array
+    """Shape (2, n): in the rim's plane, in units of its distance."""
+    jacobian: Array
+    """Shape (2, 2, n): derivative of ``points`` by the pixel's column and row."""
+    grey: Array
+    """Shape (n,)."""
+    place: NDArray[np.intp]
+    """Column and row in the image, shape (2, n)."""
+    unit_px: float
+    """Plane units in a pixel."""
+
+
+@dataclass(frozen=True, slots=True)
+class RimShape:
+    """The geometry of a rim in its plane, in units of the plane's distance."""
+
+    centre: Array
+    """Shape (2,)."""
+    radius: float
+    blur_px: float
+    wall_ratio: float | None = None
+    """Depth of the visible wall over the plane's distance; None when no wall is modelled."""
+    ring_ratio: float | None = None
+    """Outer radius of a ring round the rim over the rim's; None when no ring is modelled."""
+    ring_slope: float = 0.0
+    """Rise of the ring over its width: 0 in the plane of the rim, 1 for a chamfer of 90°."""
+
+    @property
+    def vector(self) -> Array:
+        """Centre, radius, blur and, where modelled, wall ratio and ring ratio."""
+        optional = [value for value in (self.wall_ratio, self.ring_ratio) if value is not None]
+        return np.array([*self.centre, self.radius, self.blur_px, *optional])
+
+    def with_vector(self, vector: Array) -> "RimShape":
+        """The same model with other numbers."""
+        rest = [float(value) for value in vector[4:]]
+        wall = None if self.wall_ratio is None else rest.pop(0)
+        ring = None if self.ring_ratio is None else rest.pop(0)
+        centre, radius, blur_px = np.array(vector[:2]), float(vector[2]), float(vector[3])
+        return RimShape(centre, radius, blur_px, wall, ring, self.ring_slope)
+
+
+@dataclass(frozen=True, slots=True)
+class Border:
+    """One blurred border: how much of each pixel lies outside of it."""
+
+    outside: Array
+    """Shape (n,), 0 to 1."""
+    by_shape: Array
+    """Derivatives by ``RimShape.vector``, shape (p, n)."""
+    by_pixel: Array
+    """Derivatives by the pixel's column and row, shape (2, n)."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Circle:
+    """Signed distance of pixels from a circle, positive outside."""
+
+    distance_px: Array
+    unit: Array
+    """Unit vector of growing distance in the plane, shape (2, n)."""
+    direction: Array
+    """Unit vector of growing distance in the image, shape (2, n)."""
+    px: Array
+    """Pixels in a plane unit along that direction, shape (n,)."""
+
+
+def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
+    """Borders between neighbouring surfaces, from the outermost to the innermost."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    by_rim = _by_centre_and_radius(rim, shape)
+    bend_px = _bend_px(pixels, shape)
+    found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
+    if shape.ring_ratio is not None:
+        found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
+    if shape.wall_ratio is not None:
+        shrink = 1.0 + shape.wall_ratio
+        low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
+        by_low = _by_centre_and_radius(low, shape) / shrink
+        by_low[4] = (shape.centre @ low.unit + shape.radius) * low.px / shrink**2
+        seen = low.distance_px > rim.distance_px
+        inner = _Circle(
+            np.where(seen, low.distance_px, rim.distance_px),
+            rim.unit,
+            np.where(seen, low.direction, rim.direction),
+            rim.px,
+        )
+        found.append(_blurred(inner, np.where(seen, by_low, by_rim), shape.blur_px, bend_px))
+    return found
+
+
+def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -> Array:
+    """Share of each pixel outside the lower edge of a wall, for walls of several depths, (k, n)."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    shrink = 1.0 + np.array(ratios)[:, None]
+    x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
+    low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
+    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(pixels, shape)
+    return np.asarray(ndtr(inner_px / shape.blur_px))
+
+
+def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
+    """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
+    return np.asarray(ndtr((distances_px + _bend_px(pixels, shape)) / shape.blur_px))
+
+
+def wall_depth(points: Array, shape: RimShape) -> Array:
+    """Depth below the rim, in radii, at which the ray of a pixel meets the bore's wall.
+
+    The ray through ``q`` in the plane runs along ``q`` as it goes deeper; 0 outside the rim.
+    """
+    x, y = points
+    dx, dy = x - shape.centre[0], y - shape.centre[1]
+    a = x * x + y * y + 1e-9
+    b = dx * x + dy * y
+    c = np.minimum(dx * dx + dy * dy - shape.radius**2, 0.0)
+    return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
+
+
+def _bend_px(pixels: RimPixels, shape: RimShape) -> float:
+    """How far the half level of a blurred disc of radius r lies inside its edge: blur²/(2 r).
+
+    Blur takes more light from the outside of a curved edge than from its inside. Without this the
+    radius would come out too small.
+    """
+    return 0.5 * shape.blur_px**2 * pixels.unit_px / shape.radius
+
+
+def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:
+    offset = pixels.points - centre[:, None]
+    length = np.sqrt(offset[0] ** 2 + offset[1] ** 2)
+    unit = offset / np.maximum(length, 1e-12)
+    direction = pixels.jacobian[0] * unit[0] + pixels.jacobian[1] * unit[1]
+    px = 1.0 / np.sqrt(direction[0] ** 2 + direction[1] ** 2)
+    return _Circle((length - radius) * px, unit, direction * px, px)
+
+
+def _outer_circle(pixels: RimPixels, shape: RimShape) -> tuple[_Circle, Array]:
+    """Outer edge of the ring, nearer to the camera than the rim, and its derivatives."""
+    ratio, slope = float(shape.ring_ratio or 1.0), shape.ring_slope
+    grow = 1.0 - slope * shape.radius * (ratio - 1.0)
+    circle = _circle(pixels, shape.centre / grow, shape.radius * ratio / grow)
+    derivatives = _by_centre_and_radius(circle, shape) / grow
+    by_rise = -(shape.centre @ circle.unit + shape.radius * ratio) * circle.px / grow**2
+    derivatives[-1] = derivatives[2] * shape.radius + by_rise * slope * shape.radius
+    derivatives[2] = derivatives[2] * ratio + by_rise * slope * (ratio - 1.0)
+    return circle, derivatives
+
+
+def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:
+    """Derivatives of the distance by centre and radius; the other rows are zero."""
+    derivatives = np.zeros((len(shape.vector), len(circle.px)))
+    derivatives[:2] = -circle.unit * circle.px
+    derivatives[2] = -circle.px
+    return derivatives
+
+
+def _blurred(circle: _Circle, by_distance: Array, blur_px: float, bend_px: float) -> Border:
+    z = (circle.distance_px + bend_px) / blur_px
+    density = np.exp(-0.5 * z * z) / (_SQRT_2PI * blur_px)
+    by_shape = by_distance * density
+    by_shape[3] = -z * density
+    return Border(np.asarray(ndtr(z)), by_shape, circle.direction * density)

@@ -1,0 +1,151 @@
+"""The rim of one hole, measured in both images of a head: the entry to this package."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.vision.camera.ellipse import Ellipse, ellipse_of_circle
+from cellctl.vision.camera.triangulation import joint_covariance
+from cellctl.vision.rim.covariance import RatedFit, with_covariance
+from cellctl.vision.rim.fit_input import RimFitInput, fit_input
+from cellctl.vision.rim.roi import RADIUS_TOLERANCE, LocatedRim, RimRoi
+from cellctl.vision.rim.selection import (
+    SelectedFit,
+    StereoEvidence,
+    fit_single_image,
+    fit_two_edges,
+)
+from cellctl.vision.rim.shape import RimShape
+
+_LEAST_RING_PX = 2.0
+_FLOOR_PX = 5e-4
+"""Lens model and pixel response limit every centre to about this."""
+_MIN_CONTRAST_GREY = 8.0
+_MAX_MOVE_PX = 2.5
+"""Farther from where its edges are a fit has found something else."""
+_RINGED_RADIUS_TOLERANCE = 0.035
+"""Largest relative difference from the nominal size when two edges were fitted: beyond it the
+edges are exchanged."""
+_MAX_SIGMA_PX = 0.2
+"""Largest standard deviation of a centre that is reported at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rim:
+    """A rim measured in one image."""
+
+    point_px: Array
+    """Raw pixel onto which the centre of the circle projects, shape (2,)."""
+    covariance_px2: Array
+    """Shape (2, 2)."""
+    ellipse: Ellipse
+    """The rim in the raw image, for pictures."""
+    size_ratio: float
+    """Measured over nominal diameter, if the plane's distance is right."""
+    blur_px: float
+
+
+@dataclass(frozen=True, slots=True)
+class RimPair:
+    """One rim in both images."""
+
+    left: Rim
+    right: Rim
+    covariance_px2: Array
+    """Of both points, left first, shape (4, 4)."""
+
+
+def measure_rims(
+    rois: tuple[RimRoi, RimRoi],
+    located: tuple[LocatedRim, LocatedRim],
+    blur_px: tuple[float, float] | None,
+) -> RimPair:
+    """Measure a located rim, left image first; its plane must be known to about a degree.
+
+    ``blur_px`` is the blur of other rims in these images, where there are any. Raises
+    ``HoleMissing`` when a fit is no measurement of this rim.
+    """
+    kind = rois[0].kind
+    given = _fit_inputs(rois, located, kind.first_ring_px)
+    fits = fit_single_image(given[0]), fit_single_image(given[1])
+    second = kind.second_edge(StereoEvidence(given, fits))
+    if second is None:
+        return _from_single_fits(given, fits)
+    ring_px = max(_LEAST_RING_PX, second.width * given[0].radius / given[0].patch.unit_px)
+    given = _fit_inputs(rois, located, ring_px)
+    return _from_joint_fit(given, fit_two_edges(given, second, blur_px))
+
+
+def refuse_too_uncertain(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
+    """Raise ``HoleMissing`` when the grey values leave a centre open.
+
+    That happens where there is no contrast between the rim and what lies beside it.
+    """
+    for roi, rim in zip(rois, (rims.left, rims.right), strict=True):
+        sigma_px = float(np.sqrt(np.linalg.eigvalsh(rim.covariance_px2)[-1]))
+        if sigma_px > _MAX_SIGMA_PX:
+            raise roi.refusal(
+                f"centre known to {sigma_px:.2f} px only, allowed {_MAX_SIGMA_PX:.2f} px"
+            )
+
+
+def _fit_inputs(
+    rois: tuple[RimRoi, RimRoi], located: tuple[LocatedRim, LocatedRim], ring_px: float | None
+) -> tuple[RimFitInput, RimFitInput]:
+    return fit_input(rois[0], located[0], ring_px), fit_input(rois[1], located[1], ring_px)
+
+
+def _from_single_fits(
+    given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]
+) -> RimPair:
+    """Fits of each image by itself: the errors of both points are independent."""
+    left, right = (
+        _rim(one, with_covariance(chosen.fit, chosen.spread), 0, RADIUS_TOLERANCE)
+        for one, chosen in zip(given, fits, strict=True)
+    )
+    return RimPair(left, right, joint_covariance(left.covariance_px2, right.covariance_px2))
+
+
+def _from_joint_fit(given: tuple[RimFitInput, RimFitInput], chosen: SelectedFit) -> RimPair:
+    """One fit of both images: what they share makes the errors of both points hang together."""
+    rated = with_covariance(chosen.fit, chosen.spread)
+    left, right = (
+        _rim(one, rated, index, _RINGED_RADIUS_TOLERANCE) for index, one in enumerate(given)
+    )
+    jacobian = np.zeros((4, 4))
+    for index, (one, shape) in enumerate(zip(given, rated.shapes, strict=True)):
+        part = slice(2 * index, 2 * index + 2)
+        jacobian[part, part] = one.patch.px_by_point(shape.centre)
+    joint = jacobian @ rated.covariance[:4, :4] @ jacobian.T + np.eye(4) * _FLOOR_PX**2
+    return RimPair(left, right, joint)
+
+
+def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float) -> Rim:
+    """What a fit says about the rim in one image, in raw pixels; ``index`` of its view."""
+    shape, part = rated.shapes[index], slice(2 * index, 2 * index + 2)
+    _refuse_no_rim(given, rated, shape, size_tolerance)
+    jacobian = given.patch.px_by_point(shape.centre)
+    point_px = given.patch.to_px(shape.centre[None])[0]
+    covariance_px2 = jacobian @ rated.covariance[part, part] @ jacobian.T
+    return Rim(
+        point_px=point_px,
+        covariance_px2=covariance_px2 + np.eye(2) * _FLOOR_PX**2,
+        ellipse=ellipse_of_circle(point_px, jacobian * shape.radius),
+        size_ratio=shape.radius / given.roi.nominal_radius,
+        blur_px=shape.blur_px,
+    )
+
+
+def _refuse_no_rim(
+    given: RimFitInput, rated: RatedFit, shape: RimShape, size_tolerance: float
+) -> None:
+    """Raise ``HoleMissing`` when a fit is no measurement of the rim."""
+    moved_px = float(np.linalg.norm(shape.centre - given.centre)) / given.patch.unit_px
+    off_size = abs(shape.radius / given.roi.nominal_radius - 1.0)
+    if not rated.fit.converged:
+        raise given.roi.refusal("fit of the rim did not settle")
+    if abs(rated.contrast_grey) < _MIN_CONTRAST_GREY:
+        raise given.roi.refusal("too little contrast at the rim")
+    if moved_px > _MAX_MOVE_PX or off_size > size_tolerance:
+        raise given.roi.refusal("fitted rim does not have the nominal size and place")
