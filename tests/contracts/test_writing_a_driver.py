@@ -10,12 +10,9 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.guides.package import ROOT, install, run, write_files
+
 GUIDE = ROOT / "docs" / "writing-a-driver.md"
-FILE = re.compile(
-    r"^`(?P<path>[\w/]+\.\w+)`\n```(?:python|toml|markdown)\n(?P<code>.*?)^```$",
-    re.MULTILINE | re.DOTALL,
-)
 FOLDER = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
 
 
@@ -23,10 +20,7 @@ FOLDER = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py",
 def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """All files of the guide in a folder of their own, outside this repository."""
     folder = tmp_path_factory.mktemp("cellctl-acme")
-    for match in FILE.finditer(GUIDE.read_text(encoding="utf-8")):
-        path = folder / match["path"]
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(match["code"], encoding="utf-8")
+    write_files(GUIDE, folder)
     return folder
 
 
@@ -34,26 +28,8 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def installed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the package of the guide is installed, not in this environment."""
     site = tmp_path_factory.mktemp("site")
-    offline = ["--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
-    done = run("pip", "install", "--quiet", *offline, "--target", str(site), str(written))
-    assert done.returncode == 0, done.stdout + done.stderr
+    install(written, site)
     return site
-
-
-def run(*arguments: str, path: tuple[Path, ...] = ()) -> "subprocess.CompletedProcess[str]":
-    environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join(str(entry) for entry in path),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
-    return subprocess.run(
-        [sys.executable, "-m", *arguments],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-    )
 
 
 def test_the_folder_is_complete(written: Path) -> None:

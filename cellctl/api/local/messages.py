@@ -12,7 +12,8 @@ REQUEST_LIMIT = 4096
 ANSWER_LIMIT = 1 << 20
 M = TypeVar("M")
 C = TypeVar("C", bound=BaseModel)
-FaultNumber = Annotated[int, Field(ge=1, le=999)]
+FaultNumber = Annotated[int, Field(ge=1, le=9999)]
+"""Below 1000: of cellctl; from 1000 on: of processes and drivers of other packages."""
 ProcedureNumber = Annotated[int, Field(ge=1, le=65535)]
 """As in the line's register."""
 Serial = Annotated[str, Field(max_length=24)]

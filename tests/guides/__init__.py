@@ -1,0 +1,1 @@
+"""Guides whose files are written out and tried, as a reader would."""
