@@ -219,16 +219,17 @@ class Controller:
     def _advance_stream(self, time_s: float) -> Outbox:
         """The tick of a stream that has become due."""
         motion = self._motion
-        if motion is None or motion.stream is None or not motion.streaming:
+        if motion is None or motion.stream is None:
             return []
         try:
-            if not motion.stream.tick(time_s) or self.faults.active("ticks_silent"):
+            advance = motion.stream.tick if motion.streaming else motion.stream.coast
+            if not advance(time_s) or self.faults.active("ticks_silent"):
                 return []
         except RefusedMotionError as refusal:
             self._hold(motion, refusal.reason)
             return []
         robot_ms = 1000 * (time_s - self.booted_s)
-        return [("CMD", motion.stream.record(time_s, robot_ms))]
+        return [("CMD", motion.stream.record(robot_ms))]
 
     def _check_ready(self) -> None:
         refusals = {

@@ -58,6 +58,7 @@ class Stream:
         self._arm = arm
         self._limits = limits
         self._period_s = offer.period_ms / 1000
+        self._tick_s = time_s
         self._due_s = time_s + self._period_s
         self._start = self._command = self._setpoint = arm.encoder_matrix(time_s)
         """base_T_flange at the beginning, where the arm was sent last, and where it is to go."""
@@ -86,26 +87,34 @@ class Stream:
 
     def tick(self, time_s: float) -> bool:
         """True when a tick was due and has been carried out; raises ``RefusedMotionError``."""
-        if time_s < self._due_s:
+        if not self.coast(time_s):
             return False
-        # Ticks keep their time on average. A computer that was late by more than half a period lets
-        # them slip: a real controller is never late for its own ticks, nor hurries afterwards.
-        slipped = time_s - self._due_s > self._period_s / 2
-        self._due_s = (time_s if slipped else self._due_s) + self._period_s
-        self._tick += 1
         self._silent_ticks = 0 if self._fresh else self._silent_ticks + 1
         self._lost += self._tick > 1 and not self._fresh
         self._fresh = False
         if self._silent_ticks * self._period_s * 1000 > self._limits.loss_ms:
             raise RefusedMotionError("STALE")
         self._command = self._stepped()
-        self._arm.follow(time_s, self._command, self._period_s)
+        self._arm.follow(self._tick_s, self._command, self._period_s)
         return True
 
-    def record(self, time_s: float, robot_ms: float) -> list[str]:
-        """TICK."""
+    def coast(self, time_s: float) -> bool:
+        """The same, for an arm that is coming to a stop and takes no setpoint any more."""
+        if time_s < self._due_s:
+            return False
+        # The arm is told the time at which the tick was due, so that its steps join without a gap
+        # and are never run faster. A computer that was late by more than half a period lets the
+        # ticks slip: a real controller is never late for its own ticks, nor hurries afterwards.
+        slipped = time_s - self._due_s > self._period_s / 2
+        self._tick_s = time_s if slipped else self._due_s
+        self._due_s = self._tick_s + self._period_s
+        self._tick += 1
+        return True
+
+    def record(self, robot_ms: float) -> list[str]:
+        """TICK, with the encoders' pose of that time."""
         counts = (self._tick, round(robot_ms), self._set_number, self._late, self._lost)
-        pose = pose_fields(self._arm.encoder_matrix(time_s))
+        pose = pose_fields(self._arm.encoder_matrix(self._tick_s))
         return ["TICK", *(str(count) for count in counts), *pose]
 
     def _stepped(self) -> Array:

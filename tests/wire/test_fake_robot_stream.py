@@ -195,7 +195,8 @@ def test_a_stop_ends_the_stream_after_the_dead_time_of_the_controller(channel: s
         stream.run()
     before_mm, before_s = stream.height_mm(), stream.bench.time_s
     stream.bench.abort(channel)  # type: ignore[arg-type]
-    stream.bench.run(0.1)
+    braking = stream.run(12)
+    assert len(braking) == 12  # the ticks go on until the arm stands
     stream.bench.abort(channel)  # type: ignore[arg-type]  # a repeated request puts nothing off
     assert stream.end() == ["ABRT", "2", "STOP"]
     settings = stream.controller.arm.settings
