@@ -228,5 +228,5 @@ class HeadPoseChanged(CalibrationError):
 
     number = 637
     text = "A head measures from another pose than it was calibrated at"
-    cause = "measuring_joints_deg of the cell file was taught anew after procedures 104 and 105."
+    cause = "The measuring pose in the cell file was taught anew after procedures 104 and 105."
     remedy = "Restore the joints in the detail, or run procedures 104 and 105."

@@ -81,7 +81,7 @@ class GuardRefused(ForceError):
 
     number = 511
     text = "Force guard refused a request"
-    cause = "No fresh samples, no compensation, a latched trip, or limits out of range."
+    cause = "No fresh samples, no gravity compensation, a latched trip, or limits out of range."
     remedy = "See the guard's reason in the detail; then Clear and Reset."
 
 

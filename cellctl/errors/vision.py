@@ -6,7 +6,7 @@ VisionError
 ├── CamerasSwapped, CameraUpsideDown                                 415 416      the pair
 ├── HoleMissing, HoleAmbiguous, TooFewHoles                          421–423      features
 ├── ResidualsTooLarge, UncertaintyTooLarge                           431 432      the pose
-└── NoProgress, CorrectionDiverging, CorrectionImplausible,          441–444      compensation
+└── NoProgress, CorrectionDiverging, CorrectionImplausible,          441–444      pose correction
     CorrectionLimitReached
 """
 

@@ -113,7 +113,7 @@ INPUT: tuple[Item, ...] = (
     Item(67, "test_u32", "always 0x12345678", Kind.U32, length=2),
     Item(69, "test_f32", "always 123.456", Kind.F32, length=2),
     _text(71, "test_text", 6, "always ABCDEF"),
-    Item(74, "iteration", "of the measure-compensate loop, from 1; 0 outside it"),
+    Item(74, "iteration", "of the measure-correct loop, from 1; 0 outside it"),
     _i32(75, "force_z", "mN", "present force on the deck along its z, gravity removed"),
     _i32(77, "force_limit", "mN", "its limit in the present recipe"),
     Item(79, "run_result", "of run_number: 0 open, else as the results"),

@@ -55,7 +55,7 @@ class Journal:
     workers: VisionWorkers
     curves: list[ForceCurve] = field(default_factory=list)
     iterations: int = 0
-    """Passes of the measure-compensate loop so far."""
+    """Passes of the measure-correct loop so far."""
     _limit_force_n: float | None = None
     """Of the mating that was planned last."""
     _kept: int = 0

@@ -12,7 +12,7 @@ Length = Annotated[float, Field(gt=0, le=5000)]
 
 
 class PoseCorrection(Section):
-    """The measure-compensate loop (paper 2.3)."""
+    """The measure-correct loop (paper 2.3)."""
 
     threshold_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
     threshold_deg: Annotated[float, Field(gt=0, le=1)] = 0.005
