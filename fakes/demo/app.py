@@ -27,11 +27,9 @@ def demo(
     *,
     seed: Annotated[int, typer.Option(help="Another seed is another cell.", min=0)] = 1,
     scenario: Annotated[Path, typer.Option(help="Scenario of the fake cell.")] = Path(
-        "config/fake-cell.toml"
+        "config/deck.scenario.toml"
     ),
-    cell: Annotated[Path, typer.Option(help="The daemon's cell file.")] = Path(
-        "config/cell.fake.toml"
-    ),
+    cell: Annotated[Path, typer.Option(help="The daemon's cell file.")] = Path("config/deck.toml"),
     out: Annotated[Path | None, typer.Option(help="Folder for record, report, logs.")] = None,
     calibrate: Annotated[bool, typer.Option(help="Run all calibrations instead.")] = False,
     stay: Annotated[bool, typer.Option(help="Start and wait for an outside PLC.")] = False,

@@ -20,8 +20,8 @@ from uuid import uuid4
 from fakes.demo.control import Control
 
 ROOT = Path(__file__).parents[2]
-_SCENARIO = ROOT / "config" / "fake-cell.toml"
-_CELL = ROOT / "config" / "cell.fake.toml"
+_SCENARIO = ROOT / "config" / "deck.scenario.toml"
+_CELL = ROOT / "config" / "deck.toml"
 _PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD) = (\d{4})\b")
 _MARK = "CELLCTL_TEST_FAMILY"
 READY_S = 60.0
@@ -80,7 +80,7 @@ class OwnCell:
 
     @property
     def scenario(self) -> Path:
-        return self.folder / "fake-cell.toml"
+        return self.folder / "scenario.toml"
 
     @property
     def cell(self) -> Path:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
-from fakes.scenario import Pins
+from fakes.scenes.deck_on_frame.scenario import Pins
 from fakes.world.payload import STEP_S
 from tests.unit.fakes.world.mujoco_rig import (
     DT_S,
