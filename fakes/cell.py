@@ -17,8 +17,9 @@ from fakes.operator import Operator
 from fakes.priority import stand_apart
 from fakes.render.look import options_of
 from fakes.render.worker import make_pool
-from fakes.scenario import Robot, Scenario, StereoCamera, Tracker
+from fakes.scenario import Scenario
 from fakes.scenes.registry import open_world
+from fakes.sections import Robot, StereoCamera, Tracker
 from fakes.wire.frame_server import FrameServer
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sri_box import SriBox

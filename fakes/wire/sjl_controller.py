@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.scenario import Channel
+from fakes.sections import Channel
 from fakes.wire.sjl_controller_logic import Controller, Outbox
 from fakes.wire.sjl_controller_records import (
     RECORD_MAX,

@@ -10,7 +10,7 @@ import math
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.scenario import Springs
+from fakes.sections import Springs
 from fakes.world.contact import OUT_OF_REACH_M, Touch
 from fakes.world.frames import Array, displacement
 from fakes.world.suspension import Contacts, Suspension

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fakes.scenario import ForceSensor
+from fakes.sections import ForceSensor
 from fakes.world.frames import Array, stream
 from fakes.world.truth import ForceSensorTruth
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import expm
 
-from fakes.scenario import Springs
+from fakes.sections import Springs
 from fakes.world.frames import Array
 
 Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]

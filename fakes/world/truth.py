@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.scenario import (
+from fakes.scenario import Scenario
+from fakes.sections import (
     Camera,
     ForceSensor,
     Optics,
     Robot,
-    Scenario,
     Spread,
     StereoCamera,
     StereoRig,

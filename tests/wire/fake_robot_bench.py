@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.scenario import Channel, Scenario, load
+from fakes.scenario import Scenario, load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller_logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw

@@ -7,7 +7,8 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.scenario import Channel, load
+from fakes.scenario import load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_records import decode, encode
 from fakes.world.robot import RobotArm

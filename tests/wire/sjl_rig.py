@@ -11,7 +11,8 @@ import numpy as np
 
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from fakes.scenario import Channel, load
+from fakes.scenario import load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_stream import StreamOffer
 from fakes.world.robot import RobotArm

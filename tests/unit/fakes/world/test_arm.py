@@ -7,7 +7,7 @@ from fakes.world.arm import OutOfReachError, forward, inverse, nominal_links, si
 from fakes.world.frames import distance, from_written, to_written
 from fakes.world.truth import draw
 
-ROBOTS: tuple[RobotName, ...] = ("main", "aux_1", "aux_2")
+ROBOTS = ("main", "aux_1", "aux_2")
 
 
 @pytest.mark.parametrize("name", ROBOTS)

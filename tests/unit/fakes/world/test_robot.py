@@ -126,7 +126,7 @@ def test_true_pose_does_not_jump_when_a_motion_begins(scenario: DeckScenario) ->
     np.testing.assert_allclose(arm.flange(t).translation, before, atol=1e-9)
 
 
-def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) -> None:
+def test_a_followed_setpoint_is_reached_within_its_period(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     for number in range(1, 51):
         target = shifted(arm, t, -5e-5)
@@ -138,7 +138,7 @@ def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) ->
         assert arm.flange(t).translation[2] < arm.flange(t - 0.004).translation[2], number
 
 
-def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
+def test_a_stream_draws_no_new_error_in_each_tick(scenario: DeckScenario) -> None:
     """The settling error belongs to a motion, and a stream is one: its steps are as even as those
     of a spline."""
     arm, t = at_work(scenario)
@@ -151,20 +151,20 @@ def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
     assert np.std(np.diff(steps)) < 1e-6
 
 
-def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario) -> None:
+def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     arm.follow(t, arm.encoder_matrix(t), 0.008)
     assert not arm.moving(t + 1e-6)
 
 
-def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario) -> None:
+def test_a_setpoint_out_of_reach_is_refused(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError) as refusal:
         arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]).as_matrix(), 0.008)
     assert refusal.value.reason == "REACH"
 
 
-def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
+def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     speed = 5e-5 / 0.008
     arm.follow(t, shifted(arm, t, -5e-5).as_matrix(), 0.008)
@@ -179,7 +179,7 @@ def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scena
     assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), rel=0.01)
 
 
-def test_matrices_of_written_poses_are_those_of_the_poses(scenario: Scenario) -> None:
+def test_matrices_of_written_poses_are_those_of_the_poses(scenario: DeckScenario) -> None:
     rng = np.random.default_rng(3)
     for _ in range(50):
         written = [*rng.uniform(-2000, 2000, 3), *rng.uniform(-180, 180, 3)]

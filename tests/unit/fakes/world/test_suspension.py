@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fakes.scenario import Springs
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.sections import Springs
 from fakes.world.suspension import Contacts, Suspension
 
 STEP_S = 2.5e-4
