@@ -6,25 +6,19 @@ import json
 import signal
 import sys
 import time
-from collections.abc import Awaitable, Callable
-from concurrent.futures import ProcessPoolExecutor
-from functools import partial
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from fakes.control import ControlServer
-from fakes.faults import ROBOT_FAULTS, TRACKER_FAULTS, FaultBoard
+from fakes.devices import DeviceFaults, DeviceRack
+from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.operator import Operator
 from fakes.priority import stand_apart
-from fakes.render.look import options_of
-from fakes.render.worker import make_pool
 from fakes.scenario import Scenario
 from fakes.scenes.registry import open_world
-from fakes.sections import Robot, StereoCamera, Tracker
-from fakes.wire.frame_server import FrameServer
+from fakes.sections import Robot
 from fakes.wire.sjl_controller import SjlController
-from fakes.wire.sri_box import SriBox
-from fakes.wire.target_server import TargetServer
-from fakes.world.targets import SeenTarget
+from fakes.wire.sjl_controller_stream import StreamOffer
 
 _ADVANCE_S = 0.002
 
@@ -38,51 +32,43 @@ class Cell:
 
     def __init__(self, scenario: Scenario, seed: int, ports: dict[str, int] | None = None) -> None:
         """``ports`` override those of the scenario: device, ``robot.CHANNEL`` or ``control``."""
-        self._scenario = scenario
         self._ports = ports or {}
+        self._control_port = self._ports.get("control", scenario.control_port)
         self._started_s = time.monotonic()
         self.world = open_world(scenario, seed)
         self.robots = {
             name: self._controller(name, robot) for name, robot in scenario.robots.items()
         }
-        self.force_sensors = {
-            name: SriBox(partial(self._sample, name)) for name in scenario.force_sensors
-        }
-        self.trackers = {
-            name: self._target_server(name, tracker) for name, tracker in scenario.trackers.items()
-        }
-        self._renderers: ProcessPoolExecutor | None = None
-        self.stereo_cameras = {
-            name: self._frame_server(name, camera)
-            for name, camera in scenario.stereo_cameras.items()
-        }
+        self._rack = DeviceRack(self.world, self._started_s, self._ports)
         self.stopping = asyncio.Event()
-        self.control = ControlServer(Operator(self).handlers())
+        commands = {**self.world.commands(), **self._rack.commands()}
+        self._control = ControlServer(Operator(self, commands).handlers())
 
     def now_s(self) -> float:
         """Time of the world."""
         return time.monotonic() - self._started_s
+
+    def faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
+        """What can be injected faults into, by name; the bodies are called ``world``."""
+        return {
+            **{name: robot.faults for name, robot in self.robots.items()},
+            **{name: device.faults for name, device in self._rack.devices.items()},
+            "world": self.world.faults,
+        }
 
     async def start(self) -> dict[str, int]:
         """Listen everywhere, let the robots look for their PC; returns the ports by name.
 
         Raises ``PortTaken`` for the first device that cannot listen.
         """
-        listening: dict[str, int] = {}
-        for name, box in self.force_sensors.items():
-            port = self._port(name, self._scenario.force_sensors[name].port)
-            listening[name] = await _listen(name, port, box.start_tcp(port=port))
-        for name, server in self.trackers.items():
-            port = self._port(name, self._scenario.trackers[name].port)
-            listening[name] = await _listen(name, port, server.start(port=port))
-        for name, head in self.stereo_cameras.items():
-            port = self._port(name, self._scenario.stereo_cameras[name].port)
-            await _listen(name, port, head.start())
-            listening[name] = head.port
+        listening = {
+            name: await _listen(name, device.port, device.start())
+            for name, device in self._rack.devices.items()
+        }
         for robot in self.robots.values():
             robot.start()
-        port = self._port("control", self._scenario.control_port)
-        listening["control"] = await _listen("control", port, self.control.start(port=port))
+        control = self._control.start(port=self._control_port)
+        listening["control"] = await _listen("control", self._control_port, control)
         return listening
 
     async def run(self) -> None:
@@ -96,60 +82,25 @@ class Cell:
         self.stopping.set()
         # Robots first: they alone connect by themselves, and would look for their PC again.
         await asyncio.gather(*(robot.stop() for robot in self.robots.values()))
-        await asyncio.gather(*(head.stop() for head in self.stereo_cameras.values()))
-        await asyncio.gather(*(tracker.stop() for tracker in self.trackers.values()))
-        await asyncio.gather(*(box.stop() for box in self.force_sensors.values()))
-        await self.control.stop()
-        if self._renderers is not None:
-            self._renderers.shutdown(cancel_futures=True)
+        await asyncio.gather(*(device.stop() for device in self._rack.devices.values()))
+        await self._control.stop()
+        self._rack.shut_down()
 
     def _controller(self, name: str, robot: Robot) -> SjlController:
         ports = {
-            channel: self._port(f"{name}.{channel}", port) for channel, port in robot.ports.items()
+            channel: self._ports.get(f"{name}.{channel}", port)
+            for channel, port in robot.ports.items()
         }
-        faults = FaultBoard(name, ROBOT_FAULTS)
-        return SjlController(self.world.arms[name], self.now_s, ports, faults=faults)
-
-    def _target_server(self, name: str, tracker: Tracker) -> TargetServer:
-        return TargetServer(
-            partial(self._measure_targets, name),
-            serial=tracker.serial,
-            faults=FaultBoard(name, TRACKER_FAULTS),
+        return SjlController(
+            self.world.arms[name],
+            self.now_s,
+            ports,
+            faults=FaultBoard(name, ROBOT_FAULTS),
+            offer=StreamOffer() if robot.streams else None,
         )
 
-    def _frame_server(self, name: str, camera: StereoCamera) -> FrameServer:
-        rendering = self._scenario.rendering
-        assert rendering is not None  # the scenario's model demands it where there is a camera
-        return FrameServer(
-            "127.0.0.1",
-            self._port(name, camera.port),
-            partial(self.world.camera_scene, name),
-            self._pool(),
-            options=options_of(rendering),
-            identity=f"fake-head;{camera.serial};1.0",
-            exposure_us=self._scenario.optics[camera.optics].exposure_us,
-        )
 
-    def _pool(self) -> ProcessPoolExecutor:
-        """One renderer for all cameras; a cell without cameras does without."""
-        if self._renderers is None:
-            self._renderers = make_pool()
-        return self._renderers
-
-    def _port(self, name: str, default: int) -> int:
-        return self._ports.get(name, default)
-
-    def _sample(self, sensor: str, monotonic_s: float) -> list[float]:
-        time_s = monotonic_s - self._started_s
-        reading: list[float] = self.world.sensor_wrench(sensor, time_s).tolist()
-        return reading
-
-    async def _measure_targets(self, tracker: str, frames: int) -> tuple[SeenTarget, ...]:
-        await asyncio.sleep(frames * self._scenario.trackers[tracker].frame_time_ms / 1000)
-        return self.world.targets(tracker, frames)
-
-
-async def _listen(name: str, port: int, starting: Awaitable[Any]) -> Any:
+async def _listen(name: str, port: int, starting: Awaitable[int]) -> int:
     """Wait until a device listens; an occupied port becomes a sentence."""
     try:
         return await starting

@@ -1,9 +1,10 @@
 """The operator of the fake cell: what the control port can ask for."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from fakes.control import Handler
+from fakes.devices import DeviceFaults
 from fakes.faults import FaultBoard
 from fakes.world.world import Command
 
@@ -11,27 +12,17 @@ if TYPE_CHECKING:
     from fakes.cell import Cell
 
 
-class DeviceFaults(Protocol):
-    """The faults of a device that keeps them itself."""
-
-    def inject(self, name: str, *arguments: Any, **parameters: Any) -> None:
-        """Switch a fault on; ``ValueError`` for a name that does not exist."""
-
-    def clear(self) -> None:
-        """Switch all faults off."""
-
-
 class Operator:
-    """Handlers of the control port: those that every cell has, and those of its scene."""
+    """Handlers of the control port: those that every cell has, those of its scene and devices."""
 
-    def __init__(self, cell: "Cell") -> None:
+    def __init__(self, cell: "Cell", commands: Mapping[str, Command]) -> None:
         self._cell = cell
+        self._commands = commands
 
     def handlers(self) -> dict[str, Handler]:
         """Commands by name."""
-        scene = self._cell.world.commands()
         return {
-            **{name: _handler(command) for name, command in scene.items()},
+            **{name: _handler(command) for name, command in self._commands.items()},
             "status": self.status,
             "truth": self.truth,
             "inject": self.inject,
@@ -75,7 +66,7 @@ class Operator:
         """Faults that can be injected, with their meaning, and those that are."""
         boards = {
             device: faults
-            for device, faults in self._all_faults().items()
+            for device, faults in self._cell.faults().items()
             if isinstance(faults, FaultBoard)
         }
         return {
@@ -89,25 +80,14 @@ class Operator:
         return {}
 
     def _faults_of(self, device: str) -> FaultBoard | DeviceFaults:
-        known = self._all_faults()
+        known = self._cell.faults()
         if device not in known:
             raise ValueError(f"unknown device {device!r}; known: {sorted(known)}")
         return known[device]
 
-    def _all_faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
-        cell = self._cell
-        kinds: tuple[Mapping[str, Any], ...] = (
-            cell.robots,
-            cell.trackers,
-            cell.force_sensors,
-            cell.stereo_cameras,
-        )
-        devices = {name: device.faults for kind in kinds for name, device in kind.items()}
-        return {"world": cell.world.faults, **devices}
-
 
 def _handler(command: Command) -> Handler:
-    """A command of the scene as the control port calls it."""
+    """A command of the hands as the control port calls it."""
 
     async def handle(**members: Any) -> dict[str, Any]:
         return dict(command(**members) or {})

@@ -5,7 +5,7 @@ The key ``scene`` names what stands in the cell; that scene brings a model with 
 """
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Self
 
@@ -14,18 +14,22 @@ from pydantic import Field, model_validator
 from fakes.sections import (
     Camera,
     DeviceName,
+    DigitalIo,
     ForceSensor,
+    Gripper,
     Optics,
     Pose,
     Rendering,
     Robot,
     Section,
+    SingleCamera,
     StereoCamera,
     Tracker,
 )
 
 RESERVED = ("control", "world")
 """Names on the control port and on the command line that no device may have."""
+_Listening = StereoCamera | SingleCamera | Tracker | ForceSensor | Gripper | DigitalIo
 
 
 class Scenario(Section):
@@ -37,9 +41,11 @@ class Scenario(Section):
     control_port: int
     robots: dict[DeviceName, Robot] = Field(default_factory=dict)
     stereo_cameras: dict[DeviceName, StereoCamera] = Field(default_factory=dict)
-    cameras: dict[DeviceName, Camera] = Field(default_factory=dict)
+    cameras: dict[DeviceName, SingleCamera] = Field(default_factory=dict)
     trackers: dict[DeviceName, Tracker] = Field(default_factory=dict)
     force_sensors: dict[DeviceName, ForceSensor] = Field(default_factory=dict)
+    grippers: dict[DeviceName, Gripper] = Field(default_factory=dict)
+    digital_ios: dict[DeviceName, DigitalIo] = Field(default_factory=dict)
     optics: dict[str, Optics] = Field(default_factory=dict)
     rendering: Rendering | None = None
     """Needed as soon as there is a camera."""
@@ -57,13 +63,12 @@ class Scenario(Section):
 
     def device_names(self) -> list[str]:
         """Every device, kind by kind."""
-        return [*self.robots, *self.all_cameras(), *self.trackers, *self.force_sensors]
+        return [*self.robots, *(name for kind in self._listening() for name in kind)]
 
     def ports(self) -> dict[str, int]:
         """Every port of the cell, by device, ``robot.CHANNEL`` or ``control``."""
-        listening = (self.force_sensors, self.trackers, self.all_cameras())
         return {
-            **{name: device.port for kind in listening for name, device in kind.items()},
+            **{name: device.port for kind in self._listening() for name, device in kind.items()},
             **{
                 f"{name}.{channel}": port
                 for name, robot in self.robots.items()
@@ -75,6 +80,17 @@ class Scenario(Section):
     def nominal_poses(self) -> dict[str, Any]:
         """Poses of the scene's bodies that an integrator writes into the cell file; JSON values."""
         return {}
+
+    def _listening(self) -> tuple[Mapping[str, _Listening], ...]:
+        """Devices that listen on a port of their own; controllers of robots connect instead."""
+        return (
+            self.stereo_cameras,
+            self.cameras,
+            self.trackers,
+            self.force_sensors,
+            self.grippers,
+            self.digital_ios,
+        )
 
     @model_validator(mode="after")
     def _names_fit(self) -> Self:

@@ -74,6 +74,8 @@ class Robot(Section):
     speed_max_mm_s: float
     step_max_mm: float
     deadman_ms: int
+    streams: bool = False
+    """Whether its job program offers streamed motion."""
     home_deg: Six
     """Joint angles at switch-on."""
 
@@ -163,6 +165,36 @@ class Camera(Section):
 
 class StereoCamera(Camera):
     """A stereo head; its frame is that of its left camera."""
+
+
+class SingleCamera(Camera):
+    """A camera with one lens."""
+
+    colour: bool = False
+    """Three channels (RGB8) in place of grey levels."""
+
+
+class Gripper(Section):
+    """A pneumatic gripper whose valve and sensors are wired to a Modbus coupler of its own."""
+
+    port: int
+    travel_ms: float
+    """From one end position to the other."""
+    part_present: bool
+    """Whether there is a part between the jaws at switch-on."""
+    watchdog_ms: int
+
+
+class DigitalIo(Section):
+    """A Modbus coupler with digital inputs and outputs, by their addresses."""
+
+    port: int
+    inputs_on: tuple[int, ...] = ()
+    """Inputs that are on at switch-on."""
+    inputs_off: tuple[int, ...] = ()
+    """Inputs that are off at switch-on."""
+    outputs: tuple[int, ...] = ()
+    watchdog_ms: int
 
 
 class Tracker(Section):

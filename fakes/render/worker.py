@@ -24,9 +24,11 @@ from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pictures
 from fakes.render.sensor import exposed
-from fakes.world.scene import CameraScene
+from fakes.world.scene import CameraScene, MonoTruth
 
 _KEPT_SCENES: Final = 3
+_CHANNEL_GAINS: Final = (np.float32(1.0), np.float32(0.94), np.float32(0.86))
+"""Red, green, blue: bare metal under a warm white lamp, which is all there is to see."""
 _kept: "OrderedDict[Any, tuple[Image, ...]]" = OrderedDict()
 
 
@@ -37,7 +39,8 @@ class Frame:
     width: int
     height: int
     payload: bytes
-    """Rows from the top; of a stereo head the left image, then the right one."""
+    """Rows from the top; of a stereo head the left image, then the right one. Of a colour camera
+    red, green and blue of each pixel."""
     crc: int
 
 
@@ -61,7 +64,12 @@ def render_frame(
     for name in _in_order(PICTURE_FAULTS, faults):
         pictures = PICTURE_FAULTS[name](pictures)
     rng = np.random.default_rng(scene.noise_seed)
-    payload = b"".join(exposed(picture, options, rng).tobytes() for picture in pictures)
+    if isinstance(scene.optics, MonoTruth) and scene.optics.colour:
+        (picture,) = pictures
+        channels = [exposed(gain * picture, options, rng) for gain in _CHANNEL_GAINS]
+        payload = np.stack(channels, axis=2).tobytes()
+    else:
+        payload = b"".join(exposed(picture, options, rng).tobytes() for picture in pictures)
     height, width = pictures[0].shape
     return Frame(width, height, payload, zlib.crc32(payload))
 

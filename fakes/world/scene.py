@@ -51,6 +51,7 @@ class MonoTruth:
     image_size_px: tuple[int, int]
     """Width, height."""
     lens: LensTruth
+    colour: bool
 
 
 @dataclass(frozen=True, slots=True)

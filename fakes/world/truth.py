@@ -15,6 +15,7 @@ from fakes.sections import (
     ForceSensor,
     Optics,
     Robot,
+    SingleCamera,
     Spread,
     StereoCamera,
     StereoRig,
@@ -141,7 +142,8 @@ def _camera(scenario: Scenario, camera: Camera, seed: int, name: str) -> CameraT
     if rig is not None:
         drawn = _stereo(optics, rig, rng)
     else:
-        drawn = MonoTruth(optics.image_px, _lens(optics, rng))
+        colour = isinstance(camera, SingleCamera) and camera.colour
+        drawn = MonoTruth(optics.image_px, _lens(optics, rng), colour)
     return CameraTruth(mount_T_camera, drawn, stream_seed(seed, "light", name))
 
 
