@@ -19,6 +19,7 @@ from fakes.scenes.registry import open_world
 from fakes.sections import Robot
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_stream import StreamOffer
+from fakes.world.world import Command
 
 _ADVANCE_S = 0.002
 
@@ -41,12 +42,15 @@ class Cell:
         }
         self._rack = DeviceRack(self.world, self._started_s, self._ports)
         self.stopping = asyncio.Event()
-        commands = {**self.world.commands(), **self._rack.commands()}
-        self._control = ControlServer(Operator(self, commands).handlers())
+        self._control = ControlServer(Operator(self, self.commands()).handlers())
 
     def now_s(self) -> float:
         """Time of the world."""
         return time.monotonic() - self._started_s
+
+    def commands(self) -> Mapping[str, Command]:
+        """What the hands of an operator can do in this cell, by name."""
+        return {**self.world.commands(), **self._rack.commands()}
 
     def faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
         """What can be injected faults into, by name; the bodies are called ``world``."""
