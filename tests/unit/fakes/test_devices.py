@@ -30,13 +30,13 @@ async def running(scenario: PlateScenario) -> AsyncIterator[tuple[Cell, dict[str
         await cell.stop()
 
 
-async def test_every_device_listens():
+async def test_every_device_listens() -> None:
     async with running(SCENARIO) as (_, ports):
         assert set(ports) == {"jaws", "lamps", "control"}
         assert all(ports.values())
 
 
-async def test_hands_switch_inputs_and_bring_parts():
+async def test_hands_switch_inputs_and_bring_parts() -> None:
     async with running(SCENARIO) as (cell, _):
         handlers = Operator(cell, cell.commands()).handlers()
         assert await handlers["outputs"](device="lamps") == {"outputs": {0: False, 1: False}}
@@ -50,7 +50,7 @@ async def test_hands_switch_inputs_and_bring_parts():
         await handlers["clear"](device="jaws")
 
 
-async def test_a_taken_port_names_its_device():
+async def test_a_taken_port_names_its_device() -> None:
     async with running(SCENARIO) as (_, ports):
         jaws = SCENARIO.grippers["jaws"].model_copy(update={"port": ports["jaws"]})
         second = SCENARIO.model_copy(update={"grippers": {"jaws": jaws}})

@@ -20,18 +20,18 @@ def small() -> dict[str, Any]:
     return load(CONFIG / "small.scenario.toml").model_dump(exclude_none=True)
 
 
-def test_the_scene_brings_the_model():
+def test_the_scene_brings_the_model() -> None:
     assert isinstance(load(CONFIG / "deck.scenario.toml"), DeckScenario)
     assert isinstance(load(CONFIG / "small.scenario.toml"), PlateScenario)
 
 
-def test_all_devices_are_optional():
+def test_all_devices_are_optional() -> None:
     empty = PlateScenario(scene="plate", hardware_seed=1, control_port=0)
     assert empty.device_names() == []
     assert empty.ports() == {"control": 0}
 
 
-def test_every_port_has_a_name(small: dict[str, Any]):
+def test_every_port_has_a_name(small: dict[str, Any]) -> None:
     ports = PlateScenario.model_validate(small).ports()
     assert ports["arm.GRD"] == 7203
     assert (ports["camera"], ports["force"], ports["control"]) == (7211, 4208, 7920)
@@ -48,13 +48,13 @@ def test_every_port_has_a_name(small: dict[str, Any]):
 )
 def test_what_is_named_must_be_there(
     small: dict[str, Any], section: str, name: str, key: str, value: str, said: str
-):
+) -> None:
     small[section][name][key] = value
     with pytest.raises(ValidationError, match=said):
         PlateScenario.model_validate(small)
 
 
-def test_a_fixed_camera_has_its_pose_in_the_cell(small: dict[str, Any]):
+def test_a_fixed_camera_has_its_pose_in_the_cell(small: dict[str, Any]) -> None:
     camera = small["cameras"]["camera"]
     del camera["carried_by"]
     with pytest.raises(ValidationError, match="flange_T_camera_mm_deg"):
@@ -64,13 +64,13 @@ def test_a_fixed_camera_has_its_pose_in_the_cell(small: dict[str, Any]):
 
 
 @pytest.mark.parametrize(("name", "said"), [("arm", "two devices"), ("world", "may be called")])
-def test_names_tell_devices_apart(small: dict[str, Any], name: str, said: str):
+def test_names_tell_devices_apart(small: dict[str, Any], name: str, said: str) -> None:
     small["cameras"][name] = small["cameras"].pop("camera")
     with pytest.raises(ValidationError, match=said):
         PlateScenario.model_validate(small)
 
 
-def test_a_stereo_head_needs_a_stereo_rig(small: dict[str, Any]):
+def test_a_stereo_head_needs_a_stereo_rig(small: dict[str, Any]) -> None:
     head = small["cameras"].pop("camera")
     del head["colour"]
     small["stereo_cameras"] = {"head": head}
@@ -78,13 +78,13 @@ def test_a_stereo_head_needs_a_stereo_rig(small: dict[str, Any]):
         PlateScenario.model_validate(small)
 
 
-def test_cameras_need_an_appearance(small: dict[str, Any]):
+def test_cameras_need_an_appearance(small: dict[str, Any]) -> None:
     del small["rendering"]
     with pytest.raises(ValidationError, match=r"\[rendering\]"):
         PlateScenario.model_validate(small)
 
 
-def test_what_is_no_world_is_no_scene(monkeypatch: pytest.MonkeyPatch):
+def test_what_is_no_world_is_no_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     def points(**_: str) -> list[EntryPoint]:
         return [EntryPoint("moon", "fakes.scenario:Scenario", registry.GROUP)]
 

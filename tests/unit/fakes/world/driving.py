@@ -64,4 +64,5 @@ def hovering(world: DeckOnFrame, gap_m: float = 2e-3) -> DeckOnFrame:
 
 def mean_reading(world: DeckOnFrame, samples: int = 500) -> np.ndarray:
     start = world.time_s
-    return np.mean([world.sensor_wrench("force", start + 1e-3 * k) for k in range(samples)], axis=0)
+    readings = [world.sensor_wrench("force", start + 1e-3 * k) for k in range(samples)]
+    return np.asarray(np.mean(readings, axis=0))

@@ -35,7 +35,9 @@ def at(world: PlateScene, pose: str) -> PlateScene:
     return world
 
 
-def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(scenario: PlateScenario):
+def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(
+    scenario: PlateScenario,
+) -> None:
     cell = tomllib.loads((CONFIG / "small.toml").read_text())
     for pose in ("look", "weigh"):
         arm = at(PlateScene(scenario, 1), pose).arms["arm"]
@@ -43,7 +45,7 @@ def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(scenario: P
         np.testing.assert_allclose(np.rad2deg(arm.joints(100.0)), taught, atol=1e-5)
 
 
-def test_the_camera_sees_the_holes_where_they_are(scenario: PlateScenario):
+def test_the_camera_sees_the_holes_where_they_are(scenario: PlateScenario) -> None:
     world = at(PlateScene(scenario, 2), "look")
     scene = world.camera_scene("camera")
     (plate,) = scene.bodies
@@ -61,7 +63,7 @@ def test_the_camera_sees_the_holes_where_they_are(scenario: PlateScenario):
         assert image[y, x + 40] > 100
 
 
-def test_truth_and_picture_agree_on_the_holes(scenario: PlateScenario):
+def test_truth_and_picture_agree_on_the_holes(scenario: PlateScenario) -> None:
     world = at(PlateScene(scenario, 3), "look")
     (plate,) = world.camera_scene("camera").bodies
     assert isinstance(plate, ScenePlate)
@@ -73,7 +75,7 @@ def test_truth_and_picture_agree_on_the_holes(scenario: PlateScenario):
         np.testing.assert_allclose(cell_T_camera.apply(place) * 1000, expected, atol=1e-6)
 
 
-def test_a_colour_camera_has_three_channels(scenario: PlateScenario):
+def test_a_colour_camera_has_three_channels(scenario: PlateScenario) -> None:
     camera = scenario.cameras["camera"].model_copy(update={"colour": True})
     optics = scenario.optics["small"].model_copy(
         update={"image_px": (80, 60), "centre_px": (40.0, 30.0)}
@@ -89,7 +91,7 @@ def test_a_colour_camera_has_three_channels(scenario: PlateScenario):
     assert red > green > blue > 100
 
 
-def test_the_sensor_feels_the_weight_of_its_payload(scenario: PlateScenario):
+def test_the_sensor_feels_the_weight_of_its_payload(scenario: PlateScenario) -> None:
     world = at(PlateScene(scenario, 1), "look")
     weight_n = 9.80665 * scenario.payloads["force"].mass_kg
     load = np.array(world.report()["load_n_nm"]["force"])
@@ -100,14 +102,14 @@ def test_the_sensor_feels_the_weight_of_its_payload(scenario: PlateScenario):
     assert np.linalg.norm(reading[:3]) == pytest.approx(weight_n, rel=0.03)
 
 
-def test_a_sensor_without_a_payload_carries_nothing(scenario: PlateScenario):
+def test_a_sensor_without_a_payload_carries_nothing(scenario: PlateScenario) -> None:
     world = PlateScene(scenario.model_copy(update={"payloads": {}}), 1)
     world.advance(1.0)
     reading = world.sensor_wrench("force", 1.0) - world.truth.force_sensors["force"].offset
     assert np.linalg.norm(reading[:3]) < 2.0
 
 
-def test_every_load_lies_elsewhere_within_its_spread(scenario: PlateScenario):
+def test_every_load_lies_elsewhere_within_its_spread(scenario: PlateScenario) -> None:
     world = PlateScene(scenario, 1)
     nominal = np.array(scenario.plates["plate"].cell_T_plate_mm_deg[:3])
     places = []
@@ -119,7 +121,7 @@ def test_every_load_lies_elsewhere_within_its_spread(scenario: PlateScenario):
     assert world.report()["load"] == 21
 
 
-def test_a_board_is_seen_too(scenario: PlateScenario):
+def test_a_board_is_seen_too(scenario: PlateScenario) -> None:
     board = PrintedBoard(
         inner_corners=(9, 6),
         square_mm=10.0,
@@ -133,7 +135,7 @@ def test_a_board_is_seen_too(scenario: PlateScenario):
     assert seen.camera_T_board.translation[2] == pytest.approx(0.5, abs=0.01)
 
 
-def test_a_payload_hangs_behind_a_sensor_that_there_is(scenario: PlateScenario):
+def test_a_payload_hangs_behind_a_sensor_that_there_is(scenario: PlateScenario) -> None:
     values = scenario.model_dump(exclude_none=True)
     values["payloads"]["scales"] = values["payloads"]["force"]
     with pytest.raises(ValueError, match="no force sensors scales"):
