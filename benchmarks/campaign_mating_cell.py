@@ -13,14 +13,14 @@ from cellctl.force.gravity.payload import fit_affine24
 from cellctl.force.gravity.poses import plan_identification
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from fakes import scenario as scenarios
-from fakes.faults import FaultBoard
+from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.scenes.deck_on_frame.scenario import DeckScenario, Pins
+from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.wire.sjl_controller_logic import Controller
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
-from fakes.world.world import World
 
-SCENARIO = Path(__file__).parent.parent / "config" / "fake-cell.toml"
+SCENARIO = Path(__file__).parent.parent / "config" / "deck.scenario.toml"
 TICK_S = 1e-3
 THRESHOLD = np.repeat([5e-5, np.deg2rad(0.005)], 3)
 """What the measure-compensate loop may leave, each axis; the draw is uniform within."""
@@ -61,25 +61,26 @@ class MatingCell:
         *,
         stiffness_n_m: float,
         stop_latency_s: float,
-        pins: scenarios.Pins | None = None,
+        pins: Pins | None = None,
         left: Array | None = None,
     ) -> None:
         """``left``: what the loop before leaves (m, rad), shape (6,); drawn when None."""
         self.rng = np.random.default_rng([seed, 77])
         self._left = left
-        self.world = World(_scenario(stiffness_n_m, stop_latency_s, pins), seed)
-        self.faults = FaultBoard("main")
+        self.world = DeckOnFrame(_scenario(stiffness_n_m, stop_latency_s, pins), seed)
+        self.faults = FaultBoard("main", ROBOT_FAULTS)
         self.arm = self.world.arms["main"]
         self.start_s = self._approach_stand_off()
         self.controller = Controller(self.arm, self.faults)
         self.robot = WorldRobot(self.controller, self.start_s)
         self.sensor_fault = SensorFault()
-        self.flange_T_sensor = from_written(self.world.scenario.force_sensor.flange_T_sensor_mm_deg)
+        sensor = self.world.scenario.force_sensors["force"]
+        self.flange_T_sensor = from_written(sensor.flange_T_sensor_mm_deg)
         self.guard = WorldGuard(self._identify(), self.flange_T_sensor, self._guard_stop)
         self._stops = 0
         self._ticks = round(self.start_s / TICK_S)
         self.robot.tick(self.start_s, guard_beats=True)
-        raw = self.world.sensor_wrench(self.start_s)
+        raw = self.world.sensor_wrench("force", self.start_s)
         self.guard.tick(self.start_s, raw, self.robot.reported)
 
     # -- time -----------------------------------------------------------------------------------
@@ -88,7 +89,7 @@ class MatingCell:
         while (self._ticks + 1) * TICK_S <= to_s:
             self._ticks += 1
             time_s = self._ticks * TICK_S
-            raw = self.sensor_fault.spoil(time_s, self.world.sensor_wrench(time_s))
+            raw = self.sensor_fault.spoil(time_s, self.world.sensor_wrench("force", time_s))
             saturated = self.sensor_fault.saturated(time_s)
             self.guard.tick(time_s, raw, self.robot.reported, saturated=saturated)
             beats = self.guard.beats(time_s, latched=self.controller.latched)
@@ -101,7 +102,7 @@ class MatingCell:
     # -- the steps before mating ------------------------------------------------------------------
     def true_pose(self) -> RigidTransform:
         """Truth: M_T_D."""
-        parts, deck = self.world.placed.parts, self.world.snapshot().cell_T_deck
+        parts, deck = self.world.placed.parts, self.world.cell_T_deck()
         assert parts is not None
         assert deck is not None
         return parts.cell_T_frame.inv() * deck
@@ -113,7 +114,7 @@ class MatingCell:
 
     def calibrated_deck(self) -> RigidTransform:
         """As the deck-flange calibration gives it: what encoders and truth say together."""
-        deck = self.world.snapshot().cell_T_deck
+        deck = self.world.cell_T_deck()
         assert deck is not None
         encoder = self.arm.encoder_pose(self.world.time_s)
         error = _displacement(self.rng.normal(0.0, np.repeat([2e-5, np.deg2rad(0.003)], 3)))
@@ -135,7 +136,7 @@ class MatingCell:
         left = _displacement(drawn if self._left is None else self._left)
         wanted = parts.cell_T_frame * pose_from_xyzabc([0, 0, 25, 0, 0, 0]) * left
         for _ in range(4):
-            deck = world.snapshot().cell_T_deck
+            deck = world.cell_T_deck()
             assert deck is not None
             correction = wanted * deck.inv()
             arm.start_linear(world.time_s, correction * arm.encoder_pose(world.time_s), 0.25, 1.0)
@@ -148,7 +149,7 @@ class MatingCell:
 
     def _identify(self) -> GravityCompensation:
         """The compensation as the payload procedure finds it: 17 poses, real sensor."""
-        scenario, sensor = self.world.scenario, self.world.truth.sensor
+        scenario, sensor = self.world.scenario, self.world.truth.force_sensors["force"]
         payload = scenario.payload
         weight = (payload.gripper_kg + payload.deck_kg) * np.array([0.0, 0.0, -9.80665])
         centre = self.flange_T_sensor.apply(np.array(payload.com_in_sensor_mm) * 1e-3)
@@ -170,10 +171,8 @@ def _displacement(vector: Array) -> RigidTransform:
     return RigidTransform.from_components(vector[:3], Rotation.from_rotvec(vector[3:]))
 
 
-def _scenario(
-    stiffness_n_m: float, stop_latency_s: float, pins: scenarios.Pins | None
-) -> scenarios.Scenario:
-    scenario = scenarios.load(SCENARIO)
+def _scenario(stiffness_n_m: float, stop_latency_s: float, pins: Pins | None) -> DeckScenario:
+    scenario = DeckScenario.read(SCENARIO)
     changes = {"stiffness_n_m": (stiffness_n_m,) * 2, "pins": pins}
     contact = scenario.contact.model_copy(update=changes)
     main = scenario.robots["main"].model_copy(update={"stop_latency_ms": stop_latency_s * 1e3})

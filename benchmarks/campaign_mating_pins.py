@@ -20,7 +20,7 @@ from benchmarks.campaign_mating_cell import THRESHOLD
 from benchmarks.campaign_mating_trial import Trial, draw_trial, run_trial
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.mating.settings import PinSettings
-from fakes.scenario import Pins
+from fakes.scenes.deck_on_frame.scenario import Pins
 
 LIMIT_N = 50.0
 WORKERS = 2

@@ -11,7 +11,7 @@ import typer
 from fakes import scenario as scenarios
 from fakes.taught import taught as taught_poses
 
-DEFAULT_SCENARIO = Path("config/fake-cell.toml")
+DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
 ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
 
 app = typer.Typer(

@@ -1,68 +1,78 @@
 """The fake cell as one process: the world on the wall clock, its devices on their sockets."""
 
 import asyncio
+import errno
 import json
 import signal
 import sys
 import time
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
 from fakes.control import ControlServer
-from fakes.faults import FaultBoard
+from fakes.devices import DeviceFaults, DeviceRack
+from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.operator import Operator
 from fakes.priority import stand_apart
-from fakes.render.look import options_of
-from fakes.render.worker import make_pool
-from fakes.scenario import Head, HeadName, Robot, RobotName, Scenario
-from fakes.wire.frame_server import FrameServer
+from fakes.scenario import Scenario
+from fakes.scenes.registry import open_world
+from fakes.sections import Robot
 from fakes.wire.sjl_controller import SjlController
-from fakes.wire.sri_box import SriBox
-from fakes.wire.target_server import TargetServer
-from fakes.world.targets import SeenTarget
-from fakes.world.world import World
+from fakes.wire.sjl_controller_stream import StreamOffer
+from fakes.world.world import Command
 
 _ADVANCE_S = 0.002
+
+
+class PortTaken(OSError):
+    """Another program listens on a port of the fake cell."""
 
 
 class Cell:
     """World and devices. ``start`` returns the ports; ``run`` lets the time pass."""
 
     def __init__(self, scenario: Scenario, seed: int, ports: dict[str, int] | None = None) -> None:
-        self._scenario = scenario
+        """``ports`` override those of the scenario: device, ``robot.CHANNEL`` or ``control``."""
         self._ports = ports or {}
+        self._control_port = self._ports.get("control", scenario.control_port)
         self._started_s = time.monotonic()
-        self.world = World(scenario, seed)
+        self.world = open_world(scenario, seed)
         self.robots = {
             name: self._controller(name, robot) for name, robot in scenario.robots.items()
         }
-        self.sensor = SriBox(self._sample)
-        self.targets = TargetServer(self._measure_targets, serial=scenario.large_field.serial)
-        self._renderers = make_pool()
-        self.heads = {name: self._frame_server(name, head) for name, head in scenario.heads.items()}
+        self._rack = DeviceRack(self.world, self._started_s, self._ports)
         self.stopping = asyncio.Event()
-        self.control = ControlServer(Operator(self).handlers())
+        self._control = ControlServer(Operator(self, self.commands()).handlers())
 
     def now_s(self) -> float:
         """Time of the world."""
         return time.monotonic() - self._started_s
 
-    async def start(self) -> dict[str, int]:
-        """Listen everywhere, let the robots look for their PC; returns the ports by name."""
-        scenario, port = self._scenario, self._port
-        listening = {
-            "sensor": await self.sensor.start_tcp(port=port("sensor", scenario.sensor_port)),
-            "large_field": await self.targets.start(
-                port=port("large_field", scenario.large_field.port)
-            ),
+    def commands(self) -> Mapping[str, Command]:
+        """What the hands of an operator can do in this cell, by name."""
+        return {**self.world.commands(), **self._rack.commands()}
+
+    def faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
+        """What can be injected faults into, by name; the bodies are called ``world``."""
+        return {
+            **{name: robot.faults for name, robot in self.robots.items()},
+            **{name: device.faults for name, device in self._rack.devices.items()},
+            "world": self.world.faults,
         }
-        for name, server in self.heads.items():
-            await server.start()
-            listening[name] = server.port
+
+    async def start(self) -> dict[str, int]:
+        """Listen everywhere, let the robots look for their PC; returns the ports by name.
+
+        Raises ``PortTaken`` for the first device that cannot listen.
+        """
+        listening = {
+            name: await _listen(name, device.port, device.start())
+            for name, device in self._rack.devices.items()
+        }
         for robot in self.robots.values():
             robot.start()
-        listening["control"] = await self.control.start(port=port("control", scenario.control_port))
+        control = self._control.start(port=self._control_port)
+        listening["control"] = await _listen("control", self._control_port, control)
         return listening
 
     async def run(self) -> None:
@@ -74,38 +84,37 @@ class Cell:
     async def stop(self) -> None:
         """Hang up everywhere. Idempotent."""
         self.stopping.set()
+        # Robots first: they alone connect by themselves, and would look for their PC again.
         await asyncio.gather(*(robot.stop() for robot in self.robots.values()))
-        await asyncio.gather(*(head.stop() for head in self.heads.values()))
-        await asyncio.gather(self.targets.stop(), self.sensor.stop(), self.control.stop())
-        self._renderers.shutdown(cancel_futures=True)
+        await asyncio.gather(*(device.stop() for device in self._rack.devices.values()))
+        await self._control.stop()
+        self._rack.shut_down()
 
-    def _controller(self, name: RobotName, robot: Robot) -> SjlController:
+    def _controller(self, name: str, robot: Robot) -> SjlController:
         ports = {
-            channel: self._port(f"{name}.{channel}", port) for channel, port in robot.ports.items()
+            channel: self._ports.get(f"{name}.{channel}", port)
+            for channel, port in robot.ports.items()
         }
-        return SjlController(self.world.arms[name], self.now_s, ports, faults=FaultBoard(name))
-
-    def _frame_server(self, name: HeadName, head: Head) -> FrameServer:
-        return FrameServer(
-            "127.0.0.1",
-            self._port(name, head.port),
-            partial(self.world.camera_scene, name),
-            self._renderers,
-            options=options_of(self._scenario.rendering),
-            identity=f"fake-head;{head.serial};1.0",
-            exposure_us=self._scenario.cameras.exposure_us,
+        return SjlController(
+            self.world.arms[name],
+            self.now_s,
+            ports,
+            faults=FaultBoard(name, ROBOT_FAULTS),
+            offer=StreamOffer() if robot.streams else None,
         )
 
-    def _port(self, name: str, default: int) -> int:
-        return self._ports.get(name, default)
 
-    def _sample(self, monotonic_s: float) -> list[float]:
-        reading: list[float] = self.world.sensor_wrench(monotonic_s - self._started_s).tolist()
-        return reading
-
-    async def _measure_targets(self, frames: int) -> tuple[SeenTarget, ...]:
-        await asyncio.sleep(frames * self._scenario.large_field.frame_time_ms / 1000)
-        return self.world.targets(frames)
+async def _listen(name: str, port: int, starting: Awaitable[int]) -> int:
+    """Wait until a device listens; an occupied port becomes a sentence."""
+    try:
+        return await starting
+    except OSError as error:
+        if error.errno != errno.EADDRINUSE:
+            raise
+        raise PortTaken(
+            f"port {port} of {name!r} is in use by another program, perhaps another fake cell: "
+            f"end that one, or give another port in the scenario file"
+        ) from error
 
 
 async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> int:

@@ -1,8 +1,9 @@
-"""Faults that can be injected into robots, large-field head and world, by name.
+"""Faults that can be injected into robots, trackers and the bodies of a scene, by name.
 
 The interface box and the frame servers keep their own; the control port reaches all of them.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 ROBOT_FAULTS = {
@@ -45,18 +46,6 @@ TRACKER_FAULTS = {
     "wrong_id": "the reply carries another id",
     "malformed": "the reply is not JSON",
 }
-WORLD_FAULTS = {
-    "foreign_body": "a body of `height_mm` lies on the frame at `x_mm`, `y_mm`",
-    "pin_catch": "a chamfer of `slope_deg` at `x_mm`, `y_mm` catches `height_mm` above the frame",
-    "no_frame": "there is no frame under the deck",
-}
-CATALOGUE = {
-    "main": ROBOT_FAULTS,
-    "aux_1": ROBOT_FAULTS,
-    "aux_2": ROBOT_FAULTS,
-    "large_field": TRACKER_FAULTS,
-    "world": WORLD_FAULTS,
-}
 
 
 @dataclass(slots=True)
@@ -79,15 +68,16 @@ class Fault:
 class FaultBoard:
     """The faults of one device."""
 
-    def __init__(self, device: str) -> None:
+    def __init__(self, device: str, known: Mapping[str, str]) -> None:
+        """``known``: every fault that this device can have, with its meaning."""
         self.device = device
-        self._known = CATALOGUE[device]
+        self.known = known
         self._active: dict[str, Fault] = {}
 
     def inject(self, name: str, *, count: int | None = None, **parameters: float | str) -> None:
         """Inject a fault; raises ``ValueError`` for a name that this device does not know."""
-        if name not in self._known:
-            known = ", ".join(sorted(self._known))
+        if name not in self.known:
+            known = ", ".join(sorted(self.known))
             raise ValueError(f"{self.device} knows no fault {name!r}; it knows {known}")
         self._active[name] = Fault(name, count, parameters)
 

@@ -4,35 +4,45 @@ from typing import Any
 
 import numpy as np
 
-from fakes.scenario import RobotName, Scenario
+from fakes.scenario import Scenario
 from fakes.world.arm import forward, inverse, nominal_links
 from fakes.world.frames import from_written, to_written
 
 
 def taught(scenario: Scenario) -> dict[str, Any]:
-    """Joint angles in degrees of every taught pose, flange poses in the robot's base, hand-eyes."""
-    robots = {name: _robot(scenario, name) for name in scenario.robots}
-    heads = {
-        name: {"robot": head.robot, "flange_T_head_mm_deg": list(head.flange_T_head_mm_deg)}
-        for name, head in scenario.heads.items()
-    }
+    """Joint angles in degrees of every taught pose, flange poses in the robot's base, mountings."""
     return {
-        "robots": robots,
-        "heads": heads,
-        "flange_T_deck_mm_deg": list(scenario.parts.flange_T_deck_mm_deg),
-        "flange_T_sensor_mm_deg": list(scenario.force_sensor.flange_T_sensor_mm_deg),
-        "base_T_frame_mm_deg": list(scenario.parts.frame_mm_deg),
-        "base_T_large_field_mm_deg": list(scenario.large_field.base_T_head_mm_deg),
+        "robots": {name: _robot(scenario, name) for name in scenario.robots},
+        "cameras": {
+            name: {
+                "carried_by": camera.carried_by,
+                "flange_T_camera_mm_deg": camera.flange_T_camera_mm_deg,
+                "cell_T_camera_mm_deg": camera.cell_T_camera_mm_deg,
+            }
+            for name, camera in scenario.all_cameras().items()
+        },
+        "force_sensors": {
+            name: {
+                "mounted_on": sensor.mounted_on,
+                "flange_T_sensor_mm_deg": sensor.flange_T_sensor_mm_deg,
+            }
+            for name, sensor in scenario.force_sensors.items()
+        },
+        "trackers": {
+            name: {"cell_T_tracker_mm_deg": tracker.cell_T_tracker_mm_deg}
+            for name, tracker in scenario.trackers.items()
+        },
+        **scenario.nominal_poses(),
     }
 
 
-def _robot(scenario: Scenario, name: RobotName) -> dict[str, Any]:
+def _robot(scenario: Scenario, name: str) -> dict[str, Any]:
     robot = scenario.robots[name]
     cell_T_base = from_written(robot.base_mm_deg)
     joints = np.deg2rad(robot.home_deg)
     home = forward(nominal_links(robot.chain_mm), joints)
     poses = {"home": _entry(joints, to_written(home))}
-    for pose, written in scenario.taught[name].items():
+    for pose, written in scenario.taught.get(name, {}).items():
         base_T_flange = cell_T_base.inv() * from_written(written)
         joints = inverse(robot.chain_mm, base_T_flange, joints)
         poses[pose] = _entry(joints, to_written(base_T_flange))

@@ -168,7 +168,7 @@ def test_generated_pages_are_new() -> None:
 def test_cheap_commands_run() -> None:
     runner = CliRunner()
     for arguments in (
-        ["check", str(ROOT / "config" / "cell.fake.toml")],
+        ["check", str(ROOT / "config" / "deck.toml")],
         ["check", str(ROOT / "config" / "cell.toml")],
         ["faults"],
     ):

@@ -1,6 +1,5 @@
-"""What the demonstration shows while it runs: state, step, iteration, errors, force."""
+"""What the demonstration shows while it runs: state and step, and what its process adds."""
 
-from collections.abc import Sequence
 from types import TracebackType
 from typing import Any, Self
 
@@ -9,16 +8,18 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
+from fakes.demo.demo import Demo
+
 _TELLING = ("state", "step", "iteration", "alarms")
 """A change of one of these is worth a line."""
-_AXES = ("x", "y", "z")
 
 
 class LiveView:
     """A line for each event; below them, on a terminal, what is true just now."""
 
-    def __init__(self, console: Console) -> None:
+    def __init__(self, console: Console, demo: Demo) -> None:
         self._console = console
+        self._demo = demo
         self._live = Live(console=console, refresh_per_second=8, transient=True)
         self._last: dict[str, Any] = {}
         self._begun_s: float | None = None
@@ -43,28 +44,39 @@ class LiveView:
             return
         if self._begun_s is None:
             self._begun_s = message["time"]
+        # Between two steps the register shows none: a line for that would only be noise.
         pause = message["state"] == "EXECUTE" and not message["step"]
         if any(self._last.get(key) != message.get(key) for key in _TELLING) and not pause:
             time_s = message["time"] - self._begun_s
-            self._console.print(f"{time_s:6.1f} s  {_news(self._last, message)}", markup=False)
+            self._console.print(f"{time_s:6.1f} s  {self._news(message)}", markup=False)
         self._last = message
         if self._console.is_terminal:
-            self._live.update(_panel(message))
+            self._live.update(self._panel(message))
 
+    def _news(self, now: dict[str, Any]) -> str:
+        """What has changed, in words; figures only when they are new."""
+        parts = [self._demo.news(self._last, now) or self._where(now)]
+        if now.get("alarms"):
+            parts.append(_alarms(now))
+        return ", ".join(parts)
 
-def _news(before: dict[str, Any], now: dict[str, Any]) -> str:
-    """What has changed, in words; figures only when they are new."""
-    parts = [_where(now)]
-    iteration = now.get("iteration")
-    if iteration and iteration != before.get("iteration"):
-        parts = [f"#{iteration}  {_errors(now)}"]
-    if now.get("alarms"):
-        parts.append(_alarms(now))
-    return ", ".join(parts)
+    def _where(self, now: dict[str, Any]) -> str:
+        return self._step(now) if now["state"] == "EXECUTE" and now["step"] else _state(now)
 
+    def _step(self, now: dict[str, Any]) -> str:
+        return self._demo.steps.get(now.get("step_number", 0), str(now["step"]))
 
-def _where(now: dict[str, Any]) -> str:
-    return str(now["step"]) if now["state"] == "EXECUTE" and now["step"] else _state(now)
+    def _panel(self, now: dict[str, Any]) -> Table:
+        table = Table(show_header=False, box=None, padding=(0, 2))
+        rows = {
+            "state": _state(now),
+            "step": self._step(now) or "-",
+            **self._demo.rows(now),
+            "alarms": _alarms(now) if now.get("alarms") else "none",
+        }
+        for name, value in rows.items():
+            table.add_row(Text(name, style="dim"), Text(value))
+        return table
 
 
 def _state(now: dict[str, Any]) -> str:
@@ -73,44 +85,3 @@ def _state(now: dict[str, Any]) -> str:
 
 def _alarms(now: dict[str, Any]) -> str:
     return "alarm " + ", ".join(f"F{number:03d}" for number in now["alarms"])
-
-
-def _panel(now: dict[str, Any]) -> Table:
-    table = Table(show_header=False, box=None, padding=(0, 2))
-    rows = {
-        "state": _state(now),
-        "step": now["step"] or "-",
-        "iteration": str(now.get("iteration") or "-"),
-        "error": _errors(now).replace("  r", "\nr") or "-",
-        "force z": _force(now),
-        "alarms": _alarms(now) if now.get("alarms") else "none",
-    }
-    for name, value in rows.items():
-        table.add_row(Text(name, style="dim"), Text(value))
-    return table
-
-
-def _force(now: dict[str, Any]) -> str:
-    force, limit = now.get("force_z_n"), now.get("force_limit_n")
-    peak = (now.get("force_peaks") or [None] * 3)[2]
-    parts = ["-" if force is None else f"{force + 0.0:7.2f} N"]
-    if peak is not None:
-        parts.append(f"peak {peak:.1f} N")
-    if limit is not None:
-        parts.append(f"limit {limit:.0f} N")
-    return "   ".join(parts)
-
-
-def _errors(now: dict[str, Any]) -> str:
-    """Lengths to a micrometre, angles to a ten-thousandth of a degree; empty without any."""
-    millimetres, degrees = now.get("error_mm") or [], now.get("error_deg") or []
-    if not any(value is not None for value in (*millimetres, *degrees)):
-        return ""
-    return f"{_written('', millimetres, 3)} mm  {_written('r', degrees, 4)} °"
-
-
-def _written(prefix: str, values: Sequence[float | None], digits: int) -> str:
-    return " ".join(
-        f"{prefix}{axis} " + ("-" if value is None else f"{value:+.{digits}f}")
-        for axis, value in zip(_AXES, values, strict=True)
-    )

@@ -45,8 +45,7 @@ from fakes.render.nominal import (
     nominal_target_board,
 )
 from fakes.render.options import RenderOptions
-from fakes.render.picture import clean_pair as _clean_pair
-from fakes.render.picture import scene_objects
+from fakes.render.picture import clean_pictures
 from fakes.render.sensor import Grey, exposed
 from fakes.render.truth import hole_centres_m, project_hole_centres, project_rims
 from fakes.world.scene import CameraScene, StereoTruth
@@ -93,7 +92,8 @@ def clean_pair(
     light_seed: int = 0,
 ) -> tuple[Image, Image]:
     """Left and right picture in grey levels, float32, without noise or rounding."""
-    return _clean_pair(stereo, tuple(objects), options, light_seed)
+    left, right = clean_pictures(stereo, tuple(objects), options, light_seed)
+    return left, right
 
 
 def expose(
@@ -104,8 +104,8 @@ def expose(
     return exposed(left, options, rng), exposed(right, options, rng)
 
 
-def render_scene(scene: CameraScene, options: RenderOptions = _DEFAULT) -> tuple[Grey, Grey]:
-    """One exposure of a scene of the world; its noise seed decides the noise."""
-    objects = scene_objects(scene)
-    clean = _clean_pair(scene.stereo, objects, options, scene.light_seed)
-    return expose(clean, options, np.random.default_rng(scene.noise_seed))
+def render_scene(scene: CameraScene, options: RenderOptions = _DEFAULT) -> tuple[Grey, ...]:
+    """One exposure of a scene of the world, an image per lens; its noise seed decides the noise."""
+    clean = clean_pictures(scene.optics, scene.bodies, options, scene.light_seed)
+    rng = np.random.default_rng(scene.noise_seed)
+    return tuple(exposed(picture, options, rng) for picture in clean)

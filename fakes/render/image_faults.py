@@ -8,36 +8,41 @@ import cv2
 import numpy as np
 
 from fakes.render.canvas import Image
-from fakes.world.scene import CameraScene, LensTruth, ScenePlate
+from fakes.world.scene import Body, CameraScene, LensTruth, MonoTruth, ScenePlate, StereoTruth
 
-Pair = tuple[Image, Image]
-"""Clean pictures, left and right: grey levels before noise."""
+Pictures = tuple[Image, ...]
+"""Clean pictures, left and right or only one: grey levels before noise."""
 
 SCENE_FAULTS: Final[dict[str, Callable[[CameraScene], CameraScene]]] = {
     "no_hole": lambda scene: replace(
-        scene, frame=_without_holes(scene.frame), deck=_without_holes(scene.deck)
+        scene, bodies=tuple(_without_holes(body) for body in scene.bodies)
     ),
-    "defocused": lambda scene: replace(
-        scene,
-        stereo=replace(
-            scene.stereo, left=_defocused(scene.stereo.left), right=_defocused(scene.stereo.right)
-        ),
-    ),
+    "defocused": lambda scene: replace(scene, optics=_out_of_focus(scene.optics)),
 }
 """What is rendered is another scene."""
 
-PICTURE_FAULTS: Final[dict[str, Callable[[Pair], Pair]]] = {
-    "black": lambda pair: (0.01 * pair[0], 0.01 * pair[1]),
-    "saturated": lambda pair: (4.0 * pair[0] + 150, 4.0 * pair[1] + 150),
-    "swapped": lambda pair: (pair[1], pair[0]),
-    "upside_down": lambda pair: (pair[0], np.ascontiguousarray(pair[1][::-1, ::-1])),
-    "occluded": lambda pair: (_occluded(pair[0]), pair[1]),
+PICTURE_FAULTS: Final[dict[str, Callable[[Pictures], Pictures]]] = {
+    "black": lambda pictures: tuple(0.01 * picture for picture in pictures),
+    "saturated": lambda pictures: tuple(4.0 * picture + 150 for picture in pictures),
+    "swapped": lambda pictures: pictures[::-1],
+    "upside_down": lambda pictures: (*pictures[:-1], _turned(pictures[-1])),
+    "occluded": lambda pictures: (_occluded(pictures[0]), *pictures[1:]),
 }
 """The picture of the true scene is spoilt."""
 
 
-def _without_holes(plate: ScenePlate | None) -> ScenePlate | None:
-    return None if plate is None else replace(plate, holes=())
+def _without_holes(body: Body) -> Body:
+    return replace(body, holes=()) if isinstance(body, ScenePlate) else body
+
+
+def _out_of_focus(optics: StereoTruth | MonoTruth) -> StereoTruth | MonoTruth:
+    if isinstance(optics, MonoTruth):
+        return replace(optics, lens=_defocused(optics.lens))
+    return replace(optics, left=_defocused(optics.left), right=_defocused(optics.right))
+
+
+def _turned(picture: Image) -> Image:
+    return np.ascontiguousarray(picture[::-1, ::-1])
 
 
 def _defocused(lens: LensTruth) -> LensTruth:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
-from fakes.world.scene import LensTruth, Side, StereoTruth
+from fakes.world.scene import LensTruth, MonoTruth, Side, StereoTruth
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ _NEWTON_TOLERANCE: Final = 1e-13
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """One camera of a head, with its place in the head."""
+    """One camera, with its place in the head; a single camera is its own head."""
 
     side: Side
     lens: LensTruth
@@ -25,6 +25,13 @@ class View:
     """Width, height."""
     view_T_head: RigidTransform
     """The head frame is the left camera."""
+
+
+def views_of(optics: StereoTruth | MonoTruth) -> tuple[View, ...]:
+    """Left and right camera of a head, or the one camera that there is."""
+    if isinstance(optics, StereoTruth):
+        return views(optics)
+    return (View("left", optics.lens, optics.image_size_px, RigidTransform.identity()),)
 
 
 def views(stereo: StereoTruth) -> tuple[View, View]:

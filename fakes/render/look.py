@@ -3,7 +3,7 @@
 from typing import Final
 
 from fakes.render.options import RenderOptions
-from fakes.scenario import Rendering
+from fakes.sections import Rendering
 
 _IMAGE_WIDTH_M: Final = 0.34
 _IMAGE_AREA_M2: Final = 0.097

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
-from fakes.world.scene import SceneChessboard, ScenePlate, SceneTargetBoard
+from fakes.world.scene import Body, ScenePlate
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,9 +26,9 @@ class SceneCharucoBoard:
     bow_m: tuple[float, float] = (0.0, 0.0)
 
 
-SceneObject = ScenePlate | SceneTargetBoard | SceneChessboard | SceneCharucoBoard
+SceneObject = Body | SceneCharucoBoard
 
 
 def pose_of(item: SceneObject) -> RigidTransform:
-    """Pose of an object in the frame of the head."""
+    """Pose of an object in the frame of the camera."""
     return item.camera_T_part if isinstance(item, ScenePlate) else item.camera_T_board

@@ -26,6 +26,7 @@ _PLACES_M: Final = {
     "P6": (0.48, 0.08),
 }
 _PINS: Final = ("P1", "P5")
+_THICKNESS_M: Final = {"deck": 15e-3, "frame": 40e-3}
 
 
 def nominal_head(*, blur_px: float = 1.0) -> StereoTruth:
@@ -77,7 +78,7 @@ def nominal_plate(
     centroid = np.mean([hole.position_m for hole in triangle], axis=0)
     centroid_T_part = RigidTransform.from_translation([-centroid[0], -centroid[1], 0.0])
     pose = facing_pose(shift_m=shift_m, tilt_deg=tilt_deg) * centroid_T_part
-    return ScenePlate(kind, pose, (1.0, 0.5), holes, seed)
+    return ScenePlate(kind, pose, (1.0, 0.5), _THICKNESS_M[kind], holes, seed)
 
 
 def facing_pose(

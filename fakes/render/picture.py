@@ -6,7 +6,7 @@ import numpy as np
 
 from fakes.render.boards import draw_chessboard, draw_target_board
 from fakes.render.canvas import Image, Patch
-from fakes.render.lens import View, views
+from fakes.render.lens import View, views_of
 from fakes.render.light import light_direction, light_field
 from fakes.render.model import SceneCharucoBoard, SceneObject, pose_of
 from fakes.render.options import RenderOptions
@@ -14,7 +14,7 @@ from fakes.render.plate import draw_plate
 from fakes.render.sensor import blurred
 from fakes.render.surface import is_seen
 from fakes.world.scene import (
-    CameraScene,
+    MonoTruth,
     SceneChessboard,
     ScenePlate,
     SceneTargetBoard,
@@ -22,18 +22,17 @@ from fakes.world.scene import (
 )
 
 
-def clean_pair(
-    stereo: StereoTruth,
+def clean_pictures(
+    optics: StereoTruth | MonoTruth,
     objects: tuple[SceneObject, ...],
     options: RenderOptions,
     light_seed: int,
-) -> tuple[Image, Image]:
-    """Pictures without noise, in grey levels, not rounded and not clipped."""
-    left, right = views(stereo)
-    return (
-        clean_picture(left, objects, options, light_seed),
-        clean_picture(right, objects, options, light_seed),
-    )
+) -> tuple[Image, ...]:
+    """Left and right picture of a head, or the one of a single camera.
+
+    In grey levels, without noise, not rounded and not clipped.
+    """
+    return tuple(clean_picture(view, objects, options, light_seed) for view in views_of(optics))
 
 
 def clean_picture(
@@ -93,9 +92,3 @@ def _draw(
             return draw_target_board(view, image, item, options, blur_px)
         case SceneChessboard() | SceneCharucoBoard():
             return draw_chessboard(view, image, item, options, blur_px)
-
-
-def scene_objects(scene: CameraScene) -> tuple[SceneObject, ...]:
-    """What is there to be seen."""
-    candidates = (scene.frame, scene.deck, scene.target_board, scene.chessboard)
-    return tuple(item for item in candidates if item is not None)

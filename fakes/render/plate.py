@@ -1,7 +1,5 @@
 """A part as the camera sees it: finish, wear, holes."""
 
-from typing import Final
-
 import numpy as np
 
 from fakes.render.canvas import Image, Patch
@@ -13,8 +11,6 @@ from fakes.render.options import RenderOptions
 from fakes.render.surface import face_map, meet_surface, to_pixels
 from fakes.render.texture import brushed_tile, sample
 from fakes.world.scene import SceneHole, ScenePlate
-
-THICKNESS_M: Final = {"deck": 15e-3, "frame": 40e-3}
 
 
 def draw_plate(
@@ -42,7 +38,7 @@ def draw_plate(
         image,
         pose=pose,
         size_m=plate.size_m,
-        thickness_m=THICKNESS_M[plate.kind],
+        thickness_m=plate.thickness_m,
         grey=0.4 * options.plate_grey,
         seen_m=(np.array([x.min(), y.min()]), np.array([x.max(), y.max()])),
     )

@@ -22,22 +22,25 @@ from fakes.priority import give_way
 from fakes.render.canvas import Image
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
 from fakes.render.options import RenderOptions
-from fakes.render.picture import clean_pair, scene_objects
+from fakes.render.picture import clean_pictures
 from fakes.render.sensor import exposed
-from fakes.world.scene import CameraScene
+from fakes.world.scene import CameraScene, MonoTruth
 
 _KEPT_SCENES: Final = 3
-_kept: "OrderedDict[Any, tuple[Image, Image]]" = OrderedDict()
+_CHANNEL_GAINS: Final = (np.float32(1.0), np.float32(0.94), np.float32(0.86))
+"""Red, green, blue: bare metal under a warm white lamp, which is all there is to see."""
+_kept: "OrderedDict[Any, tuple[Image, ...]]" = OrderedDict()
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A stereo pair, ready for the wire."""
+    """One exposure, ready for the wire."""
 
     width: int
     height: int
     payload: bytes
-    """Left then right, rows from the top."""
+    """Rows from the top; of a stereo head the left image, then the right one. Of a colour camera
+    red, green and blue of each pixel."""
     crc: int
 
 
@@ -57,12 +60,17 @@ def render_frame(
     """One exposure; ``faults`` are names of ``SCENE_FAULTS`` and ``PICTURE_FAULTS``."""
     for name in _in_order(SCENE_FAULTS, faults):
         scene = SCENE_FAULTS[name](scene)
-    pair = _clean(scene, options)
+    pictures = _clean(scene, options)
     for name in _in_order(PICTURE_FAULTS, faults):
-        pair = PICTURE_FAULTS[name](pair)
+        pictures = PICTURE_FAULTS[name](pictures)
     rng = np.random.default_rng(scene.noise_seed)
-    payload = b"".join(exposed(picture, options, rng).tobytes() for picture in pair)
-    height, width = pair[0].shape
+    if isinstance(scene.optics, MonoTruth) and scene.optics.colour:
+        (picture,) = pictures
+        channels = [exposed(gain * picture, options, rng) for gain in _CHANNEL_GAINS]
+        payload = np.stack(channels, axis=2).tobytes()
+    else:
+        payload = b"".join(exposed(picture, options, rng).tobytes() for picture in pictures)
+    height, width = pictures[0].shape
     return Frame(width, height, payload, zlib.crc32(payload))
 
 
@@ -77,16 +85,16 @@ def fingerprint(value: Any) -> Any:
     return value
 
 
-def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, Image]:
+def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
     unmoved = replace(scene, time_s=0.0, noise_seed=0)
     key = fingerprint((unmoved, options))
-    pair = _kept.pop(key, None)
-    if pair is None:
-        pair = clean_pair(scene.stereo, scene_objects(scene), options, scene.light_seed)
-    _kept[key] = pair
+    pictures = _kept.pop(key, None)
+    if pictures is None:
+        pictures = clean_pictures(scene.optics, scene.bodies, options, scene.light_seed)
+    _kept[key] = pictures
     while len(_kept) > _KEPT_SCENES:
         _kept.popitem(last=False)
-    return pair
+    return pictures
 
 
 def _in_order(known: Iterable[str], wanted: frozenset[str]) -> list[str]:

@@ -74,6 +74,7 @@ class Report:
     state_requested: str
     status: tuple[str, ...]
     step: str
+    step_number: int
     iteration: int
     ack_seq: int
     done_seq: int
@@ -115,6 +116,7 @@ def read_report(block: Sequence[int]) -> Report:
         state_requested=STATES[block[4]],
         status=tuple(name for bit, name in enumerate(STATUS_BITS) if block[5] >> bit & 1),
         step=STEPS.get(block[6], str(block[6])),
+        step_number=block[6],
         iteration=block[74],
         ack_seq=block[7],
         done_seq=block[8],

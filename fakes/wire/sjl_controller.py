@@ -9,8 +9,8 @@ import socket
 from collections.abc import Callable
 from contextlib import suppress
 
-from fakes.faults import FaultBoard
-from fakes.scenario import Channel
+from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.sections import Channel
 from fakes.wire.sjl_controller_logic import Controller, Outbox
 from fakes.wire.sjl_controller_records import (
     RECORD_MAX,
@@ -47,7 +47,7 @@ class SjlController:
         offer: StreamOffer | None = None,
     ) -> None:
         """``offer`` is what the job program offers for streamed motion, if anything."""
-        self.faults = faults or FaultBoard("main")
+        self.faults = faults or FaultBoard("robot", ROBOT_FAULTS)
         self.logic = Controller(arm, self.faults, offer, clock())
         self._arm, self._clock = arm, clock
         self._host, self._ports = host, ports

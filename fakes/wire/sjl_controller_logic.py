@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fakes.faults import FaultBoard
-from fakes.scenario import Channel
+from fakes.sections import Channel
 from fakes.wire.sjl_controller_panel import Panel
 from fakes.wire.sjl_controller_records import RecordError, integer, number, pose_fields
 from fakes.wire.sjl_controller_stream import Stream, StreamLimits, StreamOffer

@@ -1,4 +1,4 @@
-"""The PC of a large-field head on the wire: TGT/1 (docs/protocols/target-server.md)."""
+"""The PC of a tracker (a large-field head) on the wire: TGT/1 (docs/protocols/target-server.md)."""
 
 import asyncio
 import json
@@ -6,7 +6,7 @@ from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import Any
 
-from fakes.faults import FaultBoard
+from fakes.faults import TRACKER_FAULTS, FaultBoard
 from fakes.world.frames import MM
 from fakes.world.targets import SeenTarget
 
@@ -24,7 +24,7 @@ class TargetServer:
         serial: str = "ET-0001",
         faults: FaultBoard | None = None,
     ) -> None:
-        self.faults = faults or FaultBoard("large_field")
+        self.faults = faults or FaultBoard("tracker", TRACKER_FAULTS)
         self._measure = measure
         self._serial = serial
         self._server: asyncio.Server | None = None

@@ -1,6 +1,6 @@
-"""What hangs from the main robot's flange: motion, contact and the load on the force sensor.
+"""What hangs from a robot's flange behind a force sensor: motion, contact, the load on the sensor.
 
-Tool axes are flange axes turned by 180° about x: z up while the deck is held over the frame.
+Tool axes are flange axes turned by 180° about x: z up while a part is held over its place.
 Gravity is left out of the deflection, as a controller that knows its load corrects the sag; the
 sensor feels it all the same.
 """
@@ -10,12 +10,10 @@ import math
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.faults import FaultBoard
-from fakes.scenario import Scenario
-from fakes.world.contact import OUT_OF_REACH_M, Rim, rim
-from fakes.world.frames import MM, Array, displacement, from_written
+from fakes.sections import Springs
+from fakes.world.contact import OUT_OF_REACH_M, Touch
+from fakes.world.frames import Array, displacement
 from fakes.world.suspension import Contacts, Suspension
-from fakes.world.truth import PartsTruth, SensorTruth
 
 STEP_S = 1e-3
 _SUBSTEPS = 4
@@ -32,34 +30,27 @@ class Payload:
 
     def __init__(
         self,
-        scenario: Scenario,
-        sensor: SensorTruth,
-        parts: PartsTruth | None,
-        faults: FaultBoard,
+        springs: Springs,
+        flange_T_sensor: RigidTransform,
         *,
-        frame_present: bool,
+        mass_kg: float,
+        com_in_flange_m: Array,
+        touch: Touch | None = None,
     ) -> None:
-        settings = scenario.payload
-        self._friction = scenario.contact.friction
-        mass = settings.gripper_kg + (settings.deck_kg if parts else 0.0)
-        com_mm = settings.com_in_sensor_mm if parts else settings.gripper_com_in_sensor_mm
-        flange_T_sensor = from_written(scenario.force_sensor.flange_T_sensor_mm_deg)
-        com = flange_T_sensor.apply(np.array(com_mm) * MM)
-        self._flange_T_com = RigidTransform.from_components(com, _FLANGE_R_TOOL)
-        self._com = np.append(com, 1.0)
-        self._weight = mass * _GRAVITY
-        self._sensor_A_com = _adjoint(sensor.flange_T_sensor.inv() * self._flange_T_com)
-        self._rim: Rim | None = None
+        """``flange_T_sensor`` is the true pose of the sensor; ``touch`` is None where there is
+        nothing to touch."""
+        self.flange_T_com = RigidTransform.from_components(com_in_flange_m, _FLANGE_R_TOOL)
+        self._com = np.append(com_in_flange_m, 1.0)
+        self._weight = mass_kg * _GRAVITY
+        self._sensor_A_com = _adjoint(flange_T_sensor.inv() * self.flange_T_com)
+        self.touch = touch
         contacts = Contacts.none()
-        if parts is not None:
-            self._flange_T_deck = parts.flange_T_deck
-            self._deck_matrix = parts.flange_T_deck.as_matrix()
-            if frame_present and not faults.active("no_frame"):
-                self._frame_T_cell = parts.cell_T_frame.inv().as_matrix()
-                self._rim = rim(scenario, parts, faults)
-                com_T_deck = self._flange_T_com.inv() * parts.flange_T_deck
-                contacts = self._rim.contacts(com_T_deck, scenario.contact.damping_ratio, mass)
-        self.suspension = Suspension(settings, mass, contacts)
+        if touch is not None:
+            self._body_matrix = touch.flange_T_body.as_matrix()
+            self._other_T_cell = touch.cell_T_other.inv().as_matrix()
+            com_T_body = self.flange_T_com.inv() * touch.flange_T_body
+            contacts = touch.points.contacts(com_T_body, touch.damping_ratio, mass_kg)
+        self.suspension = Suspension(springs, mass_kg, contacts)
         normals = contacts.jacobian[:, :3]
         self._guides_carries = np.column_stack(
             [np.hypot(normals[:, 0], normals[:, 1]), normals[:, 2]]
@@ -87,21 +78,21 @@ class Payload:
         tool_R_cell = _TOOL_R_FLANGE @ flange[:3, :3].T
         inertia, slide = self._inertia(flange, tool_R_cell)
         if self._near(gaps):
-            self._touch(rates, inertia, slide)
+            self._push(rates, inertia, slide)
         else:
             self.suspension.free(STEP_S, inertia)
             self.contact_force_n = 0.0
         self._pose, self._gaps = flange, gaps
         self.load = self._sensed(flange)
 
-    def deck_in_flange(self) -> RigidTransform:
-        """flange_T_deck under the present deflection."""
+    def deflected(self, flange_T_body: RigidTransform) -> RigidTransform:
+        """Where the present deflection carries a body that hangs from the flange."""
         bend = self.suspension.deflection
-        com = self._flange_T_com
+        com = self.flange_T_com
         moved: RigidTransform = com * displacement(bend[:3], bend[3:]) * com.inv()
-        return moved * self._flange_T_deck
+        return moved * flange_T_body
 
-    def _touch(self, rates: Array, inertia: Array, slide: Array) -> None:
+    def _push(self, rates: Array, inertia: Array, slide: Array) -> None:
         suspension, step_s = self.suspension, STEP_S / _SUBSTEPS
         for index in range(_SUBSTEPS):
             drag = self._drag(slide + suspension.rate[:3])
@@ -116,18 +107,21 @@ class Payload:
         """Friction: across the approach of what carries, along it of what guides (pins)."""
         guiding, carrying = self.suspension.normal_forces @ self._guides_carries
         x, y, z = speed.tolist()
-        across = -self._friction * carrying / (math.hypot(x, y) + _SLIP_M_S)
-        along = -self._friction * guiding / (abs(z) + _SLIP_M_S)
+        friction = self.touch.friction if self.touch is not None else 0.0
+        across = -friction * carrying / (math.hypot(x, y) + _SLIP_M_S)
+        along = -friction * guiding / (abs(z) + _SLIP_M_S)
         return np.array([across * x, across * y, along * z])
 
     def _near(self, gaps: Array) -> bool:
-        rim = self._rim
-        return rim is not None and min(rim.distance(self._gaps), rim.distance(gaps)) < _NEAR_M
+        if self.touch is None:
+            return False
+        points = self.touch.points
+        return min(points.distance(self._gaps), points.distance(gaps)) < _NEAR_M
 
     def _gaps_at(self, flange: Array) -> Array:
-        if self._rim is None:
+        if self.touch is None:
             return self._gaps
-        return self._rim.gaps(self._frame_T_cell @ flange @ self._deck_matrix)
+        return self.touch.points.gaps(self._other_T_cell @ flange @ self._body_matrix)
 
     def _inertia(self, flange: Array, tool_R_cell: Array) -> tuple[Array, Array]:
         """Force and torque of inertia in tool axes, and the sliding speed there."""

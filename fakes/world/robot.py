@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Robot
+from fakes.sections import Robot
 from fakes.world.arm import (
     OutOfReachError,
     forward,

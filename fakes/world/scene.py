@@ -1,8 +1,8 @@
-"""What a stereo head sees: the hand-over from the world to the renderer.
+"""What a camera sees: the hand-over from the world to the renderer.
 
-Everything is truth, in SI units. A pose ``camera_T_x`` is given in the frame of the head, which is
-its left camera: z forward, x right, y down. Parts and boards have z pointing out of their visible
-face, towards the camera.
+Everything is truth, in SI units. A pose ``camera_T_x`` is given in the frame of the camera, which
+for a stereo head is its left one: z forward, x right, y down. Parts and boards have z pointing out
+of their visible face, towards the camera.
 """
 
 from dataclasses import dataclass
@@ -45,6 +45,16 @@ class StereoTruth:
 
 
 @dataclass(frozen=True, slots=True)
+class MonoTruth:
+    """A single camera."""
+
+    image_size_px: tuple[int, int]
+    """Width, height."""
+    lens: LensTruth
+    colour: bool
+
+
+@dataclass(frozen=True, slots=True)
 class SceneHole:
     """A hole as it was really made, in the frame of its part; its rim lies at z = 0."""
 
@@ -62,11 +72,13 @@ class SceneHole:
 
 @dataclass(frozen=True, slots=True)
 class ScenePlate:
-    """Frame (on its mating face) or deck (on its outer face)."""
+    """A flat part with holes; its frame lies in the middle of the face that is seen."""
 
-    kind: Literal["frame", "deck"]
+    name: str
     camera_T_part: RigidTransform
     size_m: tuple[float, float]
+    thickness_m: float
+    """Of the sides that one sees past its edges."""
     holes: tuple[SceneHole, ...]
     seed: int
     """For texture, scratches and false circles: fixed to the part for the whole run."""
@@ -109,18 +121,20 @@ class SceneChessboard:
     seed: int
 
 
+Body = ScenePlate | SceneTargetBoard | SceneChessboard
+"""Whatever a scene can show to a camera."""
+
+
 @dataclass(frozen=True, slots=True)
 class CameraScene:
-    """One exposure of one head. Objects that are absent are None; nearer ones hide farther ones."""
+    """One exposure of one camera or stereo head."""
 
-    head: str
+    camera: str
     time_s: float
-    stereo: StereoTruth
-    frame: ScenePlate | None
-    deck: ScenePlate | None
-    target_board: SceneTargetBoard | None
-    chessboard: SceneChessboard | None
+    optics: StereoTruth | MonoTruth
+    bodies: tuple[Body, ...]
+    """In any order: nearer ones hide farther ones."""
     light_seed: int
-    """Direction of the light gradient; fixed for the head in one run."""
+    """Direction of the light gradient; fixed for the camera in one run."""
     noise_seed: int
     """Sensor noise; differs from exposure to exposure."""

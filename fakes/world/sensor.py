@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from fakes.scenario import ForceSensor
+from fakes.sections import ForceSensor
 from fakes.world.frames import Array, stream
-from fakes.world.truth import SensorTruth
+from fakes.world.truth import ForceSensorTruth
 
 _BLOCK = 4096
 _RATE_HZ = 1000
@@ -13,11 +13,18 @@ _RATE_HZ = 1000
 class ForceReading:
     """Raw readings by load and time; the noise of a millisecond is always the same."""
 
-    def __init__(self, settings: ForceSensor, truth: SensorTruth, seed: int) -> None:
-        self._truth, self._seed = truth, seed
+    def __init__(
+        self,
+        settings: ForceSensor,
+        truth: ForceSensorTruth,
+        seed: int,
+        keys: tuple[str, ...] = (),
+    ) -> None:
+        """``keys`` tell the noise of this sensor from that of others in the cell."""
+        self._truth, self._seed, self._keys = truth, seed, keys
         self._range = np.repeat([settings.range_n, settings.range_nm], 3)
         self._sigma = np.repeat([settings.noise_n, settings.noise_nm], 3)
-        rng = stream(seed, "force vibration")
+        rng = stream(seed, "force vibration", *keys)
         share = settings.noise_nm / settings.noise_n if settings.noise_n > 0 else 0.0
         self._hum = settings.vibration_n * np.array([1, 1, 1, share, share, share]) * np.sqrt(2)
         self._hum_rate = 2 * np.pi * settings.vibration_hz
@@ -35,6 +42,6 @@ class ForceReading:
     def _noise(self, time_s: float) -> Array:
         block, place = divmod(max(0, int(time_s * _RATE_HZ)), _BLOCK)
         if block not in self._blocks:
-            rng = stream(self._seed, "force noise", block)
+            rng = stream(self._seed, "force noise", *self._keys, block)
             self._blocks = {block: rng.normal(0, 1, (_BLOCK, 6)) * self._sigma}
         return np.asarray(self._blocks[block][place])

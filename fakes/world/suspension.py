@@ -1,4 +1,4 @@
-"""Gripper, fixture and deck as one mass that hangs from the flange by springs, and what it touches.
+"""What hangs from a flange as one mass on springs, and what it touches.
 
 State: deflection of the centre of mass from where the flange would carry it, and its rate, each
 x, y, z (m) and rotation vector (rad) in tool axes. Contacts are one-sided springs with dampers in
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.linalg import expm
 
-from fakes.scenario import Payload
+from fakes.sections import Springs
 from fakes.world.frames import Array
 
 Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]
@@ -36,12 +36,12 @@ class Contacts:
 class Suspension:
     """Integrates the payload between two times of the world's clock."""
 
-    def __init__(self, payload: Payload, mass_kg: float, contacts: Contacts) -> None:
-        self.mass = np.array([mass_kg] * 3 + list(payload.inertia_kg_m2))
+    def __init__(self, springs: Springs, mass_kg: float, contacts: Contacts) -> None:
+        self.mass = np.array([mass_kg] * 3 + list(springs.inertia_kg_m2))
         self.stiffness = np.array(
-            [*payload.stiffness_n_m, *payload.rotational_stiffness_nm_rad], dtype=float
+            [*springs.stiffness_n_m, *springs.rotational_stiffness_nm_rad], dtype=float
         )
-        self.damping = 2 * payload.damping_ratio * np.sqrt(self.stiffness * self.mass)
+        self.damping = 2 * springs.damping_ratio * np.sqrt(self.stiffness * self.mass)
         self.contacts = contacts
         self.state = np.zeros(12)
         self.normal_forces = np.zeros(len(contacts.stiffness_n_m))

@@ -1,55 +1,70 @@
-"""What the large-field head measures."""
+"""What a tracker measures: the positions of targets on flanges and bodies."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import LargeField
-from fakes.world.frames import MM, Array, stream
-from fakes.world.snapshot import Snapshot
+from fakes.sections import Tracker
+from fakes.world.frames import MM, Array
+
+UP = np.array([0.0, 0.0, 1.0])
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A target at its real place on the body that carries it."""
+
+    name: str
+    cell_T_body: RigidTransform
+    place_m: Array
+    facing: Array
+    """Unit vector away from the body, in its frame."""
 
 
 @dataclass(frozen=True, slots=True)
 class SeenTarget:
-    """Mean of a target's position in the frame of the head, and its standard deviation."""
+    """Mean of a target's position in the frame of the tracker, and its standard deviation."""
 
     name: str
     position_m: Array
     sigma_m: float
 
 
-def seen_targets(world: Snapshot, frames: int, exposure: int) -> tuple[SeenTarget, ...]:
-    """Targets in view, with the noise of so many exposures."""
-    settings, rng = world.scenario.large_field, stream(world.seed, "targets", exposure)
-    head_T_cell = world.truth.large_field.cell_T_head.inv()
+def flange_targets(
+    cell_T_flange: RigidTransform, places_m: Mapping[str, Array]
+) -> Iterator[Target]:
+    """The ring on a flange; it is seen from behind, where the arm is."""
+    return (Target(name, cell_T_flange, place, -UP) for name, place in places_m.items())
+
+
+def seen_targets(
+    settings: Tracker,
+    cell_T_tracker: RigidTransform,
+    candidates: Iterable[Target],
+    frames: int,
+    rng: np.random.Generator,
+) -> tuple[SeenTarget, ...]:
+    """Targets in view, with the noise of the mean of so many exposures.
+
+    Hidden targets use up their share of ``rng`` too, so that the noise of one target does not
+    depend on whether another is in view.
+    """
+    tracker_T_cell = cell_T_tracker.inv()
     sigma_m = settings.noise_mm * MM / np.sqrt(frames)
     seen = []
-    for name, head_T_body, place, facing in _candidates(world, head_T_cell):
-        position = head_T_body.apply(place)
+    for target in candidates:
+        tracker_T_body = tracker_T_cell * target.cell_T_body
+        position = tracker_T_body.apply(target.place_m)
         noise = rng.normal(0, sigma_m, 3)
-        if _visible(settings, position, head_T_body.rotation.apply(facing)):
-            seen.append(SeenTarget(name, position + noise, float(sigma_m)))
+        if _visible(settings, position, tracker_T_body.rotation.apply(target.facing)):
+            seen.append(SeenTarget(target.name, position + noise, float(sigma_m)))
     return tuple(seen)
 
 
-def _candidates(
-    world: Snapshot, head_T_cell: RigidTransform
-) -> Iterator[tuple[str, RigidTransform, Array, Array]]:
-    """Name, pose of the body that carries it, place on that body, direction it faces."""
-    truth, up = world.truth.large_field, np.array([0.0, 0.0, 1.0])
-    head_T_flange = head_T_cell * world.flanges["main"]
-    for name, place in truth.flange_targets_m.items():
-        yield name, head_T_flange, place, -up
-    if world.placed.target_board is not None:
-        head_T_board = head_T_cell * world.placed.target_board
-        for name, place in truth.board_targets_m.items():
-            yield name, head_T_board, place, up
-
-
-def _visible(settings: LargeField, position: Array, facing: Array) -> bool:
-    """In range, within the cone of view, and turned towards the head."""
+def _visible(settings: Tracker, position: Array, facing: Array) -> bool:
+    """In range, within the cone of view, and turned towards the tracker."""
     near, far = settings.range_mm
     range_m = float(np.linalg.norm(position))
     in_range = near * MM <= range_m <= far * MM

@@ -1,148 +1,152 @@
-"""The simulated cell: arms, parts, boards and sensor, advanced in time by its caller.
+"""The simulated cell: arms, cameras, trackers and force sensors, advanced in time by its caller.
 
 No I/O and no clock: every method takes or has been given the time, in seconds since switch-on, and
-times never run backwards. Poses are true; ``cell`` is the base frame of the main robot.
+times never run backwards. Poses are true; ``cell`` is the frame in which the scenario places the
+bases of its robots.
 """
 
-from dataclasses import replace
-from typing import Any
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, ClassVar, Generic, TypeVar
 
-import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
-from fakes.scenario import HeadName, Scenario
-from fakes.world.boards import chessboard_view, target_board_pose
-from fakes.world.frames import Array
-from fakes.world.payload import STEP_S, Payload
-from fakes.world.report import truth_report
+from fakes.scenario import Scenario
+from fakes.world.frames import Array, stream, stream_seed
+from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
-from fakes.world.scene import CameraScene
+from fakes.world.scene import Body, CameraScene
 from fakes.world.sensor import ForceReading
-from fakes.world.snapshot import Placed, Snapshot
-from fakes.world.targets import SeenTarget, seen_targets
-from fakes.world.truth import draw, draw_parts
-from fakes.world.views import camera_scene, measuring_camera_pose
+from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
+from fakes.world.truth import draw, stream_keys
 
-_HISTORY = 1024
+S_co = TypeVar("S_co", bound=Scenario, covariant=True)
+
+Command = Callable[..., Mapping[str, Any] | None]
+"""Something that the hands of an operator do; returns what the control port answers."""
 
 
-class World:
-    """One cell: its devices by the scenario's hardware seed, all else by ``seed``."""
+class World(ABC, Generic[S_co]):
+    """The devices of one cell by the scenario's hardware seed, all else by ``seed``.
 
-    def __init__(self, scenario: Scenario, seed: int) -> None:
+    A scene is a class derived from this one: it adds the bodies.
+    """
+
+    scenario_model: ClassVar[type[Scenario]]
+    """Sections of the scenario file of this scene."""
+    fault_texts: ClassVar[Mapping[str, str]] = {}
+    """Faults of the bodies by name, with their meaning."""
+
+    def __init__(self, scenario: S_co, seed: int) -> None:
         self.scenario, self.seed = scenario, seed
         self.truth = draw(scenario, scenario.hardware_seed)
         self.arms = {
             name: RobotArm(robot, self.truth.robots[name], seed)
             for name, robot in scenario.robots.items()
         }
-        self.faults = FaultBoard("world")
-        self.placed = Placed()
-        self.loads = 0
+        self.faults = FaultBoard("world", self.fault_texts)
         self.time_s = 0.0
         self._tick = 0
-        self._reading = ForceReading(scenario.force_sensor, self.truth.sensor, seed)
-        self._history = np.zeros((_HISTORY, 6))
-        self._flange = self.arms["main"].flange_matrix(0.0)
         self._exposures = 0
-        if scenario.parts.loaded_at_start:
-            self.load_parts()
-        self.rebuild()
+        self.sensors = {
+            name: MountedSensor(
+                name,
+                self.arms[sensor.mounted_on],
+                ForceReading(
+                    sensor,
+                    self.truth.force_sensors[name],
+                    seed,
+                    stream_keys(scenario.force_sensors, name),
+                ),
+            )
+            for name, sensor in scenario.force_sensors.items()
+        }
 
-    # -- operator -------------------------------------------------------------------------------
-    def load_parts(self) -> None:
-        """Bring in the next frame and put the next deck into the gripper."""
-        self.loads += 1
-        parts = draw_parts(self.scenario, self.seed, self.loads)
-        self.placed = replace(self.placed, parts=parts, frame=True, deck=True)
-        self.rebuild()
+    # -- what a scene says ----------------------------------------------------------------------
+    @abstractmethod
+    def load_on(self, sensor: str, flange: Array, *, moving: bool) -> Array:
+        """Let one millisecond pass for what hangs behind a force sensor; returns its true load.
 
-    def set_present(self, *, frame: bool | None = None, deck: bool | None = None) -> None:
-        """Take frame or deck of the loaded parts away, or bring them back."""
-        self.placed = replace(
-            self.placed,
-            frame=self.placed.frame if frame is None else frame,
-            deck=self.placed.deck if deck is None else deck,
-        )
-        self.rebuild()
+        Called once for each sensor in every step. ``flange`` is the true cell_T_flange at the end
+        of that millisecond, 4x4: the very same array as before while the robot stands. The load is
+        Fx, Fy, Fz (N), Mx, My, Mz (N·m) in the axes of the sensor as it is mounted.
+        """
 
-    def place_target_board(self, head: HeadName, number: int) -> None:
-        """Lay board P under a head; each number is another placement."""
-        pose = target_board_pose(self.scenario, self.seed, head, number)
-        self.placed = replace(self.placed, target_board=pose)
+    @abstractmethod
+    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterable[Body]:
+        """Whatever a camera at this pose can see."""
 
-    def place_chessboard(self, head: HeadName, number: int) -> None:
-        """Lay the chessboard where a head measures; each number is another placement."""
-        view = chessboard_view(self.scenario, self.seed, head, number)
-        station = measuring_camera_pose(self.snapshot(), head)
-        self.placed = replace(self.placed, chessboard=station * view)
+    def targets_for(self, tracker: str) -> Iterable[Target]:  # noqa: ARG002  for scenes that care
+        """Targets that a tracker may find, beside those on the flanges."""
+        return ()
 
-    def remove_boards(self) -> None:
-        """Take both boards away."""
-        self.placed = replace(self.placed, target_board=None, chessboard=None)
+    @abstractmethod
+    def truth_report(self) -> dict[str, Any]:
+        """True poses and forces at this moment in mm, degrees and N, as JSON values."""
 
-    def rebuild(self) -> None:
-        """Take over a change of parts or of the faults of the world."""
-        placed = self.placed
-        self.payload = Payload(
-            self.scenario,
-            self.truth.sensor,
-            placed.parts if placed.deck else None,
-            self.faults,
-            frame_present=placed.frame,
-        )
-        self.payload.advance(self._flange, moving=False)
+    def commands(self) -> Mapping[str, Command]:
+        """What the control port can ask for in this scene, by name."""
+        return {}
+
+    def faults_changed(self) -> None:
+        """Take over a change of the injected faults of the bodies."""
 
     # -- time -----------------------------------------------------------------------------------
     def advance(self, to_s: float) -> None:
         """Let the time pass up to ``to_s``, in steps of one millisecond."""
-        main = self.arms["main"]
         last = int(to_s / STEP_S)
         while self._tick < last:
             self._tick += 1
             self.time_s = self._tick * STEP_S
-            moving = main.moving(self.time_s - STEP_S)
-            if moving:
-                self._flange = main.flange_matrix(self.time_s)
-            self.payload.advance(self._flange, moving=moving)
-            self._history[self._tick % _HISTORY] = self.payload.load
+            for sensor in self.sensors.values():
+                moving = sensor.follow(self.time_s)
+                load = self.load_on(sensor.name, sensor.flange, moving=moving)
+                sensor.keep(self._tick, load)
 
-    def sensor_wrench(self, time_s: float) -> Array:
+    def sensor_wrench(self, sensor: str, time_s: float) -> Array:
         """Raw reading at a time of the last second: Fx, Fy, Fz, Mx, My, Mz in N and N·m."""
         self.advance(time_s)
-        tick = min(max(int(time_s / STEP_S), self._tick - _HISTORY + 1), self._tick)
-        return self._reading.read(self._history[tick % _HISTORY], time_s)
+        return self.sensors[sensor].read(time_s, self._tick)
 
     # -- views ----------------------------------------------------------------------------------
-    def snapshot(self) -> Snapshot:
-        """The world now."""
-        deck = None
-        if self.placed.parts is not None and self.placed.deck:
-            deck = RigidTransform.from_matrix(self._flange) * self.payload.deck_in_flange()
-        return Snapshot(
-            scenario=self.scenario,
-            seed=self.seed,
-            truth=self.truth,
+    def flange(self, robot: str) -> RigidTransform:
+        """True cell_T_flange of an arm now."""
+        return self.arms[robot].flange(self.time_s)
+
+    def camera_pose(self, camera: str) -> RigidTransform:
+        """True cell_T_camera; of a stereo head the pose of its left camera."""
+        mount_T_camera = self.truth.cameras[camera].mount_T_camera
+        carrier = self.scenario.all_cameras()[camera].carried_by
+        return mount_T_camera if carrier is None else self.flange(carrier) * mount_T_camera
+
+    def camera_scene(self, camera: str) -> CameraScene:
+        """What a camera or stereo head sees now; every call is another exposure."""
+        self._exposures += 1
+        truth = self.truth.cameras[camera]
+        return CameraScene(
+            camera=camera,
             time_s=self.time_s,
-            placed=self.placed,
-            flanges={name: arm.flange(self.time_s) for name, arm in self.arms.items()},
-            cell_T_deck=deck,
-            loads=self.loads,
-            contact_force_n=self.payload.contact_force_n,
-            peak_contact_force_n=self.payload.peak_contact_force_n,
+            optics=truth.optics,
+            bodies=tuple(self.bodies_before(self.camera_pose(camera).inv())),
+            light_seed=truth.light_seed,
+            noise_seed=stream_seed(self.seed, "exposure", camera, self._exposures),
         )
 
-    def camera_scene(self, head: HeadName) -> CameraScene:
-        """What a head sees now; every call is another exposure."""
+    def targets(self, tracker: str, frames: int) -> tuple[SeenTarget, ...]:
+        """Targets that a tracker sees now, averaged over a number of exposures."""
         self._exposures += 1
-        return camera_scene(self.snapshot(), head, self._exposures)
-
-    def targets(self, frames: int) -> tuple[SeenTarget, ...]:
-        """Targets that the large-field head sees now, averaged over a number of exposures."""
-        self._exposures += 1
-        return seen_targets(self.snapshot(), frames, self._exposures)
+        settings, truth = self.scenario.trackers[tracker], self.truth.trackers[tracker]
+        carried = flange_targets(self.flange(settings.targets_on), truth.flange_targets_m)
+        candidates = (*carried, *self.targets_for(tracker))
+        rng = stream(self.seed, "targets", self._exposures)
+        return seen_targets(settings, truth.cell_T_tracker, candidates, frames, rng)
 
     def report(self) -> dict[str, Any]:
         """The truth in mm, degrees and N, as JSON values."""
-        return truth_report(self.snapshot())
+        return {
+            "seed": self.seed,
+            "hardware_seed": self.truth.seed,
+            "time_s": self.time_s,
+            **self.truth_report(),
+        }

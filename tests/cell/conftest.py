@@ -32,7 +32,7 @@ def visited(standing: OwnCell, tmp_path: Path) -> Iterator[OwnCell]:
     yield cell
     cell.kill_all()
     with cell.control() as control:
-        for device in ("main", "aux_1", "aux_2", "sensor", "head_1", "head_2", "large_field"):
+        for device in ("main", "aux_1", "aux_2", "force", "head_1", "head_2", "tracker"):
             control.request("clear", device=device)
         control.request("present", frame=True, deck=True)
         control.request("load")

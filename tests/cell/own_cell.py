@@ -9,6 +9,7 @@ import socket
 import subprocess
 import sys
 import time
+import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -20,8 +21,7 @@ from uuid import uuid4
 from fakes.demo.control import Control
 
 ROOT = Path(__file__).parents[2]
-_SCENARIO = ROOT / "config" / "fake-cell.toml"
-_CELL = ROOT / "config" / "cell.fake.toml"
+CONFIG = ROOT / "config"
 _PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD) = (\d{4})\b")
 _MARK = "CELLCTL_TEST_FAMILY"
 READY_S = 60.0
@@ -46,30 +46,46 @@ class OwnCell:
     """Scenario, cell file and run store in a folder; no two of them share a port."""
 
     folder: Path
+    shipped: str = "deck"
+    """Name of the shipped files: ``NAME.toml`` and ``NAME.scenario.toml``."""
     ports: dict[int, int] = field(default_factory=dict)
     """Shipped port to own port."""
     programs: list["Program"] = field(default_factory=list)
 
     @classmethod
-    def make(cls, folder: Path) -> Self:
-        own = cls(folder)
+    def make(cls, folder: Path, shipped: str = "deck") -> Self:
+        own = cls(folder, shipped)
         own._write_cell()
-        scenario = _SCENARIO.read_text(encoding="utf-8")
+        scenario = own._shipped_scenario.read_text(encoding="utf-8")
         own.scenario.write_text(own._renumbered(scenario), encoding="utf-8")
         return own
 
     def visited_from(self, folder: Path) -> Self:
         """The same fake cell with another cell file and store, and a Modbus port of its own."""
-        visitor = type(self)(folder, {**self.ports, 5020: free_port()})
+        ports = {**self.ports, self._shipped_modbus_port: free_port()}
+        visitor = type(self)(folder, self.shipped, ports)
         visitor._write_cell()
         return visitor
 
     def _write_cell(self) -> None:
-        text = _CELL.read_text(encoding="utf-8")
+        text = self._shipped_cell.read_text(encoding="utf-8")
         copytree(ROOT / "config" / "demo-calibration", self.calibration, dirs_exist_ok=True)
         text = text.replace('"demo-calibration"', f'"{self.calibration}"')
         text = text.replace('"features/', f'"{ROOT}/config/features/')
         self.cell.write_text(self._renumbered(text), encoding="utf-8")
+
+    @property
+    def _shipped_cell(self) -> Path:
+        return CONFIG / f"{self.shipped}.toml"
+
+    @property
+    def _shipped_scenario(self) -> Path:
+        return CONFIG / f"{self.shipped}.scenario.toml"
+
+    @property
+    def _shipped_modbus_port(self) -> int:
+        cell = tomllib.loads(self._shipped_cell.read_text(encoding="utf-8"))
+        return int(cell["plc"]["port"])
 
     def _renumbered(self, text: str) -> str:
         def own_port(match: re.Match[str]) -> str:
@@ -80,7 +96,7 @@ class OwnCell:
 
     @property
     def scenario(self) -> Path:
-        return self.folder / "fake-cell.toml"
+        return self.folder / "scenario.toml"
 
     @property
     def cell(self) -> Path:
@@ -97,7 +113,7 @@ class OwnCell:
 
     @property
     def modbus_port(self) -> int:
-        return self.ports[5020]
+        return self.ports[self._shipped_modbus_port]
 
     def change(self, old: str, new: str, count: int = -1) -> None:
         """Another line in the cell file; fails when the line is not there."""
@@ -134,7 +150,8 @@ class OwnCell:
     @contextmanager
     def control(self) -> Iterator[Control]:
         """The operator's hands at the fake cell."""
-        control = Control(self.ports[7900])
+        shipped = tomllib.loads(self._shipped_scenario.read_text(encoding="utf-8"))
+        control = Control(self.ports[shipped["control_port"]])
         try:
             yield control
         finally:

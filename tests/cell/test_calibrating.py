@@ -6,7 +6,7 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.runtime.job_factory import PLANNED
-from fakes.demo.calibration import PROCEDURES
+from fakes.demo.deck_calibration import PROCEDURES
 from tests.cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(900), pytest.mark.long]

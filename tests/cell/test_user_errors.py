@@ -122,9 +122,9 @@ def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
 @pytest.mark.parametrize(
     ("device", "fault", "words"),
     [
-        ("sensor", "silent", ("F205", "force sensor", "no frame")),
+        ("force", "silent", ("F205", "force sensor", "no frame")),
         ("main", "wrong_version", ("F204", "SR500A", "SJL/2")),
-        ("large_field", "silent", ("F205", "tracker")),
+        ("tracker", "silent", ("F205", "tracker")),
     ],
 )
 def test_one_device_is_silent_or_strange(

@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
-from fakes.faults import FaultBoard
-from fakes.scenario import Channel, Scenario, load
+from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.scenario import Scenario, load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller_logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
@@ -11,7 +12,7 @@ from tests.wire.scenarios import as_on_a_real_cell
 
 HOME = "0,-90,90,0,90,90"
 WORK = "0,-52.766,109.14,0,33.626,90"
-SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "fake-cell.toml"))
+SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "deck.scenario.toml"))
 
 
 class Bench:
@@ -19,7 +20,7 @@ class Bench:
 
     def __init__(self, scenario: Scenario = SCENARIO) -> None:
         robot = scenario.robots["main"]
-        self.faults = FaultBoard("main")
+        self.faults = FaultBoard("main", ROBOT_FAULTS)
         arm = RobotArm(robot, draw(scenario, 1).robots["main"], 1)
         self.controller = Controller(arm, self.faults)
         self.time_s = 0.0

@@ -6,8 +6,9 @@ from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
-from fakes.faults import FaultBoard
-from fakes.scenario import Channel, load
+from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.scenario import load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_records import decode, encode
 from fakes.world.robot import RobotArm
@@ -15,7 +16,7 @@ from fakes.world.truth import draw
 from tests.wire.scenarios import as_on_a_real_cell
 
 WAIT_S = 5.0
-SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "fake-cell.toml"))
+SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[2] / "config" / "deck.scenario.toml"))
 
 
 class Line:
@@ -105,7 +106,7 @@ async def controller(pc: Pc, *channels: Channel) -> AsyncIterator[SjlController]
     arm = RobotArm(robot, draw(SCENARIO, 1).robots["main"], 1)
     started_s = time.monotonic()
     device = SjlController(
-        arm, lambda: time.monotonic() - started_s, ports, faults=FaultBoard("main")
+        arm, lambda: time.monotonic() - started_s, ports, faults=FaultBoard("main", ROBOT_FAULTS)
     )
     device.start()
     try:

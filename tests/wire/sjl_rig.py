@@ -2,7 +2,6 @@
 
 import asyncio
 import time
-import tomllib
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -12,7 +11,8 @@ import numpy as np
 
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from fakes.scenario import Channel, Scenario
+from fakes.scenario import load
+from fakes.sections import Channel
 from fakes.wire.sjl_controller import SjlController
 from fakes.wire.sjl_controller_stream import StreamOffer
 from fakes.world.robot import RobotArm
@@ -21,7 +21,7 @@ from tests.ports import free_ports
 from tests.wire.proxy import ChaosProxy
 from tests.wire.scenarios import as_on_a_real_cell
 
-SCENARIO = Path(__file__).parents[2] / "config" / "fake-cell.toml"
+SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
 OFFER = StreamOffer()
 READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
 """Deck above the station, away from limits and singularities."""
@@ -57,7 +57,7 @@ async def sjl_rig(
 ) -> AsyncIterator[Rig]:
     """Wired up but neither end started; both are stopped at the end. ``offer`` is what the job
     program offers for streamed motion."""
-    scenario = as_on_a_real_cell(Scenario.model_validate(tomllib.loads(SCENARIO.read_text())))
+    scenario = as_on_a_real_cell(load(SCENARIO))
     command_port, state_port, guard_port = free_ports(3)
     settings = SiasunConfig.model_validate(
         {

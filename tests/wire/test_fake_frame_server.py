@@ -103,13 +103,10 @@ def scenes() -> Callable[[], CameraScene]:
     def scene() -> CameraScene:
         number = next(counter)
         return CameraScene(
-            head="head_1",
+            camera="head_1",
             time_s=12.5 + number,
-            stereo=stereo,
-            frame=None,
-            deck=deck,
-            target_board=None,
-            chessboard=None,
+            optics=stereo,
+            bodies=(deck,),
             light_seed=1,
             noise_seed=100 + number,
         )

@@ -13,7 +13,7 @@ import pytest
 ROBOT_PORTS = [
     f"{robot}.{channel}" for robot in ("main", "aux_1", "aux_2") for channel in ("CMD", "STA")
 ]
-FREE = ["main.GRD", "sensor", "control", "large_field", "head_1", "head_2"]
+FREE = ["main.GRD", "force", "control", "tracker", "head_1", "head_2"]
 
 
 @asynccontextmanager
@@ -60,14 +60,14 @@ async def test_cell_from_start_to_end() -> None:
         again = (await ask(control, cmd="truth"))["truth"]
         assert again["base_T_frame_mm_deg"] != truth["base_T_frame_mm_deg"]
 
-        seen = await ask(ports["large_field"], cmd="measure", frames=2)
+        seen = await ask(ports["tracker"], cmd="measure", frames=2)
         assert [target["name"] for target in seen["targets"]] == [f"F{n}" for n in range(1, 7)]
         await ask(control, cmd="place_target_board", head="head_1")
-        seen = await ask(ports["large_field"], cmd="measure", frames=2)
+        seen = await ask(ports["tracker"], cmd="measure", frames=2)
         assert len(seen["targets"]) == 15
-        await ask(control, cmd="inject", device="large_field", name="error", count=1)
-        assert (await ask(ports["large_field"], cmd="identify"))["status"] == "error"
-        assert (await ask(ports["large_field"], cmd="identify"))["serial"] == "ET-0001"
+        await ask(control, cmd="inject", device="tracker", name="error", count=1)
+        assert (await ask(ports["tracker"], cmd="identify"))["status"] == "error"
+        assert (await ask(ports["tracker"], cmd="identify"))["serial"] == "ET-0001"
 
         for bad in (
             {"cmd": "dance"},

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fakes.faults import FaultBoard
+from fakes.faults import ROBOT_FAULTS, FaultBoard
 from tests.wire.fake_robot_bench import Bench, at_work, words
 
 
@@ -90,4 +90,4 @@ def test_no_motion_at_override_zero(bench: Bench) -> None:
 
 def test_unknown_fault_names_are_refused() -> None:
     with pytest.raises(ValueError, match="knows no fault"):
-        FaultBoard("main").inject("gremlins")
+        FaultBoard("main", ROBOT_FAULTS).inject("gremlins")

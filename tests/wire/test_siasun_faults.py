@@ -18,7 +18,7 @@ from cellctl.errors.robot import (
     RobotNotReady,
 )
 from cellctl.interfaces.robot import RobotState
-from fakes.scenario import Channel
+from fakes.sections import Channel
 from tests.wire.sjl_rig import Rig, sjl_rig
 
 Value = TypeVar("Value")

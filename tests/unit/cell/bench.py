@@ -40,7 +40,7 @@ from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
 
 ROOT = Path(__file__).parents[3]
-CELL_FILE = ROOT / "config" / "cell.fake.toml"
+CELL_FILE = ROOT / "config" / "deck.toml"
 HEADS = {"head_1": "FH-0001", "head_2": "FH-0002"}
 SIGMA = np.repeat([2e-6, 5e-6], 3)
 

@@ -13,7 +13,7 @@ from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 CONFIG = Path(__file__).parents[3] / "config"
 
 
-@pytest.mark.parametrize("name", ["cell.fake.toml", "cell.toml"])
+@pytest.mark.parametrize("name", ["deck.toml", "cell.toml"])
 def test_the_shipped_cell_files_are_good(name: str):
     assert problems(CONFIG / name) == []
 
@@ -28,7 +28,7 @@ def test_the_template_keeps_its_data_where_the_unit_lets_the_daemon_write():
 
 def changed(tmp_path: Path, **replacements: tuple[str, str]) -> Path:
     """The fake cell's file with some lines replaced, next to its feature files."""
-    text = (CONFIG / "cell.fake.toml").read_text()
+    text = (CONFIG / "deck.toml").read_text()
     for old, new in replacements.values():
         assert old in text
         text = text.replace(old, new, 1)
@@ -147,7 +147,7 @@ def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
 
 
 def test_recipe_numbers_must_differ(tmp_path: Path):
-    text = (CONFIG / "cell.fake.toml").read_text()
+    text = (CONFIG / "deck.toml").read_text()
     once = text[text.index("[[recipes]]") :]
     path = changed(tmp_path, twice=("[[recipes]]", f"{once}\n[[recipes]]"))
     (problem,) = problems(path)
@@ -159,7 +159,7 @@ def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == 1
     assert "recipes.0.pose_correction" in result.output
-    assert CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")]).exit_code == 0
+    assert CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")]).exit_code == 0
 
 
 def test_check_tells_of_calibrations_that_this_user_may_not_write(
@@ -215,5 +215,5 @@ def test_devices_and_processes_belong_together(tmp_path: Path, old: str, new: st
 
 
 def test_check_says_which_recipes_the_cell_can_run():
-    result = CliRunner().invoke(app, ["check", str(CONFIG / "cell.fake.toml")])
+    result = CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")])
     assert "(deck-to-frame): this cell can run it" in result.output

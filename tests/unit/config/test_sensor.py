@@ -9,7 +9,7 @@ CONFIG = Path(__file__).parents[3] / "config"
 
 
 def slowed(tmp_path: Path, rate_hz: int) -> Path:
-    text = (CONFIG / "cell.fake.toml").read_text()
+    text = (CONFIG / "deck.toml").read_text()
     (tmp_path / "features").symlink_to(CONFIG / "features")
     path = tmp_path / "cell.toml"
     path.write_text(text.replace("rate_hz = 1000", f"rate_hz = {rate_hz}"))

@@ -110,7 +110,7 @@ def test_a_still_wrench_is_the_mean_of_steady_readings(monkeypatch: pytest.Monke
         return await still_wrench(cell.robot, cell.guard, cell.flange_T_sensor)
 
     _, wrench = run_simulated(cell.start_s, cell.advance, run)
-    sensor = cell.world.truth.sensor
+    sensor = cell.world.truth.force_sensors["force"]
     load = np.linalg.solve(sensor.matrix, wrench - sensor.offset)
     assert np.linalg.norm(load[:3]) == pytest.approx(200.0 * 9.80665, rel=0.002)
     monkeypatch.setattr(payload, "STEADY_N", 0.1)

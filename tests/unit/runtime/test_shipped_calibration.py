@@ -18,9 +18,10 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
-from fakes import scenario as scenarios
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.world.frames import from_written
-from fakes.world.world import World
+from fakes.world.scene import StereoTruth
 from tests.unit.fakes.world.driving import to_taught
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -39,18 +40,21 @@ def geometry(calibrations: CalibrationSnapshot) -> CalibrationSet:
 
 
 @pytest.fixture(scope="module")
-def world() -> World:
-    world = World(scenarios.load(CONFIG / "fake-cell.toml"), 1)
+def world() -> DeckOnFrame:
+    world = DeckOnFrame(DeckScenario.read(CONFIG / "deck.scenario.toml"), 1)
     for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
         to_taught(world, robot, pose)
     return world
 
 
 @pytest.mark.parametrize("index", [0, 1])
-def test_heads_see_points_where_they_are(geometry: CalibrationSet, world: World, index: int):
+def test_heads_see_points_where_they_are(
+    geometry: CalibrationSet, world: DeckOnFrame, index: int
+) -> None:
     """What counts is a distance measured in the working volume, not single parameters."""
     head = geometry.heads[index]
-    truth = world.truth.heads[("head_1", "head_2")[index]].stereo
+    truth = world.truth.cameras[("head_1", "head_2")[index]].optics
+    assert isinstance(truth, StereoTruth)
     baseline_m = np.linalg.norm(head.translation_m)
     true_baseline_m = np.linalg.norm(truth.right_T_left.translation)
     assert baseline_m == pytest.approx(true_baseline_m, abs=0.05 * MM)
@@ -62,9 +66,11 @@ def test_heads_see_points_where_they_are(geometry: CalibrationSet, world: World,
     assert turn < 0.02
 
 
-def test_base_frame_is_where_it_says_within_its_uncertainty(geometry: CalibrationSet, world: World):
+def test_base_frame_is_where_it_says_within_its_uncertainty(
+    geometry: CalibrationSet, world: DeckOnFrame
+) -> None:
     """What the data sheet says of d1 and of A1 is only as true as the arm was built."""
-    truth = world.truth.large_field.cell_T_head.inv()
+    truth = world.truth.trackers["tracker"].cell_T_tracker.inv()
     arm = world.scenario.robots["main"]
     built_m = arm.link_sigma_mm * MM
     built_rad = np.radians(np.hypot(arm.link_sigma_deg, arm.joint_sigma_deg))
@@ -73,7 +79,7 @@ def test_base_frame_is_where_it_says_within_its_uncertainty(geometry: Calibratio
     assert_within(UncertainPose(measured.pose, measured.covariance + built), truth)
 
 
-def test_heads_are_where_they_say(geometry: CalibrationSet, world: World):
+def test_heads_are_where_they_say(geometry: CalibrationSet, world: DeckOnFrame) -> None:
     report = world.report()
     for pose, key, allowed_mm, allowed_deg in (
         (geometry.base_T_c1, "base_T_c1_mm_deg", 0.3, 0.03),
@@ -85,16 +91,16 @@ def test_heads_are_where_they_say(geometry: CalibrationSet, world: World):
         assert np.degrees(np.linalg.norm(turn_rad)) < allowed_deg, key
 
 
-def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot):
-    scenario = scenarios.load(CONFIG / "fake-cell.toml")
+def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot) -> None:
+    scenario = DeckScenario.read(CONFIG / "deck.scenario.toml")
     weight_n = 9.80665 * (scenario.payload.gripper_kg + scenario.payload.deck_kg)
     down = calibrations.get(PAYLOAD).gravity_compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
     assert np.linalg.norm(down) == pytest.approx(weight_n, rel=0.02)
 
 
 def test_latency_and_stiffness_are_true_and_on_the_safe_side(
-    calibrations: CalibrationSnapshot, world: World
-):
+    calibrations: CalibrationSnapshot, world: DeckOnFrame
+) -> None:
     """The latency is that of the fake robot; other parts may be stiffer, within the recipe's."""
     found = Commissioned.of(calibrations, recipe_id=1)
     assert found.stop_latency_s is not None

@@ -9,7 +9,7 @@ from cellctl.calibration.store.envelope import StoredCalibration, read_calibrati
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 
-CELL_FILE = Path(__file__).parents[4] / "config" / "cell.fake.toml"
+CELL_FILE = Path(__file__).parents[4] / "config" / "deck.toml"
 SHIPPED = CELL_FILE.parent / "demo-calibration"
 REQUIRED = [kind for kind in CALIBRATIONS if kind.required]
 SERIALS = {"head_1": "FH-0001", "head_2": "FH-0002", "payload": "M4347K-1"}

@@ -66,7 +66,9 @@ def test_hole(seed: int, blur_px: float) -> None:
     _, view, pose = scene_view(seed, blur_px)
     hole = SceneHole("H", "pin", (0.0, 0.0), 3e-3, None, 15e-3, through=True)
     options = RenderOptions.clean()
-    picture = clean_picture(view, (ScenePlate("deck", pose, (0.3, 0.3), (hole,), 1),), options, 0)
+    picture = clean_picture(
+        view, (ScenePlate("deck", pose, (0.3, 0.3), 15e-3, (hole,), 1),), options, 0
+    )
     share = share_of(picture, options.dark_grey, options.plate_grey)
     expected = brute_force(view, pose, lambda x, y: np.hypot(x, y) < 1.5e-3)
     assert 0.2 < expected.mean() < 0.6

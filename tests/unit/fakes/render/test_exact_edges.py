@@ -71,7 +71,7 @@ def test_hole_rim(kind: HoleKind, recessed: bool, seed: int) -> None:
     outer_m = min(outer_m, 12e-3)
     place = tuple(rng.uniform(-1e-3, 1e-3, 2))
     hole = SceneHole("H", kind, place, diameter_m, outer_m, 15e-3, through=True)
-    plate = ScenePlate("deck", pose, (0.4, 0.4), (hole,), seed)
+    plate = ScenePlate("deck", pose, (0.4, 0.4), 15e-3, (hole,), seed)
     options = RenderOptions.clean(cone_grey=150.0, recessed_rims=recessed)
     share = share_of(picture_of(view, plate, options), options.dark_grey, options.plate_grey)
     depth_m = (outer_m - diameter_m) / 2 if recessed else 0.0
@@ -92,7 +92,7 @@ def test_outer_rim_of_a_countersink(seed: int) -> None:
     view = random_view(rng, SIZE_PX, rng.uniform(0.05, 0.95, 2) * FIELD_PX)
     pose = pose_at(rng, view, 15)
     hole = SceneHole("H", "countersink", (0.0, 0.0), 5e-3, 10e-3, 15e-3, through=True)
-    plate = ScenePlate("deck", pose, (0.4, 0.4), (hole,), seed)
+    plate = ScenePlate("deck", pose, (0.4, 0.4), 15e-3, (hole,), seed)
     options = RenderOptions.clean(cone_grey=18.0, recessed_rims=True)
     share = share_of(picture_of(view, plate, options), options.dark_grey, options.plate_grey)
     rim = 5e-3 * np.column_stack([np.cos(DENSE), np.sin(DENSE), np.zeros_like(DENSE)])

@@ -7,11 +7,13 @@ import pytest
 from fakes.render.look import options_of
 from fakes.scenario import load
 
-SCENARIO = Path(__file__).parents[4] / "config" / "fake-cell.toml"
+SCENARIO = Path(__file__).parents[4] / "config" / "deck.scenario.toml"
 
 
 def test_options_follow_the_scenario() -> None:
-    rendering = load(SCENARIO).rendering.model_copy(
+    rendering = load(SCENARIO).rendering
+    assert rendering is not None
+    rendering = rendering.model_copy(
         update={
             "plate_level": 160.0,
             "hole_level": 20.0,

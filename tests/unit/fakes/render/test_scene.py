@@ -144,7 +144,7 @@ def test_opencv_reads_the_charuco_board() -> None:
 
 
 def scene_of(head: StereoTruth, deck: ScenePlate, noise_seed: int) -> CameraScene:
-    return CameraScene("head_1", 1.0 * noise_seed, head, None, deck, None, None, 3, noise_seed)
+    return CameraScene("head_1", 1.0 * noise_seed, head, (deck,), 3, noise_seed)
 
 
 def test_same_scene_gives_the_same_frame_and_a_new_seed_only_new_noise() -> None:
@@ -164,7 +164,7 @@ def test_same_scene_gives_the_same_frame_and_a_new_seed_only_new_noise() -> None
 def test_fingerprint_sees_a_micrometre() -> None:
     scene = scene_of(api.nominal_head(), api.nominal_plate("deck"), 1)
     same = scene_of(api.nominal_head(), api.nominal_plate("deck"), 1)
-    moved = replace(scene, deck=api.nominal_plate("deck", shift_m=(1e-6, 0.0, 0.0)))
+    moved = replace(scene, bodies=(api.nominal_plate("deck", shift_m=(1e-6, 0.0, 0.0)),))
     assert fingerprint(scene) == fingerprint(same)
     assert fingerprint(scene) != fingerprint(moved)
 

@@ -11,14 +11,16 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes import scenario as scenarios
 from fakes.faults import FaultBoard
+from fakes.scenes.deck_on_frame.parts import draw_parts
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.scenes.deck_on_frame.scene import FAULTS, deck_payload
 from fakes.world.payload import STEP_S, Payload
-from fakes.world.truth import draw, draw_parts
+from fakes.world.truth import draw
 
 mujoco = pytest.importorskip("mujoco")
 
-SCENARIO = Path(__file__).parents[4] / "config" / "fake-cell.toml"
+SCENARIO = Path(__file__).parents[4] / "config" / "deck.scenario.toml"
 MASS_KG = 200.0
 DT_S = 1e-4
 GAP_M = 5e-5
@@ -57,21 +59,22 @@ class Travel:
 class Rig:
     """The same payload for both: pads around the centre of mass, springs, contact."""
 
-    scenario: scenarios.Scenario
+    scenario: DeckScenario
     contact_n_m: float
     tilt: Rotation
 
     @property
     def com_T_deck(self) -> RigidTransform:
         payload = self.payload()
-        return payload._flange_T_com.inv() * payload._flange_T_deck
+        assert payload.touch is not None
+        return payload.flange_T_com.inv() * payload.touch.flange_T_body
 
     @property
     def pads_in_com_m(self) -> np.ndarray:
-        rim = self.payload()._rim
-        assert rim is not None
+        touch = self.payload().touch
+        assert touch is not None
         pads = self.scenario.contact.pads
-        return np.asarray(self.com_T_deck.apply(rim.points_m[:pads]))
+        return np.asarray(self.com_T_deck.apply(touch.points.points_m[:pads]))
 
     def payload(self) -> Payload:
         scenario = self.scenario
@@ -84,15 +87,18 @@ class Rig:
             deck_thickness_m=0.015,
             contact_stiffness_n_m=self.contact_n_m,
         )
-        sensor = draw(scenario, 1).sensor
-        return Payload(scenario, sensor, parts, FaultBoard("world"), frame_present=True)
+        sensor = draw(scenario, 1).force_sensors["force"]
+        faults = FaultBoard("world", FAULTS)
+        return deck_payload(scenario, sensor, parts, faults, frame_present=True)
 
     def fake_force(self, travel: Travel, seconds: float) -> np.ndarray:
         """Contact force of the fake, every millisecond."""
         payload = self.payload()
+        assert payload.touch is not None
         start = np.eye(4)
         start[:3, :3] = np.diag([1.0, -1.0, -1.0])
-        lowest_m = float(payload._rim.gaps(start @ payload._flange_T_deck.as_matrix()).min())  # type: ignore[union-attr]
+        start_T_deck = start @ payload.touch.flange_T_body.as_matrix()
+        lowest_m = float(payload.touch.points.gaps(start_T_deck).min())
         start[2, 3] = GAP_M - lowest_m
         payload.advance(start, moving=False)
         forces = []
@@ -105,7 +111,7 @@ class Rig:
 
 
 def rig(contact_n_m: float, tilt_deg: tuple[float, float] = (0.0, 0.0)) -> Rig:
-    scenario = scenarios.load(SCENARIO)
+    scenario = DeckScenario.read(SCENARIO)
     smooth = scenario.contact.model_copy(update={"friction": 0.0})
     tilt = Rotation.from_rotvec(np.deg2rad([*tilt_deg, 0.0]))
     return Rig(scenario.model_copy(update={"contact": smooth}), contact_n_m, tilt)

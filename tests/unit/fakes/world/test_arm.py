@@ -2,17 +2,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import RobotName, Scenario
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.arm import OutOfReachError, forward, inverse, nominal_links, singular
 from fakes.world.frames import distance, from_written, to_written
 from fakes.world.truth import draw
 
-ROBOTS: tuple[RobotName, ...] = ("main", "aux_1", "aux_2")
+ROBOTS = ("main", "aux_1", "aux_2")
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_inverse_undoes_forward_over_the_whole_joint_space(
-    scenario: Scenario, name: RobotName
+    scenario: DeckScenario, name: str
 ) -> None:
     chain, rng = scenario.robots[name].chain_mm, np.random.default_rng(1)
     low, high = np.deg2rad(np.array(scenario.robots[name].limits_deg)).T
@@ -23,7 +23,7 @@ def test_inverse_undoes_forward_over_the_whole_joint_space(
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_inverse_from_elsewhere_still_reaches_the_pose(scenario: Scenario, name: RobotName) -> None:
+def test_inverse_from_elsewhere_still_reaches_the_pose(scenario: DeckScenario, name: str) -> None:
     chain, rng = scenario.robots[name].chain_mm, np.random.default_rng(2)
     low, high = np.deg2rad(np.array(scenario.robots[name].limits_deg)).T
     for _ in range(100):
@@ -34,7 +34,7 @@ def test_inverse_from_elsewhere_still_reaches_the_pose(scenario: Scenario, name:
         assert angle_rad < 1e-7
 
 
-def test_stretched_arm_by_hand(scenario: Scenario) -> None:
+def test_stretched_arm_by_hand(scenario: DeckScenario) -> None:
     chain = scenario.robots["main"].chain_mm
     x, y, z, *_ = to_written(forward(nominal_links(chain), np.zeros(6)))
     assert x == pytest.approx(chain.a1 + chain.a2 + chain.d4 + chain.d6)
@@ -42,7 +42,9 @@ def test_stretched_arm_by_hand(scenario: Scenario) -> None:
     assert z == pytest.approx(chain.d1 + chain.elbow)
 
 
-def test_first_axis_is_base_z_and_second_is_horizontal_at_its_height(scenario: Scenario) -> None:
+def test_first_axis_is_base_z_and_second_is_horizontal_at_its_height(
+    scenario: DeckScenario,
+) -> None:
     chain = scenario.robots["main"].chain_mm
     links = nominal_links(chain)
     steps = np.deg2rad([[a, -60, 90, 0, 30, 0] for a in (-30, 0, 30)])
@@ -56,7 +58,7 @@ def test_first_axis_is_base_z_and_second_is_horizontal_at_its_height(scenario: S
     assert np.ptp(places[:, 1]) < 1e-12
 
 
-def test_too_far_is_out_of_reach(scenario: Scenario) -> None:
+def test_too_far_is_out_of_reach(scenario: DeckScenario) -> None:
     with pytest.raises(OutOfReachError):
         inverse(
             scenario.robots["main"].chain_mm,
@@ -65,7 +67,7 @@ def test_too_far_is_out_of_reach(scenario: Scenario) -> None:
         )
 
 
-def test_kinematic_error_has_the_intended_size(scenario: Scenario) -> None:
+def test_kinematic_error_has_the_intended_size(scenario: DeckScenario) -> None:
     """0.5 to 1 mm and 0.05° over the workspace, from seed to seed."""
     robot = scenario.robots["main"]
     nominal, home = nominal_links(robot.chain_mm), np.deg2rad(robot.home_deg)
@@ -82,7 +84,9 @@ def test_kinematic_error_has_the_intended_size(scenario: Scenario) -> None:
     assert 0.03 < np.median(degrees) < 0.07
 
 
-def test_taught_poses_are_inside_the_limits_and_away_from_singularities(scenario: Scenario) -> None:
+def test_taught_poses_are_inside_the_limits_and_away_from_singularities(
+    scenario: DeckScenario,
+) -> None:
     for name in ROBOTS:
         robot = scenario.robots[name]
         low, high = np.deg2rad(np.array(robot.limits_deg)).T

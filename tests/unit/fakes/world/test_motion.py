@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.scenario import Scenario
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.arm import forward, inverse, nominal_links
 from fakes.world.frames import from_written
 from fakes.world.motion import JointPath, LinearPath, Profile
@@ -53,7 +53,7 @@ def test_position_is_continuous_and_never_runs_back() -> None:
     assert steps.max() <= 0.05e-3 + 1e-9
 
 
-def test_linear_path_is_straight_to_a_tenth_of_a_micrometre(scenario: Scenario) -> None:
+def test_linear_path_is_straight_to_a_tenth_of_a_micrometre(scenario: DeckScenario) -> None:
     chain = scenario.robots["main"].chain_mm
     links = nominal_links(chain)
     start = from_written([1250, 0, 1300, 90, 0, 180])
@@ -68,7 +68,7 @@ def test_linear_path_is_straight_to_a_tenth_of_a_micrometre(scenario: Scenario) 
         assert offset @ direction == pytest.approx(ratio * np.linalg.norm(way), abs=1e-7)
 
 
-def test_pure_turn_takes_time_too(scenario: Scenario) -> None:
+def test_pure_turn_takes_time_too(scenario: DeckScenario) -> None:
     chain = scenario.robots["main"].chain_mm
     start = from_written([1900, 0, 967, 90, 0, 180])
     near = inverse(chain, start, np.zeros(6))

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
-from fakes.scenario import Pins
+from fakes.scenes.deck_on_frame.scenario import Pins
 from fakes.world.payload import STEP_S
 from tests.unit.fakes.world.mujoco_rig import (
     DT_S,
@@ -83,9 +83,10 @@ def pinned() -> Rig:
 
 def lowered_in_the_fake(rig: Rig, offset_m: float) -> Rest:
     payload = rig.payload()
+    assert payload.touch is not None
     start = np.eye(4)
     start[:3, :3] = np.diag([1.0, -1.0, -1.0])
-    deck_in_flange = payload._flange_T_deck.translation
+    deck_in_flange = payload.touch.flange_T_body.translation
     start[:3, 3] = [offset_m, 0.0, ABOVE_M + 0.015 + deck_in_flange[2]]
     payload.advance(start, moving=False)
     way_m, standing_s = 0.0, 0.0

@@ -2,18 +2,18 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Scenario
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.arm import forward, nominal_links
 from fakes.world.frames import distance, from_written, matrix_distance, written_matrix
 from fakes.world.robot import RefusedMotionError, RobotArm
 from fakes.world.truth import draw
 
 
-def arm_of(scenario: Scenario, seed: int = 1) -> RobotArm:
+def arm_of(scenario: DeckScenario, seed: int = 1) -> RobotArm:
     return RobotArm(scenario.robots["main"], draw(scenario, seed).robots["main"], seed)
 
 
-def at_work(scenario: Scenario, seed: int = 1) -> tuple[RobotArm, float]:
+def at_work(scenario: DeckScenario, seed: int = 1) -> tuple[RobotArm, float]:
     arm = arm_of(scenario, seed)
     arm.start_joint(0.0, np.deg2rad([0, -52.766, 109.14, 0, 33.626, 90]), 100)
     return arm, arm.standstill_s
@@ -23,7 +23,7 @@ def shifted(arm: RobotArm, time_s: float, z_m: float) -> RigidTransform:
     return RigidTransform.from_translation([0, 0, z_m]) * arm.encoder_pose(time_s)
 
 
-def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
+def test_stop_over_travels_by_latency_and_ramp(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     speed, settings = 0.01, scenario.robots["main"]
     arm.start_linear(t, shifted(arm, t, -0.05), speed, 0.2)
@@ -38,7 +38,7 @@ def test_stop_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
     assert arm.cut_short
 
 
-def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenario) -> None:
+def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     target = shifted(arm, t, -0.001)
     arm.start_linear(t, target, 0.05, 0.2)
@@ -49,7 +49,7 @@ def test_motion_that_ends_within_the_latency_reaches_its_target(scenario: Scenar
     )
 
 
-def test_repeatability_over_long_ways(scenario: Scenario) -> None:
+def test_repeatability_over_long_ways(scenario: DeckScenario) -> None:
     """The stated ±0.05 mm is three standard deviations of what a long way leaves behind."""
     arm, t = at_work(scenario)
     here = arm.joints(t)
@@ -64,7 +64,7 @@ def test_repeatability_over_long_ways(scenario: Scenario) -> None:
     np.testing.assert_allclose(sigma_mm, 0.05 / 3, rtol=0.4)
 
 
-def test_small_step_has_a_small_error(scenario: Scenario) -> None:
+def test_small_step_has_a_small_error(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     errors = []
     for index in range(100):
@@ -76,7 +76,7 @@ def test_small_step_has_a_small_error(scenario: Scenario) -> None:
     assert 1e-6 < np.std(errors) < 4e-6
 
 
-def test_target_beyond_reach_is_refused(scenario: Scenario) -> None:
+def test_target_beyond_reach_is_refused(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError, match="REACH"):
         arm.start_linear(t, from_written([3900, 0, 967, 90, 0, 180]), 0.05, 0.2)
@@ -88,7 +88,7 @@ def test_target_beyond_reach_is_refused(scenario: Scenario) -> None:
     [([0, -52.8, 109.1, 0, 0.1, 90], "SINGULAR"), ([0, -52.8, 109.1, 0, 121, 90], "LIMIT")],
 )
 def test_target_that_the_joints_cannot_take_is_refused(
-    scenario: Scenario, joints_deg: list[float], reason: str
+    scenario: DeckScenario, joints_deg: list[float], reason: str
 ) -> None:
     arm, t = at_work(scenario)
     chain = nominal_links(scenario.robots["main"].chain_mm)
@@ -97,7 +97,7 @@ def test_target_that_the_joints_cannot_take_is_refused(
         arm.start_linear(t, target, 0.05, 0.2)
 
 
-def test_joint_limits_and_percent_are_checked(scenario: Scenario) -> None:
+def test_joint_limits_and_percent_are_checked(scenario: DeckScenario) -> None:
     arm = arm_of(scenario)
     with pytest.raises(RefusedMotionError, match="LIMIT"):
         arm.start_joint(0.0, np.deg2rad([0, 30, 0, 0, 0, 0]), 10)
@@ -105,28 +105,28 @@ def test_joint_limits_and_percent_are_checked(scenario: Scenario) -> None:
         arm.start_joint(0.0, np.zeros(6), 0)
 
 
-def test_step_limits(scenario: Scenario) -> None:
+def test_step_limits(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     arm.check_step(t, shifted(arm, t, 0.5e-3))
     with pytest.raises(RefusedMotionError, match="STEP"):
         arm.check_step(t, shifted(arm, t, 0.51e-3))
 
 
-def test_override_slows_down(scenario: Scenario) -> None:
+def test_override_slows_down(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     arm.override_percent = 50
     arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 10.0)
     assert arm.standstill_s - t == pytest.approx(2.0, abs=0.05)
 
 
-def test_true_pose_does_not_jump_when_a_motion_begins(scenario: Scenario) -> None:
+def test_true_pose_does_not_jump_when_a_motion_begins(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     before = arm.flange(t).translation
     arm.start_linear(t, shifted(arm, t, -0.05), 0.05, 0.2)
     np.testing.assert_allclose(arm.flange(t).translation, before, atol=1e-9)
 
 
-def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) -> None:
+def test_a_followed_setpoint_is_reached_within_its_period(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     for number in range(1, 51):
         target = shifted(arm, t, -5e-5)
@@ -138,7 +138,7 @@ def test_a_followed_setpoint_is_reached_within_its_period(scenario: Scenario) ->
         assert arm.flange(t).translation[2] < arm.flange(t - 0.004).translation[2], number
 
 
-def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
+def test_a_stream_draws_no_new_error_in_each_tick(scenario: DeckScenario) -> None:
     """The settling error belongs to a motion, and a stream is one: its steps are as even as those
     of a spline."""
     arm, t = at_work(scenario)
@@ -151,20 +151,20 @@ def test_a_stream_draws_no_new_error_in_each_tick(scenario: Scenario) -> None:
     assert np.std(np.diff(steps)) < 1e-6
 
 
-def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: Scenario) -> None:
+def test_a_setpoint_that_is_the_present_pose_moves_nothing(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     arm.follow(t, arm.encoder_matrix(t), 0.008)
     assert not arm.moving(t + 1e-6)
 
 
-def test_a_setpoint_out_of_reach_is_refused(scenario: Scenario) -> None:
+def test_a_setpoint_out_of_reach_is_refused(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     with pytest.raises(RefusedMotionError) as refusal:
         arm.follow(t, from_written([5000, 0, 900, 90, 0, 180]).as_matrix(), 0.008)
     assert refusal.value.reason == "REACH"
 
 
-def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scenario) -> None:
+def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: DeckScenario) -> None:
     arm, t = at_work(scenario)
     speed = 5e-5 / 0.008
     arm.follow(t, shifted(arm, t, -5e-5).as_matrix(), 0.008)
@@ -179,7 +179,7 @@ def test_a_stop_while_following_over_travels_by_latency_and_ramp(scenario: Scena
     assert over == pytest.approx(speed * latency_s + speed**2 / (2 * braking), rel=0.01)
 
 
-def test_matrices_of_written_poses_are_those_of_the_poses(scenario: Scenario) -> None:
+def test_matrices_of_written_poses_are_those_of_the_poses(scenario: DeckScenario) -> None:
     rng = np.random.default_rng(3)
     for _ in range(50):
         written = [*rng.uniform(-2000, 2000, 3), *rng.uniform(-180, 180, 3)]

@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-from fakes.scenario import Payload, Scenario
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.sections import Springs
 from fakes.world.suspension import Contacts, Suspension
 
 STEP_S = 2.5e-4
 MASS_KG = 200.0
 
 
-def payload(scenario: Scenario, **changes: object) -> Payload:
+def payload(scenario: DeckScenario, **changes: object) -> Springs:
     return scenario.payload.model_copy(update=changes)
 
 
@@ -23,7 +24,7 @@ def pads(stiffness_n_m: float, damping_n_s_m: float = 0.0) -> Contacts:
 
 
 @pytest.mark.parametrize("stiffness", [1e5, 1e6, 3e6, 1e7])
-def test_impact_peak_is_v_times_root_k_m(scenario: Scenario, stiffness: float) -> None:
+def test_impact_peak_is_v_times_root_k_m(scenario: DeckScenario, stiffness: float) -> None:
     """A free mass at v onto a spring: peak = v·sqrt(k·m)."""
     soft = payload(scenario, stiffness_n_m=(1e-3,) * 3, rotational_stiffness_nm_rad=(1e-3,) * 3)
     mass = Suspension(soft, MASS_KG, pads(stiffness))
@@ -36,7 +37,7 @@ def test_impact_peak_is_v_times_root_k_m(scenario: Scenario, stiffness: float) -
 
 
 @pytest.mark.parametrize("stiffness", [3e5, 3e6])
-def test_press_settles_at_springs_in_series(scenario: Scenario, stiffness: float) -> None:
+def test_press_settles_at_springs_in_series(scenario: DeckScenario, stiffness: float) -> None:
     mass = Suspension(scenario.payload, MASS_KG, pads(stiffness, 2e3))
     depth = 50e-6
     for _ in range(int(6.0 / STEP_S)):
@@ -47,7 +48,7 @@ def test_press_settles_at_springs_in_series(scenario: Scenario, stiffness: float
     assert mass.spring_wrench[2] == pytest.approx(series * depth, rel=1e-3)
 
 
-def test_free_oscillation_has_its_frequency_and_decay(scenario: Scenario) -> None:
+def test_free_oscillation_has_its_frequency_and_decay(scenario: DeckScenario) -> None:
     mass = Suspension(scenario.payload, MASS_KG, Contacts.none())
     mass.state[2] = 1e-4
     places = []
@@ -63,7 +64,7 @@ def test_free_oscillation_has_its_frequency_and_decay(scenario: Scenario) -> Non
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_energy_never_grows(scenario: Scenario, seed: int) -> None:
+def test_energy_never_grows(scenario: DeckScenario, seed: int) -> None:
     """Bouncing in all six directions on one-sided pads; a closing contact may cost 0.1 %."""
     rng = np.random.default_rng(seed)
     mass = Suspension(scenario.payload, MASS_KG, pads(rng.choice([1e6, 1e7]), 1e3))
@@ -82,7 +83,7 @@ def test_energy_never_grows(scenario: Scenario, seed: int) -> None:
     assert last < 0.05 * first
 
 
-def test_contact_never_pulls(scenario: Scenario) -> None:
+def test_contact_never_pulls(scenario: DeckScenario) -> None:
     mass = Suspension(scenario.payload, MASS_KG, pads(1e6, 5e4))
     mass.state[2], mass.state[8] = -1e-6, 0.05
     for _ in range(40):
@@ -98,7 +99,7 @@ def test_contact_never_pulls(scenario: Scenario) -> None:
     ],
 )  # fmt: skip
 def test_stop_at_35_n_overshoots_as_an_independent_integrator_found(
-    scenario: Scenario, speed_mm_s: float, latency_s: float, peak_n: float
+    scenario: DeckScenario, speed_mm_s: float, latency_s: float, peak_n: float
 ) -> None:
     """200 kg behind 1e6 N/m onto 3e6 N/m, 5 ms low-pass, 35 N, then latency and 0.5 m/s²."""
     stiff = payload(scenario, damping_ratio=0.05)

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fakes.scenario import Pins
+from fakes.scenes.deck_on_frame.parts import PartsTruth
+from fakes.scenes.deck_on_frame.scenario import Pins
 from fakes.world.frames import MM, Array
-from fakes.world.truth import PartsTruth
 
 DIRECTIONS = 16
 

@@ -7,9 +7,11 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.faults import FaultBoard
-from fakes.scenario import Pins, Scenario
+from fakes.scenes.deck_on_frame.parts import draw_parts
+from fakes.scenes.deck_on_frame.scenario import DeckScenario, Pins
+from fakes.scenes.deck_on_frame.scene import FAULTS, deck_payload
 from fakes.world.payload import Payload
-from fakes.world.truth import draw, draw_parts
+from fakes.world.truth import draw
 
 ARM_N_M = 1e6
 PINS = Pins(
@@ -22,7 +24,7 @@ PINS = Pins(
 )
 
 
-def hanging(scenario: Scenario, friction: float = 0.0) -> Payload:
+def hanging(scenario: DeckScenario, friction: float = 0.0) -> Payload:
     """Deck and frame nominal, tool axes along those of the frame."""
     contact = scenario.contact.model_copy(update={"pins": PINS, "friction": friction})
     shaped = scenario.parts.model_copy(update={"hole_sigma_mm": 0.0})
@@ -35,8 +37,8 @@ def hanging(scenario: Scenario, friction: float = 0.0) -> Payload:
         ),
         deck_thickness_m=0.015,
     )
-    sensor = draw(scenario, 1).sensor
-    return Payload(scenario, sensor, parts, FaultBoard("world"), frame_present=True)
+    sensor = draw(scenario, 1).force_sensors["force"]
+    return deck_payload(scenario, sensor, parts, FaultBoard("world", FAULTS), frame_present=True)
 
 
 def at(x_mm: float, y_mm: float, height_mm: float, yaw_deg: float = 0.0) -> np.ndarray:
@@ -57,7 +59,7 @@ def settled(payload: Payload, flange: np.ndarray, steps: int = 3000) -> np.ndarr
 
 @pytest.mark.parametrize("angle_deg", [0.0, 11.25, 45.0, 200.0])
 def test_the_wall_holds_what_lies_beyond_the_clearance(
-    scenario: Scenario, angle_deg: float
+    scenario: DeckScenario, angle_deg: float
 ) -> None:
     payload = hanging(scenario)
     along = np.array([np.cos(np.radians(angle_deg)), np.sin(np.radians(angle_deg))])
@@ -69,13 +71,13 @@ def test_the_wall_holds_what_lies_beyond_the_clearance(
     assert abs(along[0] * force[1] - along[1] * force[0]) < 0.05 * expected_n
 
 
-def test_within_the_clearance_nothing_is_felt(scenario: Scenario) -> None:
+def test_within_the_clearance_nothing_is_felt(scenario: DeckScenario) -> None:
     payload = hanging(scenario)
     assert np.abs(settled(payload, at(0.03, -0.03, 0.5))).max() < 1e-6
     assert payload.peak_contact_force_n == 0.0
 
 
-def test_a_turned_deck_is_turned_back_by_both_pins(scenario: Scenario) -> None:
+def test_a_turned_deck_is_turned_back_by_both_pins(scenario: DeckScenario) -> None:
     payload = hanging(scenario)
     yaw_deg = np.degrees(0.10e-3 / 0.5126)  # pins are 0.5126 m from the middle
     wrench = settled(payload, at(0.0, 0.0, 1.0, yaw_deg))
@@ -83,7 +85,7 @@ def test_a_turned_deck_is_turned_back_by_both_pins(scenario: Scenario) -> None:
     assert np.hypot(*wrench[:2]) < 3.0
 
 
-def test_the_chamfer_pushes_up_and_in(scenario: Scenario) -> None:
+def test_the_chamfer_pushes_up_and_in(scenario: DeckScenario) -> None:
     """Frictionless: the force stands on the cone, and gap and springs agree."""
     payload = hanging(scenario)
     force = settled(payload, at(0.3, 0.0, 2.3))[:3]
@@ -93,14 +95,14 @@ def test_the_chamfer_pushes_up_and_in(scenario: Scenario) -> None:
     assert np.linalg.norm(force) == pytest.approx(ARM_N_M * depth_m, rel=0.06)
 
 
-def test_beyond_the_chamfer_the_deck_stands_on_the_pins(scenario: Scenario) -> None:
+def test_beyond_the_chamfer_the_deck_stands_on_the_pins(scenario: DeckScenario) -> None:
     payload = hanging(scenario)
     force = settled(payload, at(1.5, 0.0, 2.98))[:3]
     assert force[2] == pytest.approx(ARM_N_M * 0.02e-3, rel=0.06)
     assert np.hypot(*force[:2]) < 0.1
 
 
-def test_friction_holds_the_deck_back_on_its_way_in(scenario: Scenario) -> None:
+def test_friction_holds_the_deck_back_on_its_way_in(scenario: DeckScenario) -> None:
     payload = hanging(scenario, friction=0.15)
     settled(payload, at(0.08, 0.0, 1.5))
     forces = []
@@ -111,7 +113,7 @@ def test_friction_holds_the_deck_back_on_its_way_in(scenario: Scenario) -> None:
     assert up_n == pytest.approx(0.15 * abs(sideways_n), rel=0.2)
 
 
-def test_free_motion_beside_a_pin_makes_no_energy(scenario: Scenario) -> None:
+def test_free_motion_beside_a_pin_makes_no_energy(scenario: DeckScenario) -> None:
     payload = hanging(scenario)
     flange = at(0.06, 0.0, 1.0)
     payload.advance(flange, moving=False)

@@ -1,18 +1,9 @@
-"""All calibrations of the fake cell, one Maintenance procedure after the other."""
+"""All calibrations of the deck's cell, one Maintenance procedure after the other."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from fakes.demo.control import Control
-
-
-@dataclass(frozen=True, slots=True)
-class Procedure:
-    """A procedure and what the operator prepares for it."""
-
-    number: int
-    title: str
-    prepare: Callable[[Control], None]
+from fakes.demo.demo import Procedure
 
 
 def _chessboard(head: str) -> Callable[[Control], None]:

@@ -1,0 +1,99 @@
+"""The seam of the demonstration: what differs from one process to another."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, ClassVar
+
+from fakes.demo.control import Control
+
+Message = Mapping[str, Any]
+"""What the line PLC prints: its reading of the cell's registers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Procedure:
+    """A procedure of Maintenance, and what the operator prepares for it."""
+
+    number: int
+    title: str
+    prepare: Callable[[Control], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What is known of a run when it is over."""
+
+    result: Message
+    """The last message of the line PLC."""
+    truth: Mapping[str, Any]
+    """Of the fake world, at the end."""
+    record: Mapping[str, Any]
+    """The cell's own record, as exported; empty when no run was opened."""
+
+    @property
+    def good(self) -> bool:
+        """What the cell told the line."""
+        return bool(self.result.get("result") == "good")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A line of the table at the end."""
+
+    name: str
+    value: object
+    """None for what was not measured."""
+    form: str = "{}"
+    limit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """The cell's result beside the truth."""
+
+    passed: bool
+    """The cell says good, and the truth agrees."""
+    figures: Mapping[str, Any] = field(default_factory=dict)
+    """For ``result.json``; JSON values."""
+    rows: Sequence[Row] = ()
+
+
+class Demo(ABC):
+    """One process on its fake cell."""
+
+    process: ClassVar[str]
+    """As the entry point and the cell file name it."""
+    title: ClassVar[str]
+    """What is demonstrated, for the first line in the terminal."""
+    cell: ClassVar[Path]
+    """The daemon's cell file."""
+    scenario: ClassVar[Path]
+    """The fake cell's scenario file."""
+    recipe: ClassVar[int] = 1
+    serial: ClassVar[str] = "SAT-{seed:04d}"
+    """Serial number of the part."""
+    procedures: ClassVar[Sequence[Procedure]] = ()
+    """All calibrations of the cell in their order, for ``--calibrate``."""
+    steps: ClassVar[Mapping[int, str]] = {}
+    """Labels of the steps by number, where they differ from those that the line PLC knows."""
+
+    def prepare(self, control: Control) -> None:  # noqa: B027  most cells begin as they are
+        """What the operator does at the cell before the line starts the run."""
+
+    def measure(self, evidence: Evidence) -> Sequence[Sequence[str]]:  # noqa: ARG002
+        """Arguments of ``cellctl runs``: what the measuring room enters into the record."""
+        return ()
+
+    @abstractmethod
+    def judge(self, evidence: Evidence) -> Judgement:
+        """Hold what the cell says against the truth."""
+
+    def news(self, before: Message, now: Message) -> str | None:  # noqa: ARG002
+        """Words for an event of the live view; None for state and step alone."""
+        return None
+
+    def rows(self, now: Message) -> Mapping[str, str]:  # noqa: ARG002
+        """Further rows of the live view, by their names."""
+        return {}

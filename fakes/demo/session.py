@@ -1,0 +1,158 @@
+"""One demonstration while it runs: fake cell, daemon, line PLC."""
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+
+from fakes.demo.children import Child, ChildFailed, Family
+from fakes.demo.control import Control
+from fakes.demo.demo import Demo
+from fakes.demo.live import LiveView
+from fakes.demo.outcome import collect, result_table
+from fakes.demo.verdict import why_not_good
+
+GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
+"""Exit codes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Files:
+    """What a demonstration reads, and the folder that it writes."""
+
+    scenario: Path
+    cell: Path
+    out: Path
+
+
+class Session:
+    """Fake cell and daemon, running."""
+
+    def __init__(
+        self,
+        demo: Demo,
+        files: Files,
+        seed: int,
+        *,
+        family: Family,
+        console: Console,
+        complaint: Console,
+    ) -> None:
+        self._demo = demo
+        self._files = files
+        self._family = family
+        self._console = console
+        self._complaint = complaint
+        self._folder = files.out
+        self._seed = seed
+        self._begun_s = time.monotonic()
+        self._daemon: Child | None = None
+
+    def start_fake(self) -> None:
+        """The fake cell, until all its devices listen."""
+        self._console.print(
+            f"{self._demo.title}: starting fake cell (seed {self._seed}) and daemon …"
+        )
+        scenario, seed = str(self._files.scenario), str(self._seed)
+        arguments = ["-m", "fakes", "run", "--scenario", scenario, "--seed", seed]
+        ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
+        self._control = Control(int(ports["control"]))
+
+    def start_daemon(self) -> None:
+        """The daemon, until every device of its cell file is connected."""
+        store = self._folder / "store"
+        self._daemon = self._spawn(
+            "daemon", ["-m", "cellctl", "run", str(self._files.cell), "--data-dir", str(store)]
+        )
+        self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
+        self._console.print(f"both are up; record and logs in {self._folder}/")
+
+    def inject(self, items: Sequence[str]) -> None:
+        """Faults of the fake cell, given as device:name."""
+        for item in items:
+            device, _, name = item.partition(":")
+            self._control.request("inject", device=device, name=name)
+            self._console.print(f"injected {item}")
+
+    def run(self, *, calibrate: bool, stay: bool) -> int:
+        """The job; its exit code."""
+        if stay:
+            return self._stay()
+        return self._calibrate() if calibrate else self._produce()
+
+    def how_it_ended(self) -> str:
+        """For the user who interrupted: what became of the run, and of the processes."""
+        closed = self._daemon.logged("run closed") if self._daemon is not None else None
+        run = f"run {closed['run']} is closed as {closed['result']}; " if closed else ""
+        return f"stopped: {run}daemon and fake cell have ended"
+
+    def _stay(self) -> int:
+        data = f"--data-dir {self._folder / 'store'}"
+        socket = self._folder / "store" / "cellctl.sock"
+        self._console.print(
+            f"Modbus TCP on 127.0.0.1:{self._modbus_port}, map in docs/register-map.md\n"
+            f"  a line PLC to try:  .venv/bin/python -m fakes plc --port {self._modbus_port}\n"
+            f"  its state:          .venv/bin/cellctl status --watch --socket {socket}\n"
+            f"  its runs:           .venv/bin/cellctl runs list {data}\n"
+            "Ctrl-C ends both"
+        )
+        assert self._daemon is not None
+        while self._daemon.next_line(timeout_s=None) is not None:
+            continue
+        raise ChildFailed(f"the daemon ended:\n{self._daemon.last_words()}")
+
+    def _calibrate(self) -> int:
+        if not self._demo.procedures:
+            self._console.print(f"{self._demo.process} has no calibrations to run")
+        for procedure in self._demo.procedures:
+            procedure.prepare(self._control)
+            self._console.print(f"procedure {procedure.number}: {procedure.title}")
+            result = self._line("--mode", "maintenance", "--recipe", str(procedure.number))
+            if result.get("result") != "good":
+                return self._not_good(result, self._faults())
+        return GOOD
+
+    def _produce(self) -> int:
+        self._demo.prepare(self._control)
+        serial = self._demo.serial.format(seed=self._seed)
+        result = self._line("--recipe", str(self._demo.recipe), "--serial", serial)
+        faults = self._faults()
+        truth = self._control.request("truth")["truth"]
+        self._console.print("writing record and report …")
+        wall_s = time.monotonic() - self._begun_s
+        outcome = collect(self._demo, self._folder, result, truth, wall_s)
+        self._console.print(result_table(outcome))
+        if outcome.report:
+            self._console.print(f"report: {outcome.report}")
+        if not outcome.judgement.passed:
+            return self._not_good(result, faults)
+        return GOOD
+
+    def _line(self, *arguments: str) -> dict[str, Any]:
+        """Play the line PLC for one job; its last message."""
+        port = str(self._modbus_port)
+        plc = self._spawn("line-plc", ["-m", "fakes", "plc", "--port", port, *arguments])
+        result: dict[str, Any] = {}
+        with LiveView(self._console, self._demo) as view:
+            while (message := plc.next_line(timeout_s=None)) is not None:
+                view.show(message)
+                if message.get("event") in ("result", "error"):
+                    result = message
+        if not result:
+            raise ChildFailed(f"the line PLC ended without a result:\n{plc.last_words()}")
+        return result
+
+    def _faults(self) -> list[str]:
+        return self._daemon.faults() if self._daemon is not None else []
+
+    def _not_good(self, result: dict[str, Any], faults: list[str]) -> int:
+        self._complaint.print(f"not good: {why_not_good(result)}", style="bold", markup=False)
+        for fault in faults:
+            self._complaint.print(fault, markup=False)
+        return NOT_GOOD
+
+    def _spawn(self, name: str, command: list[str]) -> Child:
+        return self._family.spawn(name, command, self._folder / f"{name}.log")

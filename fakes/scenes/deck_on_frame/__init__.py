@@ -1,0 +1,1 @@
+"""A deck that hangs from a robot, above the frame that it is to be mated with."""

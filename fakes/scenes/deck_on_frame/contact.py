@@ -1,0 +1,59 @@
+"""Where the deck can touch the frame: pads round its rim, pins, foreign bodies, chamfers."""
+
+import numpy as np
+
+from fakes.faults import FaultBoard
+from fakes.scenes.deck_on_frame.parts import PartsTruth
+from fakes.scenes.deck_on_frame.pins import pin_faces
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.world.contact import ContactPoints
+from fakes.world.frames import MM, Array
+from fakes.world.suspension import Contacts
+
+_BODY_SHARE = 0.5
+"""Stiffness of a foreign body or a chamfer relative to all pads together."""
+
+
+def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> ContactPoints:
+    """Contact points of loaded parts and of injected obstacles."""
+    pads = _pads(scenario)
+    count = len(pads)
+    points = np.column_stack([pads, np.full(count, -parts.deck_thickness_m)])
+    directions = np.tile([0.0, 0.0, 1.0], (count, 1))
+    anchors = np.zeros((count, 3))
+    stiffness = np.full(count, parts.contact_stiffness_n_m / count)
+    for name in ("foreign_body", "pin_catch"):
+        fault = faults.active(name)
+        if fault is None:
+            continue
+        x = fault.number("x_mm", -480.0) * MM
+        y = fault.number("y_mm", -180.0) * MM
+        slope = np.deg2rad(fault.number("slope_deg", 45.0 if name == "pin_catch" else 0.0))
+        height = fault.number("height_mm", 6.0 if name == "pin_catch" else 1.0) * MM
+        points = np.vstack([points, [x, y, -parts.deck_thickness_m]])
+        directions = np.vstack([directions, [np.sin(slope), 0.0, np.cos(slope)]])
+        anchors = np.vstack([anchors, [x, y, height]])
+        stiffness = np.append(stiffness, _BODY_SHARE * parts.contact_stiffness_n_m)
+    wedges = Contacts.none().wedges
+    if scenario.contact.pins is not None:
+        faces = pin_faces(scenario.contact.pins, parts)
+        wedges = np.arange(len(faces.points_m)).reshape(-1, 3) + len(points)
+        points = np.vstack([points, faces.points_m])
+        directions = np.vstack([directions, faces.directions])
+        anchors = np.vstack([anchors, faces.anchors_m])
+        pin_stiffness = np.full(len(faces.points_m), scenario.contact.pins.stiffness_n_m)
+        stiffness = np.append(stiffness, pin_stiffness)
+    half_size = np.array(scenario.parts.size_mm) / 2 * MM
+    ahead = np.ones(len(points), dtype=bool)
+    ahead[wedges[:, :2]] = False
+    return ContactPoints(points, directions, anchors, stiffness, half_size, wedges, ahead)
+
+
+def _pads(scenario: DeckScenario) -> Array:
+    """Places round the rim: corners and middles of the sides for eight pads."""
+    inset = scenario.contact.rim_inset_mm
+    half = (np.array(scenario.parts.size_mm) / 2 - inset) * MM
+    angles = 2 * np.pi * np.arange(scenario.contact.pads) / scenario.contact.pads
+    square = np.column_stack([np.cos(angles), np.sin(angles)])
+    square /= np.abs(square).max(axis=1, keepdims=True)
+    return square * half

@@ -1,0 +1,239 @@
+"""Sections of a scenario file: the devices of a fake cell and every figure of them.
+
+Lengths are in mm, angles in degrees, times in ms, forces in N. A ``*_spread`` is the half width of
+a uniform draw, a ``*_sigma`` the standard deviation of a normal draw; ``fakes.world.truth`` makes
+the draws.
+"""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, StringConstraints, model_validator
+
+Pose = tuple[float, float, float, float, float, float]
+"""x, y, z in mm and A, B, C in degrees with R = Rz(A) Ry(B) Rx(C)."""
+DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
+Channel = Literal["CMD", "STA", "GRD"]
+Six = tuple[float, float, float, float, float, float]
+Three = tuple[float, float, float]
+Pair = tuple[float, float]
+
+
+class Section(BaseModel):
+    """A part of the scenario file: no unknown keys, no changes afterwards."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Chain(Section):
+    """Nominal links of a 6R arm with a spherical wrist. Stand-ins, not SIASUN data."""
+
+    d1: float
+    a1: float
+    a2: float
+    elbow: float
+    d4: float
+    d6: float
+
+
+class Spread(Section):
+    """Uniform half widths of a displaced body: along x, y, z and about x, y, z."""
+
+    xyz_mm: Three
+    rotation_deg: Three
+
+
+class Robot(Section):
+    """An arm and its controller."""
+
+    name: str
+    """Of the controller, as it names itself on the wire."""
+    ports: dict[Channel, int]
+    """Ports of the PC that the controller connects to."""
+    chain_mm: Chain
+    limits_deg: tuple[Pair, Pair, Pair, Pair, Pair, Pair]
+    rated_deg_s: Six
+    base_mm_deg: Pose
+    """In the frame of the cell."""
+    base_placement: Spread
+    link_sigma_mm: float
+    link_sigma_deg: float
+    joint_sigma_deg: float
+    repeatability_mm: float
+    """Three standard deviations of each coordinate."""
+    repeatability_deg: float
+    correlation_mm: float
+    """Travel after which the repeatability error is mostly a new one."""
+    settling_mm: float
+    """Standard deviation of what every single motion adds, however short it is."""
+    settling_deg: float
+    start_latency_ms: float
+    stop_latency_ms: float
+    stop_deceleration_mm_s2: float
+    ramp_s: float
+    """Time to the rated speed of a joint."""
+    speed_max_mm_s: float
+    step_max_mm: float
+    deadman_ms: int
+    streams: bool = False
+    """Whether its job program offers streamed motion."""
+    home_deg: Six
+    """Joint angles at switch-on."""
+
+
+class ForceSensor(Section):
+    """Six-axis sensor between the flange of a robot and what it carries."""
+
+    port: int
+    mounted_on: DeviceName
+    flange_T_sensor_mm_deg: Pose
+    mounting_sigma_deg: float
+    range_n: float
+    range_nm: float
+    noise_n: float
+    noise_nm: float
+    vibration_n: float
+    vibration_hz: float
+    gain_sigma: float
+    crosstalk_sigma: float
+    offset_sigma_n: float
+    offset_sigma_nm: float
+    drift_n_per_min: float
+    drift_nm_per_min: float
+
+
+class Springs(Section):
+    """How what hangs behind a force sensor is suspended: robot and gripper in series."""
+
+    inertia_kg_m2: Three
+    """About the centre of mass of everything that hangs there."""
+    stiffness_n_m: Three
+    """In tool axes: those of the flange, turned by 180° about x."""
+    rotational_stiffness_nm_rad: Three
+    damping_ratio: float
+
+
+class StereoRig(Section):
+    """How the two cameras of a stereo head stand to each other."""
+
+    baseline_mm: float
+    baseline_spread_mm: float
+    toe_in_deg: float
+    alignment_spread_deg: float
+
+
+class Optics(Section):
+    """Nominal lens and sensor of a make of camera; every camera of it is drawn from here."""
+
+    image_px: tuple[int, int]
+    focal_px: float
+    focal_spread_px: float
+    centre_px: Pair
+    centre_spread_px: float
+    distortion: tuple[float, float, float, float, float]
+    distortion_spread: tuple[float, float, float, float, float]
+    blur_px: float
+    blur_spread_px: float
+    gain_spread: float
+    exposure_us: int
+    stereo: StereoRig | None = None
+    """Only for stereo heads."""
+
+
+class Camera(Section):
+    """A camera, carried by a robot or fixed in the cell."""
+
+    serial: str
+    port: int
+    optics: str
+    """Which of the ``[optics.NAME]`` it has."""
+    carried_by: DeviceName | None = None
+    flange_T_camera_mm_deg: Pose | None = None
+    """Nominal pose on the flange of the robot that carries it."""
+    cell_T_camera_mm_deg: Pose | None = None
+    """Nominal pose in the cell, where nothing carries it."""
+    mounting: Spread
+
+    @model_validator(mode="after")
+    def _pose_fits_its_place(self) -> Self:
+        fixed = self.carried_by is None
+        if (self.flange_T_camera_mm_deg is None) is not fixed:
+            raise ValueError("a camera with carried_by needs flange_T_camera_mm_deg, no other does")
+        if (self.cell_T_camera_mm_deg is None) is fixed:
+            raise ValueError("a camera needs either carried_by or cell_T_camera_mm_deg")
+        return self
+
+
+class StereoCamera(Camera):
+    """A stereo head; its frame is that of its left camera."""
+
+
+class SingleCamera(Camera):
+    """A camera with one lens."""
+
+    colour: bool = False
+    """Three channels (RGB8) in place of grey levels."""
+
+
+class Gripper(Section):
+    """A pneumatic gripper whose valve and sensors are wired to a Modbus coupler of its own."""
+
+    port: int
+    travel_ms: float
+    """From one end position to the other."""
+    part_present: bool
+    """Whether there is a part between the jaws at switch-on."""
+    watchdog_ms: int
+
+
+class DigitalIo(Section):
+    """A Modbus coupler with digital inputs and outputs, by their addresses."""
+
+    port: int
+    inputs_on: tuple[int, ...] = ()
+    """Inputs that are on at switch-on."""
+    inputs_off: tuple[int, ...] = ()
+    """Inputs that are off at switch-on."""
+    outputs: tuple[int, ...] = ()
+    watchdog_ms: int
+
+
+class Tracker(Section):
+    """Head that measures targets, fixed above the cell."""
+
+    serial: str
+    port: int
+    cell_T_tracker_mm_deg: Pose
+    placement: Spread
+    noise_mm: float
+    target_sigma_mm: float
+    """Mounting error of each target, constant."""
+    targets_on: DeviceName
+    """The robot that carries a ring of six targets on its flange."""
+    flange_ring_mm: float
+    range_mm: Pair
+    half_angle_deg: float
+    tilt_max_deg: float
+    frame_time_ms: float
+
+
+class Rendering(Section):
+    """Appearance; levels are grey values 0 to 255."""
+
+    plate_level: float
+    background_level: float
+    hole_level: float
+    wall_visibility: float
+    """Brightness of a hole's wall, 0 as dark as the hole, 1 as bright as the plate."""
+    countersink_levels: Pair
+    """Darkest and brightest azimuth, relative to the plate."""
+    thread_levels: Pair
+    light_gradient: float
+    """Relative change of light from one side of the image to the other."""
+    texture_levels: float
+    read_noise_levels: float
+    electrons_per_level: float
+    """Sets the shot noise."""
+    scratches: int
+    false_circles: int
+    board_dark_level: float
+    board_bright_level: float

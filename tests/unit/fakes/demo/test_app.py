@@ -1,0 +1,96 @@
+"""What the demonstration refuses before it starts a process: each time one sentence and code 1."""
+
+import socket
+from collections.abc import Iterator
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from fakes.demo import registry
+from fakes.demo.app import app
+from fakes.demo.deck_to_frame import DeckToFrameDemo
+from fakes.demo.demo import Evidence, Judgement
+from tests.cell.own_cell import OwnCell
+
+CONFIG = Path(__file__).parents[4] / "config"
+
+
+def refused(*arguments: str) -> str:
+    done = CliRunner().invoke(app, list(arguments))
+    assert done.exit_code == 1, done.output
+    assert len(done.stderr.splitlines()) == 1
+    return done.stderr
+
+
+@pytest.fixture
+def taken() -> Iterator[int]:
+    with socket.socket() as server:
+        server.bind(("127.0.0.1", 0))
+        server.listen()
+        yield int(server.getsockname()[1])
+
+
+def test_an_unknown_process_names_those_that_there_are() -> None:
+    assert "there is no demonstration of 'weaving'; there are: deck-to-frame" in refused(
+        "--process", "weaving"
+    )
+
+
+def test_a_real_cell_is_refused(tmp_path: Path) -> None:
+    said = refused("--cell", str(CONFIG / "cell.toml"), "--out", str(tmp_path / "out"))
+    assert "is the cell file of a real cell" in said
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("port", "name"),
+    [(7900, "control"), (7101, "head_1"), (7003, "main.GRD"), (5020, "Modbus TCP of the daemon")],
+)
+def test_an_occupied_port_is_named_with_what_to_do(
+    tmp_path: Path, taken: int, port: int, name: str
+) -> None:
+    own = OwnCell.make(tmp_path)  # on ports that no other cell on this computer has
+    for file in (own.scenario, own.cell):
+        file.write_text(file.read_text().replace(f" = {own.ports[port]}", f" = {taken}"))
+    files = ("--scenario", str(own.scenario), "--cell", str(own.cell))
+    said = refused(*files, "--out", str(tmp_path / "out"))
+    assert f"port {taken} ({name}) is in use" in said
+    assert "end that one" in said
+    assert "Errno" not in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_unknown_scene_names_those_that_there_are(tmp_path: Path) -> None:
+    scenario = tmp_path / "scenario.toml"
+    scenario.write_text('scene = "moon"\n')
+    assert "known scenes: deck-on-frame, plate" in refused("--scenario", str(scenario))
+
+
+class WeavingDemo(DeckToFrameDemo):
+    """A demonstration of another package."""
+
+    process = "weaving"
+
+    def judge(self, evidence: Evidence) -> Judgement:
+        """Everything is good."""
+        return Judgement(evidence.good)
+
+
+def test_another_package_brings_a_demonstration(monkeypatch: pytest.MonkeyPatch) -> None:
+    def points(**_: str) -> list[EntryPoint]:
+        return [EntryPoint("weaving", f"{__name__}:WeavingDemo", registry.GROUP)]
+
+    monkeypatch.setattr(registry, "entry_points", points)
+    assert registry.demonstrated() == ["weaving"]
+    assert registry.find("weaving").judge(Evidence({"result": "good"}, {}, {})).passed
+
+
+def test_what_is_no_demo_is_no_demo(monkeypatch: pytest.MonkeyPatch) -> None:
+    def points(**_: str) -> list[EntryPoint]:
+        return [EntryPoint("weaving", "pathlib:Path", registry.GROUP)]
+
+    monkeypatch.setattr(registry, "entry_points", points)
+    with pytest.raises(registry.UnknownProcess, match="is not a Demo"):
+        registry.find("weaving")
