@@ -89,8 +89,8 @@ def plc(
         daemon.ready()
         with OutsidePlc(small.modbus_port) as plc:
             plc.start_heartbeat()
-            assert plc.command("RESET", mode=1) == 0
-            assert plc.done(60.0) == "good"
+            assert plc.command("Reset", mode=1) == 0
+            assert plc.done(60.0).startswith("done")
             yield plc
     finally:
         for program in (daemon, fake):
@@ -128,8 +128,8 @@ def test_without_the_package_the_recipe_is_refused(small: SmallCell) -> None:
 def test_a_part_is_weighed_over_modbus(
     small: SmallCell, plc: OutsidePlc, installed: Path, tmp_path: Path
 ) -> None:
-    assert plc.command("START", mode=1, recipe=1, serial="B-1") == 0
-    assert plc.done(120.0) == "good"
+    assert plc.command("Start", mode=1, recipe=1, serial="B-1") == 0
+    assert plc.done(120.0).startswith("done")
     record = small.run_record(1)
     assert (record.head.process, record.head.serial) == ("acme-weighing", "B-1")
     figures = {figure.key: figure for figure in record.figures}
@@ -154,7 +154,7 @@ def test_a_part_of_the_wrong_weight_is_bad(
     small: SmallCell = request.getfixturevalue("small")
     small.file.write_text(small.file.read_text().replace("expected_kg = 5.0", "expected_kg = 4.0"))
     plc: OutsidePlc = request.getfixturevalue("plc")
-    assert plc.command("START", mode=1, recipe=1, serial="B-2") == 0
+    assert plc.command("Start", mode=1, recipe=1, serial="B-2") == 0
     plc.done(120.0)
     assert plc.value("first_out_alarm") == 1001
     record = small.run_record(1)
