@@ -41,13 +41,20 @@ def geometry(calibrations: CalibrationSnapshot) -> CalibrationSet:
 @pytest.fixture(scope="module")
 def world() -> World:
     world = World(scenarios.load(CONFIG / "fake-cell.toml"), 1)
-    for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
+    stations: tuple[tuple[scenarios.RobotName, str], ...] = (
+        ("aux_1", "measure"),
+        ("aux_2", "measure"),
+        ("main", "clear"),
+    )
+    for robot, pose in stations:
         to_taught(world, robot, pose)
     return world
 
 
 @pytest.mark.parametrize("index", [0, 1])
-def test_heads_see_points_where_they_are(geometry: CalibrationSet, world: World, index: int):
+def test_heads_see_points_where_they_are(
+    geometry: CalibrationSet, world: World, index: int
+) -> None:
     """What counts is a distance measured in the working volume, not single parameters."""
     head = geometry.heads[index]
     truth = world.truth.heads[("head_1", "head_2")[index]].stereo
@@ -62,7 +69,9 @@ def test_heads_see_points_where_they_are(geometry: CalibrationSet, world: World,
     assert turn < 0.02
 
 
-def test_base_frame_is_where_it_says_within_its_uncertainty(geometry: CalibrationSet, world: World):
+def test_base_frame_is_where_it_says_within_its_uncertainty(
+    geometry: CalibrationSet, world: World
+) -> None:
     """What the data sheet says of d1 and of A1 is only as true as the arm was built."""
     truth = world.truth.large_field.cell_T_head.inv()
     arm = world.scenario.robots["main"]
@@ -73,7 +82,7 @@ def test_base_frame_is_where_it_says_within_its_uncertainty(geometry: Calibratio
     assert_within(UncertainPose(measured.pose, measured.covariance + built), truth)
 
 
-def test_heads_are_where_they_say(geometry: CalibrationSet, world: World):
+def test_heads_are_where_they_say(geometry: CalibrationSet, world: World) -> None:
     report = world.report()
     for pose, key, allowed_mm, allowed_deg in (
         (geometry.base_T_c1, "base_T_c1_mm_deg", 0.3, 0.03),
@@ -85,7 +94,7 @@ def test_heads_are_where_they_say(geometry: CalibrationSet, world: World):
         assert np.degrees(np.linalg.norm(turn_rad)) < allowed_deg, key
 
 
-def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot):
+def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot) -> None:
     scenario = scenarios.load(CONFIG / "fake-cell.toml")
     weight_n = 9.80665 * (scenario.payload.gripper_kg + scenario.payload.deck_kg)
     down = calibrations.get(PAYLOAD).gravity_compensation.A[:3] @ np.array([0.0, 0.0, 1.0])
@@ -94,7 +103,7 @@ def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot):
 
 def test_latency_and_stiffness_are_true_and_on_the_safe_side(
     calibrations: CalibrationSnapshot, world: World
-):
+) -> None:
     """The latency is that of the fake robot; other parts may be stiffer, within the recipe's."""
     found = Commissioned.of(calibrations, recipe_id=1)
     assert found.stop_latency_s is not None
