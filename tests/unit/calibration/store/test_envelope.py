@@ -54,8 +54,12 @@ def head() -> StereoResult:
 
 @pytest.fixture
 def folder(tmp_path: Path, head: StereoResult) -> Path:
-    results: tuple[StereoResult | BaseFrameResult | TransferResult, ...]
-    results = (head, head, test_base_frame.calibrate(0), test_board_transfer.calibrate(0))
+    results: list[StereoResult | BaseFrameResult | TransferResult] = [
+        head,
+        head,
+        test_base_frame.calibrate(0),
+        test_board_transfer.calibrate(0),
+    ]
     for kind, result in zip(GEOMETRY, results, strict=True):
         record, serial = result.to_record(), f"SN-{kind.name}"
         write_stored(tmp_path, StoredCalibration(kind.name, record, MADE, UNTIL, "cellctl", serial))
