@@ -1,5 +1,7 @@
 """The small fake cell and the daemon: every device of its cell file connects, the truth is told."""
 
+from pathlib import Path
+
 import pytest
 
 from tests.cell.own_cell import OwnCell
@@ -7,7 +9,7 @@ from tests.cell.own_cell import OwnCell
 pytestmark = pytest.mark.timeout(120)
 
 
-def test_the_daemon_finds_every_device(tmp_path):
+def test_the_daemon_finds_every_device(tmp_path: Path) -> None:
     own = OwnCell.make(tmp_path, "small")
     try:
         assert set(own.fake().ready()["ports"]) == {"camera", "force", "control"}

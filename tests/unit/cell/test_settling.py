@@ -64,7 +64,7 @@ def test_a_frozen_sensor_is_not_still() -> None:
 
 def test_missing_samples_are_not_stillness() -> None:
     guard = Swinging(0.0, 1.0)
-    guard.samples = lambda _since_s: GuardSamples(  # type: ignore[method-assign]
+    guard.samples = lambda since_s: GuardSamples(  # type: ignore[method-assign]
         np.zeros(0), np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0), overrun=False
     )
     with pytest.raises(NotSettled, match="inf"):

@@ -14,11 +14,11 @@ CONFIG = Path(__file__).parents[3] / "config"
 
 
 @pytest.mark.parametrize("name", ["deck.toml", "cell.toml"])
-def test_the_shipped_cell_files_are_good(name: str):
+def test_the_shipped_cell_files_are_good(name: str) -> None:
     assert problems(CONFIG / name) == []
 
 
-def test_the_template_keeps_its_data_where_the_unit_lets_the_daemon_write():
+def test_the_template_keeps_its_data_where_the_unit_lets_the_daemon_write() -> None:
     cell = load_cell(CONFIG / "cell.toml")
     unit = (CONFIG.parent / "systemd" / "cellctl.service").read_text()
     assert "StateDirectory=cellctl\n" in unit
@@ -38,7 +38,7 @@ def changed(tmp_path: Path, **replacements: tuple[str, str]) -> Path:
     return path
 
 
-def test_all_errors_are_reported_together(tmp_path: Path):
+def test_all_errors_are_reported_together(tmp_path: Path) -> None:
     path = changed(
         tmp_path,
         threshold=("threshold_mm = 0.05", "threshold_mm = -1.0"),
@@ -57,7 +57,7 @@ def test_all_errors_are_reported_together(tmp_path: Path):
     assert found["recipes.0.deck_thickness_mm"].value == "(missing)"
 
 
-def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path):
+def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path) -> None:
     path = changed(tmp_path, speed=("max_speed_mm_s = 100.0", "max_speed_mm_s = 1e9"))
     (problem,) = problems(path)
     assert problem.key == "robots.main.settings.max_speed_mm_s"
@@ -65,20 +65,20 @@ def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path):
         load_cell(path)
 
 
-def test_an_unknown_driver_lists_the_installed_ones(tmp_path: Path):
+def test_an_unknown_driver_lists_the_installed_ones(tmp_path: Path) -> None:
     path = changed(tmp_path, driver=('driver = "target-server"', 'driver = "laser"'))
     (problem,) = problems(path)
     assert (problem.key, problem.number) == ("trackers.tracker.driver", 103)
     assert "target-server" in problem.allowed
 
 
-def test_real_and_simulated_devices_do_not_mix(tmp_path: Path):
+def test_real_and_simulated_devices_do_not_mix(tmp_path: Path) -> None:
     path = changed(tmp_path, mix=("simulated = true", "simulated = false"))
     (problem,) = problems(path)
     assert problem.number == 104
 
 
-def test_a_missing_feature_file_is_an_error(tmp_path: Path):
+def test_a_missing_feature_file_is_an_error(tmp_path: Path) -> None:
     path = changed(tmp_path, feature=("features/deck.toml", "features/none.toml"))
     (problem,) = problems(path)
     assert problem.key == "recipes.0.deck_features"
@@ -96,7 +96,7 @@ def test_a_missing_feature_file_is_an_error(tmp_path: Path):
 )
 def test_a_feature_file_that_no_part_can_be_measured_with_is_an_error(
     tmp_path: Path, old: str, new: str, said: str
-):
+) -> None:
     text = (CONFIG / "features" / "deck.toml").read_text()
     assert old in text
     (tmp_path / "broken.toml").write_text(text.replace(old, new, 1))
@@ -106,7 +106,7 @@ def test_a_feature_file_that_no_part_can_be_measured_with_is_an_error(
     assert said in problem.allowed
 
 
-def test_heads_that_see_too_little_of_a_part_together_are_an_error(tmp_path: Path):
+def test_heads_that_see_too_little_of_a_part_together_are_an_error(tmp_path: Path) -> None:
     text = (CONFIG / "features" / "frame.toml").read_text()
     for line in [line for line in text.splitlines() if line.startswith("head_")]:
         text = text.replace(line, f'{line.split("=")[0]}= ["P1"]')
@@ -116,7 +116,7 @@ def test_heads_that_see_too_little_of_a_part_together_are_an_error(tmp_path: Pat
 
 
 @pytest.mark.parametrize("client", ["plc", "192.168.10", "192.168.10.2/99"])
-def test_allowed_clients_are_addresses(tmp_path: Path, client: str):
+def test_allowed_clients_are_addresses(tmp_path: Path, client: str) -> None:
     line = "heartbeat_timeout_s = 3.0"
     path = changed(tmp_path, client=(line, f'{line}\nallowed_clients = ["{client}"]'))
     (problem,) = problems(path)
@@ -124,12 +124,12 @@ def test_allowed_clients_are_addresses(tmp_path: Path, client: str):
 
 
 @pytest.mark.parametrize("client", ["192.168.10.2", "192.168.10.0/24", "fd00::1"])
-def test_addresses_and_networks_may_be_allowed(tmp_path: Path, client: str):
+def test_addresses_and_networks_may_be_allowed(tmp_path: Path, client: str) -> None:
     line = "heartbeat_timeout_s = 3.0"
     assert not problems(changed(tmp_path, c=(line, f'{line}\nallowed_clients = ["{client}"]')))
 
 
-def test_check_tells_of_a_recipe_that_no_mating_can_be_planned_for(tmp_path: Path):
+def test_check_tells_of_a_recipe_that_no_mating_can_be_planned_for(tmp_path: Path) -> None:
     path = changed(tmp_path, force=("target_force_n = 35.0", "target_force_n = 44.0"))
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == 1
@@ -138,7 +138,7 @@ def test_check_tells_of_a_recipe_that_no_mating_can_be_planned_for(tmp_path: Pat
 
 
 @pytest.mark.parametrize("content", [b"= broken", b"\xff\xfe", None])
-def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
+def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None) -> None:
     path = tmp_path / "cell.toml"
     if content is not None:
         path.write_bytes(content)
@@ -146,7 +146,7 @@ def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None):
         problems(path)
 
 
-def test_recipe_numbers_must_differ(tmp_path: Path):
+def test_recipe_numbers_must_differ(tmp_path: Path) -> None:
     text = (CONFIG / "deck.toml").read_text()
     once = text[text.index("[[recipes]]") :]
     path = changed(tmp_path, twice=("[[recipes]]", f"{once}\n[[recipes]]"))
@@ -154,7 +154,7 @@ def test_recipe_numbers_must_differ(tmp_path: Path):
     assert "recipe ids must differ" in problem.allowed
 
 
-def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
+def test_check_exits_with_one_and_names_the_key(tmp_path: Path) -> None:
     path = changed(tmp_path, threshold=("threshold_mm = 0.05", "threshold_mm = 7"))
     result = CliRunner().invoke(app, ["check", str(path)])
     assert result.exit_code == 1
@@ -164,7 +164,7 @@ def test_check_exits_with_one_and_names_the_key(tmp_path: Path):
 
 def test_check_tells_of_calibrations_that_this_user_may_not_write(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+) -> None:
     path = changed(tmp_path, folder=("demo-calibration", "calibration"))
     assert "may not write" not in CliRunner().invoke(app, ["check", str(path)]).output
     monkeypatch.setattr(check, "may_write", lambda _: False)
@@ -174,7 +174,7 @@ def test_check_tells_of_calibrations_that_this_user_may_not_write(
     assert not (tmp_path / "calibration").exists()
 
 
-def test_a_recipe_says_what_the_cell_lacks(tmp_path: Path):
+def test_a_recipe_says_what_the_cell_lacks(tmp_path: Path) -> None:
     path = changed(
         tmp_path,
         head=("[stereo_cameras.head_2]", "[stereo_cameras.second]"),
@@ -185,7 +185,7 @@ def test_a_recipe_says_what_the_cell_lacks(tmp_path: Path):
     assert "the cell lacks [stereo_cameras.head_2]" in found["recipes.0.roles.head_2"]
 
 
-def test_a_role_may_be_taken_by_a_device_of_another_name(tmp_path: Path):
+def test_a_role_may_be_taken_by_a_device_of_another_name(tmp_path: Path) -> None:
     path = changed(
         tmp_path,
         head=("[stereo_cameras.head_2]", "[stereo_cameras.second]"),
@@ -210,10 +210,12 @@ def test_a_role_may_be_taken_by_a_device_of_another_name(tmp_path: Path):
         ("[processes.deck-to-frame]", "[processes.deck]", "processes.deck"),
     ],
 )
-def test_devices_and_processes_belong_together(tmp_path: Path, old: str, new: str, key: str):
+def test_devices_and_processes_belong_together(
+    tmp_path: Path, old: str, new: str, key: str
+) -> None:
     assert key in {problem.key for problem in problems(changed(tmp_path, one=(old, new)))}
 
 
-def test_check_says_which_recipes_the_cell_can_run():
+def test_check_says_which_recipes_the_cell_can_run() -> None:
     result = CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")])
     assert "(deck-to-frame): this cell can run it" in result.output

@@ -115,10 +115,11 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
         assert np.linalg.norm(distance) < 2e-4
         assert np.degrees(np.linalg.norm(angle)) < 0.03
     assert len(boards.predicted) == 2 * PAIRS
-    for head in cell.heads:
-        assert outcome.record["head_joints_deg"][head.name] == head.config.poses_deg["measuring"]
-    for head, robot, turn in zip(cell.heads, (cell.aux_1, cell.aux_2), (0, 1), strict=True):
-        place = np.radians(head.config.poses_deg["measuring"])
+    for station in cell.heads:
+        measured_at = station.config.poses_deg["measuring"]
+        assert outcome.record["head_joints_deg"][station.name] == measured_at
+    for station, robot, turn in zip(cell.heads, (cell.aux_1, cell.aux_2), (0, 1), strict=True):
+        place = np.radians(station.config.poses_deg["measuring"])
         np.testing.assert_allclose(robot.moves[turn].target, place)
 
 

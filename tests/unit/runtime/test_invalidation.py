@@ -43,7 +43,10 @@ async def rows(archive: AsyncRunStore) -> tuple[list[Calibration], list[AuditEnt
     return await archive.do(read)
 
 
-@pytest.mark.parametrize("fault", sorted(AGREED, key=lambda cls: cls.number))
+FAULTS = sorted(AGREED, key=lambda cls: cls.number)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
 async def test_after_these_production_is_refused_with_the_reason(
     bench: Bench, tmp_path: Path, fault: type[CellError]
 ) -> None:

@@ -1,5 +1,6 @@
 """The core alone: it imports, checks a cell file, and its unit idles with no process installed."""
 
+import importlib.metadata
 import subprocess
 import sys
 from pathlib import Path
@@ -39,7 +40,7 @@ print(count)
 @pytest.fixture
 def nothing_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if the entry points of all processes were gone; drivers stay."""
-    everything = plugins.entry_points
+    everything = importlib.metadata.entry_points
 
     def without_processes(**wanted: str) -> object:
         return () if wanted.get("group") == plugins.PROCESS else everything(**wanted)

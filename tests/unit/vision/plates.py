@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.lens import project, undistort
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.features.hole import Hole
@@ -48,6 +49,10 @@ def plate_facing(x_mm: float = 0.0, y_mm: float = 0.0, tilt_deg: float = 0.0) ->
     return camera_T_middle * middle_T_part
 
 
+Pair = tuple[Image, Image]
+"""What the left and the right camera see."""
+
+
 @dataclass(frozen=True)
 class Light:
     plate: float = 150.0
@@ -85,7 +90,7 @@ def render(
     holes: tuple[Hole, ...],
     light: Light,
     rng: np.random.Generator,
-) -> np.ndarray:
+) -> Image:
     """One 8 bit image of the plate, noise included."""
     width, height = size
     columns, rows = np.meshgrid(np.arange(width), np.arange(height))
@@ -97,8 +102,8 @@ def render(
         _draw(image, camera, camera_T_part, hole, light)
     if light.texture:
         rough = rng.normal(size=(height // 2, width // 8)).astype(np.float32)
-        rough = cv2.resize(rough, (width, height), interpolation=cv2.INTER_LINEAR)
-        image += rough * light.texture * 1.5
+        fine = cv2.resize(rough, (width, height), interpolation=cv2.INTER_LINEAR)
+        image += fine * light.texture * 1.5
     half = light.noise**2 / 2
     sigma = np.sqrt(half + half * np.clip(image, 0, None) / light.plate)
     noisy = image + sigma * rng.standard_normal(image.shape, dtype=np.float32)
@@ -111,7 +116,7 @@ def render_pair(
     holes: tuple[Hole, ...],
     light: Light,
     seed: int = 0,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> Pair:
     rng = np.random.default_rng(seed)
     left = render(head.left, head.image_size, camera_T_part, holes, light, rng)
     right_T_part = head.right_T_left * camera_T_part
@@ -132,13 +137,15 @@ def _draw(
     steps = (np.arange((x1 - x0) * SUB) + 0.5) / SUB - 0.5
     u, v = np.meshgrid(steps + x0, steps + y0)
     patch = image[y0:y1, x0:x1]
-    plate = cv2.resize(patch, None, fx=SUB, fy=SUB, interpolation=cv2.INTER_LINEAR)
+    plate = np.asarray(
+        cv2.resize(patch, None, fx=SUB, fy=SUB, interpolation=cv2.INTER_LINEAR), dtype=np.float64
+    )
     rays = np.column_stack(
         [undistort(camera, np.column_stack([u.ravel(), v.ravel()])), np.ones(u.size)]
     )
     grey = _shade(rays, camera_T_part, hole, light, plate.ravel()).reshape(u.shape)
-    grey = cv2.GaussianBlur(grey, (0, 0), light.blur_px * SUB, borderType=cv2.BORDER_REPLICATE)
-    boxes = grey.reshape(patch.shape[0], SUB, patch.shape[1], SUB).mean(axis=(1, 3))
+    blurred = cv2.GaussianBlur(grey, (0, 0), light.blur_px * SUB, borderType=cv2.BORDER_REPLICATE)
+    boxes = blurred.reshape(patch.shape[0], SUB, patch.shape[1], SUB).mean(axis=(1, 3))
     inner = slice(4, -4)
     patch[inner, inner] = boxes[inner, inner]
 

@@ -1,5 +1,7 @@
 """Detection and measurement on analytic images of this folder's own renderer."""
 
+from collections.abc import Callable
+
 import cv2
 import numpy as np
 import pytest
@@ -17,12 +19,21 @@ from cellctl.errors.vision import (
     ResidualsTooLarge,
     VisionError,
 )
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method
 from cellctl.vision.picture import annotate, residual_arrows
 from cellctl.vision.registration.average import average
-from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
+from tests.unit.vision.plates import (
+    Light,
+    Pair,
+    holes_triangle,
+    plate_facing,
+    render_pair,
+    table_1_head,
+)
 
 HEAD = table_1_head()
 HOLES = holes_triangle(("pin", "thread", "countersink"))
@@ -31,13 +42,13 @@ TRUTH = POSE.apply(np.array([hole.position_m for hole in HOLES]))
 
 
 @pytest.fixture(scope="module")
-def pair() -> tuple[np.ndarray, np.ndarray]:
+def pair() -> Pair:
     light = Light(wall=0.35, depth_m=3e-3, texture=3.0, gradient_per_px=0.01)
     return render_pair(HEAD, POSE, HOLES, light, seed=1)
 
 
 @pytest.fixture(scope="module")
-def square_pair() -> tuple[np.ndarray, np.ndarray]:
+def square_pair() -> Pair:
     """Four equal holes on a square: no layout tells them apart."""
     return render_pair(HEAD, POSE, square(), Light(), seed=2)
 
@@ -50,13 +61,13 @@ def square() -> tuple[Hole, ...]:
     )
 
 
-def errors_m(pair: tuple, pose: RigidTransform | None, method: str = "default") -> np.ndarray:
-    result = measure_pair(*pair, HEAD, HOLES, camera_T_part=pose, method=method)  # type: ignore[arg-type]
+def errors_m(pair: Pair, pose: RigidTransform | None, method: Method = "default") -> Array:
+    result = measure_pair(*pair, HEAD, HOLES, camera_T_part=pose, method=method)
     assert result.names == ("P1", "P2", "P3")
     return result.positions_m - TRUTH
 
 
-def test_whole_image_and_window_give_the_same_holes(pair: tuple) -> None:
+def test_whole_image_and_window_give_the_same_holes(pair: Pair) -> None:
     anywhere, near = errors_m(pair, None), errors_m(pair, POSE)
     assert np.abs(anywhere).max() < 60e-6
     assert np.abs(anywhere - near).max() < 5e-6
@@ -65,17 +76,17 @@ def test_whole_image_and_window_give_the_same_holes(pair: tuple) -> None:
 @pytest.mark.parametrize(
     "off", [[6, 0, 0, 0, 0, 0], [-4, 4, 1, 0.5, 0, 0], [3, -4, -2, -0.5, 0.2, -0.2]]
 )
-def test_a_predicted_pose_may_be_off(pair: tuple, off: list[float]) -> None:
+def test_a_predicted_pose_may_be_off(pair: Pair, off: list[float]) -> None:
     predicted = POSE * pose_from_xyzabc(off)
     assert np.abs(errors_m(pair, predicted)).max() < 60e-6
 
 
-def test_a_hole_outside_its_window_is_missing(pair: tuple) -> None:
+def test_a_hole_outside_its_window_is_missing(pair: Pair) -> None:
     with pytest.raises(HoleMissing):
         measure_pair(*pair, HEAD, HOLES, camera_T_part=POSE * pose_from_xyzabc([20, 0, 0, 0, 0, 0]))
 
 
-def test_the_papers_steps_stay_selectable(pair: tuple) -> None:
+def test_the_papers_steps_stay_selectable(pair: Pair) -> None:
     result = measure_pair(*pair, HEAD, HOLES[:1] + HOLES[2:], camera_T_part=POSE, method="paper")
     assert result.method == "paper"
     assert np.abs(result.positions_m - TRUTH[[0, 2]]).max() < 1e-3
@@ -90,7 +101,7 @@ def test_white_discs_are_measured_alike() -> None:
     assert all(abs(hole.diameter_m / 20e-3 - 1) < 1e-3 for hole in result.holes)
 
 
-def test_missing_holes_are_named_not_guessed(pair: tuple) -> None:
+def test_missing_holes_are_named_not_guessed(pair: Pair) -> None:
     extra = Hole("P9", "pin", 12 * MM, np.array([0.03, 0.03, 0.0]))
     with pytest.raises(HoleMissing, match="P9"):
         measure_pair(*pair, HEAD, (*HOLES, extra))
@@ -99,7 +110,7 @@ def test_missing_holes_are_named_not_guessed(pair: tuple) -> None:
         measure_pair(*pair, HEAD, (*HOLES, unseen))
 
 
-def test_a_symmetric_layout_is_ambiguous_unless_a_pose_is_known(square_pair: tuple) -> None:
+def test_a_symmetric_layout_is_ambiguous_unless_a_pose_is_known(square_pair: Pair) -> None:
     with pytest.raises(HoleAmbiguous, match="S"):
         measure_pair(*square_pair, HEAD, square())
     result = measure_pair(*square_pair, HEAD, square(), camera_T_part=POSE)
@@ -107,12 +118,12 @@ def test_a_symmetric_layout_is_ambiguous_unless_a_pose_is_known(square_pair: tup
     assert np.abs(result.positions_m - truth).max() < 15e-6
 
 
-def test_a_single_hole_among_equals_is_ambiguous(square_pair: tuple) -> None:
+def test_a_single_hole_among_equals_is_ambiguous(square_pair: Pair) -> None:
     with pytest.raises(HoleAmbiguous):
         measure_pair(*square_pair, HEAD, square()[:1])
 
 
-def test_a_drawing_that_is_nearly_right_is_refused(pair: tuple) -> None:
+def test_a_drawing_that_is_nearly_right_is_refused(pair: Pair) -> None:
     moved = (
         HOLES[0],
         Hole("P2", "thread", 5 * MM, HOLES[1].position_m + np.array([0, 1.5 * MM, 0])),
@@ -122,7 +133,7 @@ def test_a_drawing_that_is_nearly_right_is_refused(pair: tuple) -> None:
         measure_pair(*pair, HEAD, moved)
 
 
-def test_exchanged_and_turned_images_are_recognised(pair: tuple) -> None:
+def test_exchanged_and_turned_images_are_recognised(pair: Pair) -> None:
     left, right = pair
     with pytest.raises(CamerasSwapped):
         measure_pair(right, left, HEAD, HOLES)
@@ -140,20 +151,22 @@ def test_exchanged_and_turned_images_are_recognised(pair: tuple) -> None:
         (lambda image: image.astype(np.uint16), ImageSizeMismatch),
     ],
 )
-def test_images_that_cannot_be_measured(pair: tuple, spoil, fault: type[VisionError]) -> None:
+def test_images_that_cannot_be_measured(
+    pair: Pair, spoil: Callable[[Image], Image], fault: type[VisionError]
+) -> None:
     left, right = pair
     with pytest.raises(fault, match="right"):
         measure_pair(left, spoil(right), HEAD, HOLES)
 
 
-def test_an_image_out_of_focus_is_called_that(pair: tuple) -> None:
+def test_an_image_out_of_focus_is_called_that(pair: Pair) -> None:
     left, right = pair
-    soft = cv2.GaussianBlur(right, (0, 0), 3.5)
+    soft = np.asarray(cv2.GaussianBlur(right, (0, 0), 3.5), dtype=np.uint8)
     with pytest.raises(ImageBlurred, match=r"right: the rim of P\d is blurred"):
         measure_pair(left, soft, HEAD, HOLES)
 
 
-def test_averages_shrink_the_random_part_only(pair: tuple) -> None:
+def test_averages_shrink_the_random_part_only(pair: Pair) -> None:
     single = measure_pair(*pair, HEAD, HOLES, camera_T_part=POSE)
     mean = average([single] * 9)
     assert mean.frames == 9
@@ -163,7 +176,7 @@ def test_averages_shrink_the_random_part_only(pair: tuple) -> None:
         average([])
 
 
-def test_pictures_show_what_was_found(pair: tuple) -> None:
+def test_pictures_show_what_was_found(pair: Pair) -> None:
     result = measure_pair(*pair, HEAD, HOLES, camera_T_part=POSE)
     arrows = residual_arrows(np.full((3, 3), 20e-6))
     picture = annotate(pair[0], result, "left", arrows)

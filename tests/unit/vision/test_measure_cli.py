@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -31,7 +32,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def run(folder: Path, *more: str, features: str = "plate.toml", right: str = "right.png"):
+def run(folder: Path, *more: str, features: str = "plate.toml", right: str = "right.png") -> Any:
     app = typer.Typer()
     app.command()(measure)
     arguments = ["--calibration", str(folder / "head.json"), "--features", str(folder / features)]
@@ -51,7 +52,9 @@ def test_the_result_is_json_in_mm(folder: Path) -> None:
     assert np.abs(pose[:3, 3] - POSE.translation * 1e3).max() < 0.02
     assert np.array(data["covariance"]).shape == (6, 6)
     assert np.array(data["holes"]["P1"]["left_covariance_px2"]).shape == (2, 2)
-    assert cv2.imread(str(picture)).shape == (2048, 4896, 3)
+    drawn = cv2.imread(str(picture))
+    assert drawn is not None
+    assert drawn.shape == (2048, 4896, 3)
 
 
 def test_the_paper_by_name_on_stdout(folder: Path) -> None:

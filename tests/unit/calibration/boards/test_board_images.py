@@ -50,7 +50,7 @@ def expected(board: CalibrationBoard, homography: Array) -> Array:
     points = np.stack([column.ravel(), row.ravel(), np.zeros(column.size)], axis=1) * SQUARE_PX
     points[:, 2] = 1
     moved = points @ homography.T
-    return moved[:, :2] / moved[:, 2:]
+    return np.asarray(moved[:, :2] / moved[:, 2:], dtype=np.float64)
 
 
 @pytest.mark.parametrize("number", range(3))
@@ -80,7 +80,8 @@ def test_charuco_in_part() -> None:
         pattern.generateImage((2000, 1400)), (1000, 700), interpolation=cv2.INTER_AREA
     )
     image[100:800, 50:] = drawn[:, :850]
-    corners = detect_corners(cv2.GaussianBlur(image, (0, 0), 1.0), CHARUCO)
+    blurred = np.asarray(cv2.GaussianBlur(image, (0, 0), 1.0), dtype=np.uint8)
+    corners = detect_corners(blurred, CHARUCO)
     assert corners is not None
     assert 12 <= len(corners.ids) < 54
     row, column = np.divmod(corners.ids, 9)

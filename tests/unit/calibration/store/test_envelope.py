@@ -3,13 +3,17 @@
 import json
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
+from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.errors.calibration import (
@@ -31,7 +35,12 @@ from tests.unit.calibration.solvers.transfer import test_board_transfer
 
 MADE = datetime(2026, 11, 21, 8, tzinfo=UTC)
 UNTIL = MADE + timedelta(days=180)
-GEOMETRY = (STEREO_HEAD_1, STEREO_HEAD_2, BASE_FRAME, BOARD_TRANSFER)
+GEOMETRY: tuple[CalibrationKind[Any], ...] = (
+    STEREO_HEAD_1,
+    STEREO_HEAD_2,
+    BASE_FRAME,
+    BOARD_TRANSFER,
+)
 
 
 def read_all(folder: Path, until: datetime = MADE) -> CalibrationSnapshot:
@@ -45,7 +54,12 @@ def head() -> StereoResult:
 
 @pytest.fixture
 def folder(tmp_path: Path, head: StereoResult) -> Path:
-    results = (head, head, test_base_frame.calibrate(0), test_board_transfer.calibrate(0))
+    results: list[StereoResult | BaseFrameResult | TransferResult] = [
+        head,
+        head,
+        test_base_frame.calibrate(0),
+        test_board_transfer.calibrate(0),
+    ]
     for kind, result in zip(GEOMETRY, results, strict=True):
         record, serial = result.to_record(), f"SN-{kind.name}"
         write_stored(tmp_path, StoredCalibration(kind.name, record, MADE, UNTIL, "cellctl", serial))
@@ -57,6 +71,8 @@ def test_what_is_written_is_what_production_reads(folder: Path, head: StereoResu
     found = CalibrationSet.of(snapshot)
     first, second = found.heads
     np.testing.assert_allclose(first.translation_m, head.head.translation_m, rtol=1e-12)
+    assert second.covariance is not None
+    assert head.head.covariance is not None
     np.testing.assert_allclose(second.covariance, head.head.covariance, rtol=1e-9)
     transfer = test_board_transfer.calibrate(0)
     np.testing.assert_allclose(

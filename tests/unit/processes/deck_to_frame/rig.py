@@ -72,7 +72,7 @@ class RunRig:
 
 
 def curve(samples: int = 50, force_n: float = 36.0) -> ForceCurve:
-    time_s = np.arange(samples) * 1e-3
+    time_s = np.arange(samples, dtype=np.float64) * 1e-3
     wrench = np.zeros((samples, 6))
     wrench[:, 2] = np.linspace(0.0, force_n, samples)
     return ForceCurve(time_s, wrench, np.linspace(0.0, 0.01, samples))

@@ -30,10 +30,11 @@ async def test_a_measurement_with_its_pictures(rig: RunRig) -> None:
     record = await rig.record()
     entry = record.measurements[0]
     assert entry.pose_mm_deg == pytest.approx((10, 20, 500, 5, 1, 179))
+    assert entry.sigma_mm_deg is not None
     assert entry.sigma_mm_deg[:3] == pytest.approx(SIGMA[:3] * 1e3)
     covariance = np.array(entry.covariance_mm_deg)
     assert covariance.shape == (6, 6)
-    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), entry.sigma_mm_deg)
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), np.array(entry.sigma_mm_deg, float))
     reported = [pose for pose in record.poses if pose.origin is PoseOrigin.REPORTED]
     assert [(pose.key, pose.parent, pose.child) for pose in reported] == [
         ("frame", "base", "flange")

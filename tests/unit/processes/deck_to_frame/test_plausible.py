@@ -10,6 +10,7 @@ from cellctl.processes.deck_to_frame.poses.pose_limits import (
     require_clearance,
     require_near,
 )
+from cellctl.processes.deck_to_frame.stations import deck_recipes
 from tests.unit.cell.bench import Bench
 
 
@@ -24,7 +25,7 @@ from tests.unit.cell.bench import Bench
     ],
 )
 def test_the_tolerance_of_the_recipe(bench: Bench, offset: list[float], near: bool) -> None:
-    recipe = bench.cell.config.recipes[0]
+    recipe = deck_recipes(bench.cell.config)[0]
     measured = bench.station * pose_from_xyzabc(offset)
     assert is_near(recipe, bench.station, measured) is near
     if near:
@@ -47,7 +48,7 @@ def test_the_tolerance_of_the_recipe(bench: Bench, offset: list[float], near: bo
     ],
 )
 def test_no_corner_comes_near_the_frame(bench: Bench, deck: list[float], allowed: bool) -> None:
-    recipe, features = bench.cell.config.recipes[0], bench.features()[1]
+    recipe, features = deck_recipes(bench.cell.config)[0], bench.features()[1]
     if allowed:
         require_clearance(recipe, features, pose_from_xyzabc(deck))
     else:

@@ -3,7 +3,7 @@
 import json
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -38,12 +38,13 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
 def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
     record = store.run(good_run(store))
     curve = force_curve(seconds=2.0)
-    for draw in (
+    drawings: tuple[Callable[[], str], ...] = (
         lambda: errors_by_pass(record.passes),
         lambda: plug_gauges(record.gauges),
         lambda: force_by_time(curve, 35.0, 50.0),
         lambda: force_by_travel(curve, None, None),
-    ):
+    )
+    for draw in drawings:
         drawing = draw()
         assert ET.fromstring(drawing).tag.endswith("svg")
         assert drawing == draw()

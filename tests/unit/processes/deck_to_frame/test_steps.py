@@ -140,7 +140,9 @@ async def test_the_correction_ends_within_the_thresholds(rig: RunRig) -> None:
     commanded = [pose for pose in (await rig.record()).poses if pose.origin is PoseOrigin.COMMANDED]
     assert len(commanded) == 2, "to the stand-off, and once corrected"
     np.testing.assert_allclose(
-        commanded[-1].pose_mm_deg, pose_to_xyzabc(rig.bench.cell.main.flange), atol=1e-6
+        np.array(commanded[-1].pose_mm_deg, float),
+        pose_to_xyzabc(rig.bench.cell.main.flange),
+        atol=1e-6,
     )
     assert rig.board.current.iteration == 2
     assert max(np.abs(rig.board.current.error_mm_deg)) < 0.05

@@ -1,5 +1,6 @@
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,7 +57,9 @@ def test_the_pose_between_the_cameras_is_that_of_the_file() -> None:
         ({"translation_mm": [1, "x", 0]}, "x"),
     ],
 )
-def test_what_is_wrong_with_a_file_is_named(tmp_path: Path, change: dict, word: str) -> None:
+def test_what_is_wrong_with_a_file_is_named(
+    tmp_path: Path, change: dict[str, Any], word: str
+) -> None:
     path = tmp_path / "head.json"
     write_stereo_head(path, table_1_head())
     path.write_text(json.dumps({**json.loads(path.read_text()), **change}))

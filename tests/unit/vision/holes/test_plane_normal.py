@@ -10,7 +10,14 @@ from cellctl.errors.vision import HoleAmbiguous, HoleMissing
 from cellctl.geometry.pose import MM
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
-from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
+from tests.unit.vision.plates import (
+    Light,
+    Pair,
+    holes_triangle,
+    plate_facing,
+    render_pair,
+    table_1_head,
+)
 
 HEAD = table_1_head()
 HOLES = holes_triangle()
@@ -20,7 +27,7 @@ OUT = np.array([0.0, 0.0, 1.0])
 
 
 @pytest.fixture(scope="module")
-def pair() -> tuple[np.ndarray, np.ndarray]:
+def pair() -> Pair:
     return render_pair(HEAD, POSE, HOLES, Light(), seed=5)
 
 
@@ -39,13 +46,13 @@ def drawn_in(frame: RigidTransform, outward: np.ndarray | None = None) -> tuple[
     ],
     ids=["z into the part", "askew", "face along y and z"],
 )
-def test_any_frame_of_the_drawing_will_do(pair: tuple, turn: Rotation) -> None:
+def test_any_frame_of_the_drawing_will_do(pair: Pair, turn: Rotation) -> None:
     frame = RigidTransform.from_components([0.2, -0.1, 0.05], turn)
     result = measure_pair(*pair, HEAD, drawn_in(frame))
     assert np.abs(result.positions_m - TRUTH).max() < 10e-6
 
 
-def test_a_stated_face_must_look_at_the_head(pair: tuple) -> None:
+def test_a_stated_face_must_look_at_the_head(pair: Pair) -> None:
     same = RigidTransform.identity()
     result = measure_pair(*pair, HEAD, drawn_in(same, OUT))
     assert np.abs(result.positions_m - TRUTH).max() < 10e-6

@@ -7,7 +7,7 @@ from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
+from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.registration.part_pose import part_pose
 
 XY_MM = [(-480, -180), (-480, -80), (-400, -230), (400, 230), (480, 180), (480, 80)]
@@ -34,7 +34,9 @@ def measured(holes: tuple[Hole, ...], points_m: Array) -> PairMeasurement:
     )  # fmt: skip
 
 
-def heads(noise: Array, transfer: RigidTransform = C1_T_C2) -> tuple:
+def heads(
+    noise: Array, transfer: RigidTransform = C1_T_C2
+) -> tuple[PairMeasurement, PairMeasurement]:
     """What both heads measure; the true transform between them may differ from the known one."""
     nominal = np.array([hole.position_m for hole in HOLES])
     in_c1 = C1_T_PART.apply(nominal)
@@ -44,12 +46,12 @@ def heads(noise: Array, transfer: RigidTransform = C1_T_C2) -> tuple:
 
 
 @pytest.mark.parametrize("method", ["default", "paper"])
-def test_without_noise_the_pose_is_exact(method: str) -> None:
+def test_without_noise_the_pose_is_exact(method: Method) -> None:
     result = part_pose(
         *heads(np.zeros((6, 3))),
         UncertainPose.exact(C1_T_C2),
         HOLES,
-        method,  # type: ignore[arg-type]
+        method,
     )
     translation_m, rotation_rad = pose_error(C1_T_PART, result.pose.pose)
     assert np.abs(translation_m).max() < 1e-12
@@ -58,7 +60,7 @@ def test_without_noise_the_pose_is_exact(method: str) -> None:
 
 
 @pytest.mark.parametrize("method", ["default", "paper"])
-def test_the_covariance_is_that_of_the_scatter_and_contains_the_transfer(method: str) -> None:
+def test_the_covariance_is_that_of_the_scatter_and_contains_the_transfer(method: Method) -> None:
     rng = np.random.default_rng(5)
     transfer_sigma = np.array([20e-6, 20e-6, 20e-6, 3e-5, 3e-5, 3e-5])
     known = UncertainPose(C1_T_C2, np.diag(transfer_sigma**2))
@@ -72,7 +74,7 @@ def test_the_covariance_is_that_of_the_scatter_and_contains_the_transfer(method:
             *heads(rng.normal(size=(6, 3)) * SIGMA_M, true),
             known,
             HOLES,
-            method,  # type: ignore[arg-type]
+            method,
         )
         error = np.concatenate(pose_error(C1_T_PART, result.pose.pose))
         squared.append(error @ np.linalg.solve(result.pose.covariance, error))
@@ -134,4 +136,4 @@ def test_a_part_off_its_drawing_makes_the_pose_less_sure() -> None:
     assert odd.misfit.growth > 100.0
     assert odd.pose.sigma.max() > 10.0 * good.pose.sigma.max()
     own = [np.diag(result.own_covariance) for result in (good, odd)]
-    np.testing.assert_allclose(*own, rtol=1e-2)
+    np.testing.assert_allclose(own[0], own[1], rtol=1e-2)

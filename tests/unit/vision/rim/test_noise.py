@@ -30,7 +30,8 @@ def _brushed(angle_deg: float, height_grey: float, noise_grey: float, seed: int)
     position = -np.sin(angle) * columns + np.cos(angle) * rows
     image = 120.0 + np.interp(position + 1500.0, np.arange(4000), profile)
     image += rng.normal(0.0, noise_grey, image.shape)
-    return np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    grey: Image = np.clip(np.rint(image), 0, 255).astype(np.uint8)
+    return grey
 
 
 @pytest.mark.parametrize("angle_deg", [0.0, 30.0, 100.0])

@@ -69,9 +69,9 @@ def sweep(
     return stops
 
 
-def calibrate(seed: int, arc_deg: float = 100, **options: int) -> BaseFrameResult:
+def calibrate(seed: int, arc_deg: float = 100, *, targets: int = 6) -> BaseFrameResult:
     rng = np.random.default_rng(seed)
-    first, second = (sweep(rng, joint, arc_deg, **options) for joint in (0, 1))
+    first, second = (sweep(rng, joint, arc_deg, targets=targets) for joint in (0, 1))
     return calibrate_base_frame(first, second, ARM, noise=NOISE)
 
 

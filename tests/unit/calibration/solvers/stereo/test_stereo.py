@@ -71,7 +71,8 @@ def bowed() -> list[StereoResult]:
 
 
 def rms(results: list[StereoResult]) -> Array:
-    return np.sqrt(np.mean([np.square(errors_m(result.head)) for result in results], axis=0))
+    squares = [np.square(errors_m(result.head)) for result in results]
+    return np.asarray(np.sqrt(np.mean(squares, axis=0)))
 
 
 def test_bow_costs_nothing_when_the_board_is_released(
@@ -173,6 +174,8 @@ def test_record_survives_json(bowed: list[StereoResult]) -> None:
     result = bowed[0]
     again = StereoResult.from_record(json.loads(json.dumps(result.to_record())))
     np.testing.assert_allclose(again.head.translation_m, result.head.translation_m, rtol=1e-12)
+    assert again.head.covariance is not None
+    assert result.head.covariance is not None
     np.testing.assert_allclose(again.head.covariance, result.head.covariance, rtol=1e-9)
     np.testing.assert_allclose(again.board_m, result.board_m, rtol=1e-12, atol=1e-15)
     assert again.checks == result.checks
