@@ -16,7 +16,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.scenes.deck_on_frame.scenario import DeckScenario, Pins
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
-from fakes.wire.sjl_controller_logic import Controller
+from fakes.wire.sjl.logic import Controller
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
 

@@ -10,7 +10,7 @@ from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, Stop
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import Robot, RobotMode, RobotState
 from fakes.sections import Channel
-from fakes.wire.sjl_controller_logic import Controller, Record
+from fakes.wire.sjl.logic import Controller, Record
 
 SESSION = 1
 REPORT_S = 0.02

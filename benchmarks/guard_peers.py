@@ -13,8 +13,8 @@ from multiprocessing.connection import Connection, wait
 import numpy as np
 
 from cellctl.guard.process import realtime
-from fakes.wire.sri_core import SriCore
-from fakes.wire.sri_session import SriSession
+from fakes.wire.sri.core import SriCore
+from fakes.wire.sri.session import SriSession
 
 FORCE_N = 30.0
 PRIORITY = 90

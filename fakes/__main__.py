@@ -57,7 +57,7 @@ _FORWARDED = {"ignore_unknown_options": True, "allow_extra_args": True, "help_op
 @app.command(context_settings=_FORWARDED)
 def plc(context: typer.Context) -> None:
     """Act as the line PLC; see ``plc --help``."""
-    from fakes.wire import line_plc
+    from fakes.wire.line import plc as line_plc
 
     line_plc.app(args=context.args, prog_name="python -m fakes plc")
 

@@ -17,8 +17,8 @@ from fakes.priority import stand_apart
 from fakes.scenario import Scenario
 from fakes.scenes.registry import open_world
 from fakes.sections import Robot
-from fakes.wire.sjl_controller import SjlController
-from fakes.wire.sjl_controller_stream import StreamOffer
+from fakes.wire.sjl.controller import SjlController
+from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.world import Command
 
 _ADVANCE_S = 0.002

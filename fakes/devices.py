@@ -17,13 +17,13 @@ from fakes.render.options import RenderOptions
 from fakes.render.worker import make_pool, render_frame
 from fakes.scenario import Scenario
 from fakes.sections import DigitalIo, Gripper, SingleCamera, StereoCamera, Tracker
-from fakes.wire.cfs_server import MONO8, RGB8, CfsServer, ExposureError
-from fakes.wire.coupler import CouplerServer
-from fakes.wire.frame_server import FrameServer
-from fakes.wire.gripper_coupler import gripper_coupler
-from fakes.wire.image_server import ImageServer, Picture
-from fakes.wire.sri_box import SriBox
-from fakes.wire.target_server import TargetServer
+from fakes.wire.cameras.cfs_server import MONO8, RGB8, CfsServer, ExposureError
+from fakes.wire.cameras.frame_server import FrameServer
+from fakes.wire.cameras.image_server import ImageServer, Picture
+from fakes.wire.cameras.target_server import TargetServer
+from fakes.wire.couplers.coupler import CouplerServer
+from fakes.wire.couplers.gripper_coupler import gripper_coupler
+from fakes.wire.sri.box import SriBox
 from fakes.world.gripper import PneumaticJaws
 from fakes.world.targets import SeenTarget
 from fakes.world.world import Command, World

@@ -18,7 +18,7 @@ from cellctl.cli.faults import fault_catalogue
 from cellctl.packml.document import state_machine_document
 from fakes.__main__ import app as fakes_app
 from fakes.demo.app import app as demo_app
-from fakes.wire.line_plc import app as plc_app
+from fakes.wire.line.plc import app as plc_app
 
 ROOT = Path(__file__).parents[1]
 PAGES = sorted(

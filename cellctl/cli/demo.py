@@ -1,4 +1,4 @@
-"""`cellctl demo`: the main job on the fake cell, which is a program of its own."""
+"""`cellctl demo`: one job of a process on its fake cell, which is a program of its own."""
 
 import os
 import sys
@@ -9,7 +9,7 @@ PASS_THROUGH = {"allow_extra_args": True, "ignore_unknown_options": True, "help_
 
 
 def demo(context: typer.Context) -> None:
-    """Start fake cell, daemon and line PLC and assemble one deck (`--help` for its options).
+    """Start a fake cell, daemon and line PLC and run one job (`--process`; `--help` for more).
 
     That program takes the place of this one: a signal must reach it and nobody else.
     """

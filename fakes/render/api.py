@@ -34,7 +34,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fakes.render.canvas import Image
 from fakes.render.model import SceneCharucoBoard, SceneObject
 from fakes.render.nominal import (
     facing_pose,
@@ -44,9 +43,10 @@ from fakes.render.nominal import (
     nominal_plate,
     nominal_target_board,
 )
+from fakes.render.optics.canvas import Image
+from fakes.render.optics.sensor import Grey, exposed
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pictures
-from fakes.render.sensor import Grey, exposed
 from fakes.render.truth import hole_centres_m, project_hole_centres, project_rims
 from fakes.world.scene import CameraScene, StereoTruth
 

@@ -7,7 +7,7 @@ from typing import Final
 import cv2
 import numpy as np
 
-from fakes.render.canvas import Image
+from fakes.render.optics.canvas import Image
 from fakes.world.scene import Body, CameraScene, LensTruth, MonoTruth, ScenePlate, StereoTruth
 
 Pictures = tuple[Image, ...]

@@ -4,15 +4,15 @@ from functools import partial
 
 import numpy as np
 
-from fakes.render.boards import draw_chessboard, draw_target_board
-from fakes.render.canvas import Image, Patch
-from fakes.render.lens import View, views_of
-from fakes.render.light import light_direction, light_field
+from fakes.render.bodies.boards import draw_chessboard, draw_target_board
+from fakes.render.bodies.plate import draw_plate
 from fakes.render.model import SceneCharucoBoard, SceneObject, pose_of
+from fakes.render.optics.canvas import Image, Patch
+from fakes.render.optics.lens import View, views_of
+from fakes.render.optics.light import light_direction, light_field
+from fakes.render.optics.sensor import blurred
+from fakes.render.optics.surface import is_seen
 from fakes.render.options import RenderOptions
-from fakes.render.plate import draw_plate
-from fakes.render.sensor import blurred
-from fakes.render.surface import is_seen
 from fakes.world.scene import (
     MonoTruth,
     SceneChessboard,

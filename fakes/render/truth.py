@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from fakes.render.holes import circle, rim_depth
-from fakes.render.lens import Array, views
+from fakes.render.bodies.holes import circle, rim_depth
+from fakes.render.optics.lens import Array, views
+from fakes.render.optics.surface import to_pixels
 from fakes.render.options import RenderOptions
-from fakes.render.surface import to_pixels
 from fakes.world.scene import ScenePlate, StereoTruth
 
 _DEFAULT = RenderOptions()

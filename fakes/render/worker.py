@@ -19,11 +19,11 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.priority import give_way
-from fakes.render.canvas import Image
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
+from fakes.render.optics.canvas import Image
+from fakes.render.optics.sensor import exposed
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pictures
-from fakes.render.sensor import exposed
 from fakes.world.scene import CameraScene, MonoTruth
 
 _KEPT_SCENES: Final = 3

@@ -15,7 +15,7 @@ from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.report import GuardTrip
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 from tests.ports import free_ports
 from tests.wire.siasun_peer import Peer
 

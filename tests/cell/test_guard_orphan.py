@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 from tests.cell.guard_rig import Robot, noisy, until
 from tests.ports import free_ports
 from tests.wire.siasun_peer import Peer

@@ -16,7 +16,7 @@ from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 from tests.cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
 from tests.ports import free_ports
 

@@ -8,7 +8,7 @@ import pytest
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerCamera
-from fakes.wire.image_server import ImageServer
+from fakes.wire.cameras.image_server import ImageServer
 from tests.contracts.camera import CameraContract, SingleCameraBench
 from tests.contracts.inprocess.camera import InProcessCamera
 from tests.wire.camera_bench import PictureTaker, pixels

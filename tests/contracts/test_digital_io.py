@@ -9,7 +9,7 @@ from cellctl.errors.link import LinkLost
 from cellctl.interfaces.digital_io import DigitalIo
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.driver import ModbusCouplerIo
-from fakes.wire.coupler import CouplerServer
+from fakes.wire.couplers.coupler import CouplerServer
 from tests.contracts.digital_io import INPUTS, OUTPUTS, DigitalIoBench, DigitalIoContract
 from tests.contracts.inprocess.digital_io import InProcessIo
 from tests.wire.proxy import ChaosProxy

@@ -8,7 +8,7 @@ import pytest
 from cellctl.interfaces.ft_sensor import FtSensor
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.driver import SriSensor
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 from tests.contracts.ft_sensor import FtBench, FtSensorContract
 from tests.contracts.inprocess.ft_sensor import InProcessSensor
 from tests.contracts.loop_thread import LoopThread

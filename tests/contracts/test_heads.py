@@ -13,8 +13,8 @@ from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
 from drivers.camera.target_server.config import TargetServerConfig
 from drivers.camera.target_server.driver import TargetServerTracker
-from fakes.wire.frame_server import FrameServer
-from fakes.wire.target_server import TargetServer
+from fakes.wire.cameras.frame_server import FrameServer
+from fakes.wire.cameras.target_server import TargetServer
 from fakes.world.targets import SeenTarget
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker

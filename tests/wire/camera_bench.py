@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.interfaces.camera import PixelFormat
-from fakes.wire.image_server import Picture
+from fakes.wire.cameras.image_server import Picture
 
 WIDTH, HEIGHT = 5, 4
 CODES = {PixelFormat.MONO8: 1, PixelFormat.MONO16: 2, PixelFormat.RGB8: 3}

@@ -5,7 +5,7 @@ from pathlib import Path
 from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.scenario import Scenario, load
 from fakes.sections import Channel
-from fakes.wire.sjl_controller_logic import Controller, Outbox, Record
+from fakes.wire.sjl.logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.wire.scenarios import as_on_a_real_cell

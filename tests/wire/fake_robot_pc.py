@@ -9,8 +9,8 @@ from pathlib import Path
 from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.scenario import load
 from fakes.sections import Channel
-from fakes.wire.sjl_controller import SjlController
-from fakes.wire.sjl_controller_records import decode, encode
+from fakes.wire.sjl.controller import SjlController
+from fakes.wire.sjl.records import decode, encode
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.wire.scenarios import as_on_a_real_cell

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from cellctl.clock import now_s
 from drivers.gripper.pneumatic.config import PneumaticGripperConfig
 from drivers.gripper.pneumatic.driver import PneumaticGripper
-from fakes.wire.coupler import CouplerServer
-from fakes.wire.gripper_coupler import CLOSE_COIL, OPEN_COIL, SENSORS, gripper_coupler
+from fakes.wire.couplers.coupler import CouplerServer
+from fakes.wire.couplers.gripper_coupler import CLOSE_COIL, OPEN_COIL, SENSORS, gripper_coupler
 from fakes.world.gripper import PneumaticJaws
 from tests.wire.proxy import ChaosProxy
 

@@ -13,8 +13,8 @@ from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from fakes.scenario import load
 from fakes.sections import Channel
-from fakes.wire.sjl_controller import SjlController
-from fakes.wire.sjl_controller_stream import StreamOffer
+from fakes.wire.sjl.controller import SjlController
+from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.ports import free_ports

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from drivers.ftsensor.sri.driver import SriSensor
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 
 WRENCH = (10.0, -20.0, -1962.0, 1.5, -2.5, 0.25)
 T = TypeVar("T")

@@ -14,7 +14,7 @@ from cellctl.errors.link import DeviceFault, LinkError, LinkLost, ProtocolViolat
 from drivers.gripper.pneumatic.config import PneumaticGripperConfig
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.driver import ModbusCouplerIo
-from fakes.wire.coupler import CouplerServer
+from fakes.wire.couplers.coupler import CouplerServer
 from tests.wire.gripper_rig import GripperRig, gripper_rig
 from tests.wire.proxy import ChaosProxy
 

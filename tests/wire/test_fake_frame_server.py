@@ -15,8 +15,8 @@ import pytest
 from fakes.priority import RENDERER_NICE
 from fakes.render import api
 from fakes.render.worker import make_pool, render_frame
-from fakes.wire.frame_server import FrameServer
-from fakes.wire.frame_server_faults import FrameFaults
+from fakes.wire.cameras.frame_server import FrameServer
+from fakes.wire.cameras.frame_server_faults import FrameFaults
 from fakes.world.scene import CameraScene, LensTruth, StereoTruth
 
 SIZE = (260, 200)

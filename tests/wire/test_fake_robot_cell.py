@@ -104,7 +104,7 @@ async def test_taken_port_is_said_and_ends_with_an_error() -> None:
     "line", [b"not json\n", b"[1]\n", b'{"id": 1}\n', b'{"id": 1, "cmd": "measure", "frames": 0}\n']
 )
 async def test_target_server_answers_nonsense_with_an_error(line: bytes) -> None:
-    from fakes.wire.target_server import TargetServer
+    from fakes.wire.cameras.target_server import TargetServer
 
     async def measure(frames: int) -> tuple[()]:
         return ()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fakes.wire.sjl_controller_records import RecordError
+from fakes.wire.sjl.records import RecordError
 from tests.wire.fake_robot_bench import HOME, Bench, at_work, words
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from fakes.wire.sjl_controller_records import (
+from fakes.wire.sjl.records import (
     RecordError,
     decode,
     encode,

@@ -5,8 +5,8 @@
 import numpy as np
 import pytest
 
-from fakes.wire.sjl_controller_records import RecordError
-from fakes.wire.sjl_controller_stream import StreamOffer
+from fakes.wire.sjl.records import RecordError
+from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.frames import distance, from_written
 from tests.wire.fake_robot_bench import Bench, at_work
 

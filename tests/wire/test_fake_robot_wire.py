@@ -6,7 +6,7 @@ from types import CoroutineType
 
 import pytest
 
-from fakes.wire.sjl_controller_records import encode
+from fakes.wire.sjl.records import encode
 from tests.wire.fake_robot_pc import Line, Pc, controller
 
 WORK = (0, -85, 95, 0, 85, 90)

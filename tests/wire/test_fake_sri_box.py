@@ -6,10 +6,10 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from fakes.wire.sri_box import SriBox
-from fakes.wire.sri_core import SriCore
-from fakes.wire.sri_frames import build_frame, pack_floats
-from fakes.wire.sri_session import SriSession
+from fakes.wire.sri.box import SriBox
+from fakes.wire.sri.core import SriCore
+from fakes.wire.sri.frames import build_frame, pack_floats
+from fakes.wire.sri.session import SriSession
 
 WRENCH = (10.0, -20.0, -1962.0, 1.5, -2.5, 0.25)
 

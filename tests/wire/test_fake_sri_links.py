@@ -8,9 +8,9 @@ import can
 import pytest
 import serial
 
-from fakes.wire.sri_box import SriBox
-from fakes.wire.sri_can import CanFrame, CanSession
-from fakes.wire.sri_core import SriCore
+from fakes.wire.sri.box import SriBox
+from fakes.wire.sri.can import CanFrame, CanSession
+from fakes.wire.sri.core import SriCore
 
 WRENCH = (10.0, -20.0, -1962.0, 1.5, -2.5, 0.25)
 

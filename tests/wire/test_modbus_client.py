@@ -17,8 +17,8 @@ from cellctl.errors.link import (
 )
 from drivers.modbus.client import ModbusClient
 from drivers.modbus.settings import CouplerSettings
-from fakes.wire import modbus_pdu
-from fakes.wire.modbus_pdu import ExceptionCode, Request
+from fakes.wire.couplers import modbus_pdu
+from fakes.wire.couplers.modbus_pdu import ExceptionCode, Request
 from tests.ports import free_ports
 from tests.wire import modbus_golden as golden
 from tests.wire.scripted_server import serving

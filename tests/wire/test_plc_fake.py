@@ -93,7 +93,7 @@ async def cells() -> AsyncIterator[list[FakelessCell]]:
 
 async def play(port: int, *options: str) -> tuple[int, list[dict[str, object]]]:
     process = await asyncio.create_subprocess_exec(
-        sys.executable, "-c", "from fakes.wire.line_plc import app; app()",
+        sys.executable, "-c", "from fakes.wire.line.plc import app; app()",
         "--port", str(port), *options,
         cwd=ROOT, stdout=asyncio.subprocess.PIPE,
     )  # fmt: skip

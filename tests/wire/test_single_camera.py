@@ -16,7 +16,7 @@ from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerCamera, FrameServerHead
 from drivers.camera.frame_server.protocol import Command
-from fakes.wire.image_server import ImageServer, Picture
+from fakes.wire.cameras.image_server import ImageServer, Picture
 from tests.wire import cfs_golden as golden
 from tests.wire.camera_bench import HEIGHT, WIDTH, PictureTaker
 from tests.wire.proxy import ChaosProxy

@@ -11,7 +11,7 @@ import pytest
 from cellctl.errors.force import SensorSetupWrong
 from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout
 from drivers.ftsensor.sri.driver import SriSensor
-from fakes.wire.sri_box import SriBox
+from fakes.wire.sri.box import SriBox
 from tests.ports import free_ports
 from tests.wire.sri_rig import WRENCH, blocking, noisy, read_until, tcp_sensor
 

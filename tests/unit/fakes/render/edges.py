@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.render.lens import View
+from fakes.render.optics.lens import View
 from fakes.world.scene import LensTruth
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 from scipy.spatial.transform import RigidTransform
 
-from fakes.render.lens import View
+from fakes.render.optics.lens import View
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_picture
 from fakes.world.scene import SceneChessboard, SceneDisc, SceneHole, ScenePlate, SceneTargetBoard

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from fakes.render.lens import View
 from fakes.render.model import SceneObject
+from fakes.render.optics.lens import View
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_picture
 from fakes.world.scene import (
@@ -167,7 +167,7 @@ def test_truth_is_where_opencv_projects_it() -> None:
     view = random_view(rng, (2448, 2048), FIELD_PX / 2)
     points = np.column_stack([rng.uniform(-0.15, 0.15, (50, 2)), np.full(50, 0.0)])
     pose = pose_at(rng, view, 10)
-    from fakes.render.surface import to_pixels
+    from fakes.render.optics.surface import to_pixels
 
     difference = to_pixels(view, pose, points) - project_cv(view, pose, points)
     assert np.abs(difference).max() < 1e-9

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from fakes.render import api
-from fakes.render.lattice import NODES_FULL, Window
-from fakes.render.lens import project, undistort, views
-from fakes.render.surface import is_seen, meet_surface, surface_map, to_pixels
+from fakes.render.optics.lattice import NODES_FULL, Window
+from fakes.render.optics.lens import project, undistort, views
+from fakes.render.optics.surface import is_seen, meet_surface, surface_map, to_pixels
 
 PX_M = 0.5 / 3580
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fakes.render import api
-from fakes.render.canvas import Image
+from fakes.render.optics.canvas import Image
 from fakes.render.worker import fingerprint, render_frame
 from fakes.world.scene import CameraScene, LensTruth, ScenePlate, StereoTruth
 
@@ -107,8 +107,8 @@ def test_opencv_finds_the_chessboard_where_it_is() -> None:
     grid_x, grid_y = np.meshgrid(np.arange(columns), np.arange(rows))
     points = np.column_stack([grid_x.ravel(), grid_y.ravel(), np.zeros(grid_x.size)]).astype(float)
     points[:, :2] -= [(columns - 1) / 2, (rows - 1) / 2]
-    from fakes.render.lens import views
-    from fakes.render.surface import to_pixels
+    from fakes.render.optics.lens import views
+    from fakes.render.optics.surface import to_pixels
 
     for image, view in zip((left, right), views(stereo), strict=True):
         truth = to_pixels(view, board.camera_T_board, points * board.square_m)
@@ -136,8 +136,8 @@ def test_opencv_reads_the_charuco_board() -> None:
     points = np.asarray(layout.getChessboardCorners())[ids.ravel()].astype(float)
     points[:, 0] -= 11 * board.square_m / 2
     points[:, 1] = 8 * board.square_m / 2 - points[:, 1]
-    from fakes.render.lens import views
-    from fakes.render.surface import to_pixels
+    from fakes.render.optics.lens import views
+    from fakes.render.optics.surface import to_pixels
 
     truth = to_pixels(views(stereo)[0], board.camera_T_board, points)
     assert np.linalg.norm(corners.reshape(-1, 2) - truth, axis=1).max() < 0.5

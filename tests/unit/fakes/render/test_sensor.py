@@ -8,10 +8,10 @@ import pytest
 from numpy.typing import NDArray
 
 from fakes.render import api
-from fakes.render.lens import views
+from fakes.render.optics.lens import views
+from fakes.render.optics.sensor import exposed, noise_sigma
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_picture
-from fakes.render.sensor import exposed, noise_sigma
 
 SHAPE = (700, 900)
 

@@ -10,7 +10,7 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import PairMeasurement
 from fakes.render import api
-from fakes.render.holes import rim_depth
+from fakes.render.bodies.holes import rim_depth
 
 Errors = list[tuple[str, np.ndarray, float]]
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fakes.render import api
-from fakes.render.lens import views_of
 from fakes.render.look import options_of
-from fakes.render.surface import to_pixels
+from fakes.render.optics.lens import views_of
+from fakes.render.optics.surface import to_pixels
 from fakes.render.worker import render_frame
 from fakes.scenes.plate.scenario import PlateScenario, PrintedBoard
 from fakes.scenes.plate.scene import PlateScene

@@ -1,0 +1,1 @@
+"""How plates with holes, boards and prints look."""

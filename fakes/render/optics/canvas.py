@@ -1,0 +1,44 @@
+"""The picture under construction, and the patches that are laid over it."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from fakes.render.optics.lattice import Window
+from fakes.render.optics.lens import Array
+from fakes.render.optics.sensor import REACH, Image, blurred_cells
+
+__all__ = ["Image", "Patch", "margin_px"]
+
+
+def margin_px(blur_px: float) -> int:
+    """How far a blurred object reaches beyond its outline."""
+    return 3 + int(np.ceil(REACH * blur_px))
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """What a small object does to the picture below it: ``below * through + grey``."""
+
+    window: Window
+    through: Array | Image
+    """Part of each pixel in which the picture below stays visible."""
+    grey: Array | float = 0.0
+    """Grey that the object adds, already weighted with its part of the pixel."""
+
+    @classmethod
+    def from_cells(cls, window: Window, through: Array, grey: Array, blur_px: float) -> Self:
+        """From values of the window's cells, through blur and pixel box."""
+        sigma = blur_px * window.sub
+        return cls(
+            window,
+            window.mean(blurred_cells(through, sigma)),
+            window.mean(blurred_cells(grey, sigma)),
+        )
+
+    def lay_over(self, image: Image, light: Image | None = None) -> None:
+        """Change ``image`` in place; ``light`` falls on the object's own grey."""
+        part = image[self.window.slices]
+        part *= self.through
+        part += self.grey if light is None else self.grey * light[self.window.slices]

@@ -1,0 +1,32 @@
+"""How much of a cell lies beyond an edge: exact for a straight edge in any direction.
+
+A curved edge of radius r is off by at most 1 / (24 r n²) px with n cells a pixel side: 1e-4 px for
+a 6 mm hole (r = 21 px) and n = 4.
+"""
+
+import numpy as np
+
+from fakes.render.optics.lens import Array
+
+
+def coverage(signed: Array) -> Array:
+    """Covered part of each cell of a lattice where ``signed`` > 0, shape (rows, columns).
+
+    ``signed`` is any smooth function that is zero on the edge; only its ratio to its own gradient
+    counts.
+    """
+    gradient_y, gradient_x = np.gradient(signed)
+    length = np.hypot(gradient_x, gradient_y)
+    length = np.maximum(length, np.finfo(float).tiny)
+    return half_plane(signed / length, gradient_x / length, gradient_y / length)
+
+
+def half_plane(distance: Array, normal_x: Array, normal_y: Array) -> Array:
+    """Part of a unit square, centred at ``distance`` from an edge, on the positive side."""
+    steep = np.maximum(np.abs(normal_x), np.abs(normal_y))
+    flat = np.maximum(np.minimum(np.abs(normal_x), np.abs(normal_y)), 1e-9)
+    reach = np.minimum(np.abs(distance), (steep + flat) / 2)
+    straight = reach / np.maximum(steep, 1e-9)
+    corner = 0.5 - ((steep + flat) / 2 - reach) ** 2 / (2 * np.maximum(steep * flat, 1e-18))
+    part = np.where(reach <= (steep - flat) / 2, straight, corner)
+    return np.asarray(0.5 + np.copysign(part, distance))

@@ -1,0 +1,1 @@
+"""Modbus couplers: bare digital inputs and outputs, and a gripper wired to one."""
