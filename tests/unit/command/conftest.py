@@ -1,26 +1,3 @@
-from collections.abc import AsyncIterator
-from pathlib import Path
+from tests.unit.daemon_fixtures import bench, rig
 
-import pytest
-
-from cellctl.cell import settling
-from tests.unit.cell.bench import Bench, make_bench
-from tests.unit.daemon_rig import DaemonRig
-
-
-@pytest.fixture
-def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-    """What hangs on the robot is still at once."""
-    monkeypatch.setattr(settling, "WINDOW_S", 0.0)
-    monkeypatch.setattr(settling, "POLL_S", 0.0)
-    return make_bench(tmp_path)
-
-
-@pytest.fixture
-async def rig(
-    bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> AsyncIterator[DaemonRig]:
-    rig = DaemonRig(bench, tmp_path / "store", monkeypatch)
-    await rig.open()
-    yield rig
-    await rig.close()
+__all__ = ["bench", "rig"]
