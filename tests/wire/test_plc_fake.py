@@ -122,7 +122,7 @@ async def test_a_good_part_from_aborted_to_completed(cells: list[FakelessCell]) 
     assert cell.commands[-1].serial == "SAT-0042"
     assert cell.commands[-1].unit_mode == 1
     reports = [line for line in lines if line["event"] == "report"]
-    assert all(line["step"] == "compensate" for line in reports[1:])
+    assert all(line["step"] == "correct pose" for line in reports[1:])
 
 
 async def test_a_bad_part_and_a_procedure(cells: list[FakelessCell]) -> None:

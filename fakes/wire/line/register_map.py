@@ -51,7 +51,7 @@ STEPS = {
     10: "measure frame",
     20: "measure deck",
     30: "pre-assembly",
-    40: "compensate",
+    40: "correct pose",
     50: "mate",
     60: "verify",
     101: "calibrate head 1",
