@@ -86,10 +86,11 @@ test-long: venv
 	$(BIN)/pytest -m "long and cell" --durations 0
 
 # Leaves out the tests marked long. The figures of each program that the tests start are combined.
+# Code that is being measured runs several times slower, hence the longer time limit.
 coverage: venv
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest -q -n 2 -m "not cell and not long"
-	$(BIN)/coverage run -m pytest -q -m "cell and not long"
+	$(BIN)/coverage run -m pytest -q -n 2 --timeout 900 -m "not cell and not long"
+	$(BIN)/coverage run -m pytest -q --timeout 900 -m "cell and not long"
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
