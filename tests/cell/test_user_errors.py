@@ -70,7 +70,7 @@ def test_settings_of_drivers_are_checked_too(own: OwnCell) -> None:
     own.change('driver = "target-server"', 'driver = "crystal-ball"')
     checked = cellctl("check", str(own.cell))
     assert checked.returncode == 1
-    assert "force.sensor.settings.transport" in checked.stdout
+    assert "force_sensors.force.settings.transport" in checked.stdout
     assert "crystal-ball" in checked.stdout
     assert "target-server" in checked.stdout  # what is installed
 
@@ -104,7 +104,7 @@ def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
     said = waits(daemon, "F201")
     for device in ("robots.main", "robots.aux_1", "robots.aux_2", "head_1", "head_2", "tracker"):
         assert device in said, device
-    assert "guard" in said
+    assert "force_sensors.force" in said
     with OutsidePlc(own.modbus_port) as plc:
         plc.start_heartbeat()
         assert (plc.state, plc.value("first_out_alarm")) == ("Aborted", 201)
