@@ -65,9 +65,6 @@ class HoleKind:
     lends_blur: ClassVar[bool] = True
     """The blur of the image can be read off its rim. Other kinds are measured last and are told
     the blur that the rims before them have shown."""
-    ring_cost: ClassVar[float] = 80.0
-    """By how much chi square must fall for a ring to be accepted. Turns of a thread imitate a
-    ring; real rings bring a fall of thousands."""
 
     def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """The second edge that must be fitted together with the rim; None when one edge does."""
