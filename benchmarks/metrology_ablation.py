@@ -16,7 +16,7 @@ from collections import defaultdict
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, Literal
 from unittest.mock import patch
 
 import cv2
@@ -46,6 +46,7 @@ from cellctl.vision.rim import (
 )
 from fakes.render import api
 
+PARTS: dict[str, Literal["deck", "frame"]] = {"deck": "deck", "frame": "frame"}
 WALLS = ("lit wall", "bright wall", "fading wall", "faint wall")
 CONES = ("flat cone", "bright cone", "near cone", "narrow cone", "true cone")
 THREADS = ("turns", "chamfered turns", "frame")
@@ -204,9 +205,9 @@ TERMS = (
 
 def scenes(image: str, count: int) -> list[Scene]:
     """Scenes of one look, or of one head's half of a machined part."""
-    if image not in ("deck", "frame"):
+    if image not in PARTS:
         return [drawn_scene(image, seed) for seed in range(count)]
-    seen = parts(image, api.RenderOptions(), (count + 1) // 2, 1, seed=1)
+    seen = parts(PARTS[image], api.RenderOptions(), (count + 1) // 2, 1, seed=1)
     views = [view for part in seen for view in part.views][:count]
     steps = [{hole.name: MACHINED_GREY[hole.kind] for hole in view.holes} for view in views]
     return [Scene(view, step) for view, step in zip(views, steps, strict=True)]
@@ -216,7 +217,7 @@ def figures(images: Sequence[str], cache: dict[str, list[Scene]]) -> list[str]:
     """95 % of the errors, median over the bound, normalised error squared, refused, diameters."""
     errors, refused = HoleErrors(), 0
     for image in images:
-        plain = 0 if image in ("deck", "frame") else 1
+        plain = 0 if image in PARTS else 1
         for scene in cache[image]:
             refused += measure(scene, errors, "default", skip=plain) is not None
     return [
