@@ -56,6 +56,8 @@ class HoleKind:
     cone: ClassVar[bool] = False
     """The surface round the rim is a cone. Its grey varies with the azimuth instead of evenly over
     the image, it has no lay, and it ends at an edge that must be kept out of the fit."""
+    turns: ClassVar[bool] = False
+    """Inside the rim are the turns of a thread."""
     may_show_wall: ClassVar[bool] = True
     """A wall may be seen below the rim."""
     face_begins_radii: ClassVar[float] = 1.0

@@ -41,6 +41,8 @@ _HINT_GAIN = 4.0
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
+_WALL_M, _WALL_SIGMAS = 2e-3, 4.0
+"""Depth of a wall that may be all that there is, and its standard deviation over it."""
 _TURNS_GREY = 15.0
 """How uneven the turns of a thread are expected to be, standard deviation of each term."""
 _PIXELS_ALIKE = 10.0
@@ -186,7 +188,7 @@ def fit_two_edges(
     second: SecondEdge,
     blur_px: tuple[float, float] | None,
 ) -> SelectedFit:
-    """Fit a rim with a ring round it in both images at once, flat or as a cone.
+    """Fit a rim in both images at once: with a flat ring, with a cone, or with a wall alone.
 
     ``blur_px`` is the blur that other rims have shown in these images, where there are any. The
     outer edge of a cone lies nearer to the cameras than the rim, so the two images show it in
@@ -197,22 +199,21 @@ def fit_two_edges(
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()
 
-    def coarse(slope: float) -> RimFit:
+    def coarse(sigma: float, **second_edge: float) -> RimFit:
         left, right = (
-            RimShape(
-                one.centre,
-                one.roi.nominal_radius,
-                blur,
-                ring_ratio=1.0 + second.width,
-                ring_slope=slope,
-            )
+            RimShape(one.centre, one.roi.nominal_radius, blur, **second_edge)
             for one, blur in zip(given, blurs, strict=True)
         )
-        light, sigmas = LightModel(turns_grey=_TURNS_GREY), (blur_sigma, second.sigma)
-        problem = two_image_problem(pixels, (left, right), light, sigmas, across_lay)
+        light = LightModel(turns_grey=_TURNS_GREY)
+        problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
         return coarse_fit(problem, problem.mean)
 
-    return _likeliest([coarse(slope) for slope in _RING_SLOPES])
+    ring, wall = 1.0 + second.width, _WALL_M / given[0].roi.distance_m
+    models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
+    if not given[0].roi.kind.turns:
+        # In an image out of focus a bore with a wall looks as if it had a ring.
+        models.append(coarse(_WALL_SIGMAS * wall, wall_ratio=wall))
+    return _likeliest(models)
 
 
 def _likeliest(models: list[RimFit]) -> SelectedFit:

@@ -81,25 +81,24 @@ def two_image_problem(
     sigmas: tuple[float, float],
     across_lay: Array | None,
 ) -> RimProblem:
-    """Both images of a rim with a ring round it; ``starts`` are the prior means.
+    """Both images of a rim with a ring round it or a wall below; ``starts`` are the prior means.
 
     A ring two pixels wide whose grey is not known is easily taken for a shift of the rim. Both
     cameras see the same ring in the same light: what they share is estimated once, so that the
     difference between the images, hence the depth, does not suffer from it.
 
-    ``sigmas`` are the standard deviations of the blur in px and of the ring's ratio. Joint
+    ``sigmas`` are the standard deviations of the blur in px and of the ring or wall ratio. Joint
     parameters: x, y left; x, y right; radius left; blur left and right; ratio.
     """
     left, right = starts
     # Plane units are distances from the camera: the camera that is nearer sees a larger radius.
-    nearer = right.radius / left.radius
+    nearer, ratio = right.radius / left.radius, float(left.vector[4])
     selections = np.zeros((2, 5, 8))
     selections[0, range(5), [0, 1, 4, 5, 7]] = 1.0
     selections[1, range(5), [2, 3, 4, 6, 7]] = [1.0, 1.0, nearer, 1.0, 1.0]
-    ring_ratio = float(left.vector[4])
-    mean = np.array(
-        [*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, ring_ratio]
-    )
+    if left.wall_ratio is not None:
+        selections[1, 4, 7] = nearer
+    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, ratio])
     sigma = np.full(len(mean), np.inf)
     sigma[4] = _RADIUS_SIGMA * left.radius
     sigma[5:7], sigma[7] = sigmas
