@@ -65,6 +65,11 @@ def bright_cone(rng: np.random.Generator) -> Look:
     return _ringed(rng.uniform(1.5, 2.1), 215.0, 0.1, _phase(rng))
 
 
+def near_cone(rng: np.random.Generator) -> Look:
+    """A countersink so narrow that its outer edge comes into the band of pixels round the rim."""
+    return _ringed(rng.uniform(1.25, 1.45), 110.0, 0.3, _phase(rng))
+
+
 def narrow_cone(rng: np.random.Generator) -> Look:
     """A countersink a few pixels wide."""
     return _ringed(1.2, 105.0, 0.2, _phase(rng))
@@ -108,6 +113,7 @@ LOOKS: dict[str, Callable[[np.random.Generator], Look]] = {
     "chamfered turns": chamfered_turns,
     "broken edge": broken_edge,
     "faint wall": faint_wall,
+    "near cone": near_cone,
 }
 """A look's place is part of its seed: new ones come last."""
 

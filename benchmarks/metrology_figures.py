@@ -35,6 +35,8 @@ class HoleErrors:
     """Normalised error squared of image points, two degrees of freedom."""
     squared_3d: list[float] = field(default_factory=list)
     depth_m: list[float] = field(default_factory=list)
+    size_ratios: list[float] = field(default_factory=list)
+    """Measured over nominal diameters."""
 
     def add(self, view: HeadView, hole: HoleMeasurement, step_grey: float) -> None:
         """Take in one hole; ``step_grey`` is the typical difference of grey across its rim."""
@@ -45,6 +47,8 @@ class HoleErrors:
         error_m = hole.position_m - truth_m
         self.squared_3d.append(_squared(error_m, hole.covariance_m2))
         self.depth_m.append(float(error_m[2]))
+        nominal_m = next(one.diameter_m for one in view.holes if one.name == hole.name)
+        self.size_ratios.append(hole.diameter_m / nominal_m)
         left_px, right_px = view.truth_px[hole.name]
         for error_px, covariance_px2 in (
             (hole.left_px - left_px, hole.left_covariance_px2),
@@ -71,6 +75,9 @@ class HoleErrors:
 
     def worst_px(self) -> float:
         return float(self.norms_px.max())
+
+    def diameter_bias_permille(self) -> float:
+        return (float(np.mean(self.size_ratios)) - 1.0) * 1e3
 
     def depth_bias_um(self) -> float:
         return float(np.mean(self.depth_m)) * 1e6

@@ -28,14 +28,17 @@ MOST_SQUARED = 4.0
 """Mean normalised error squared, 2 expected: beyond this a look is not measured honestly."""
 
 
-def measure(scene: Scene, errors: HoleErrors, method: Method) -> str | None:
-    """Take in all holes but the plain first one; the reason when the scene is refused."""
+def measure(scene: Scene, errors: HoleErrors, method: Method, *, skip: int = 1) -> str | None:
+    """Take in all holes but the first ``skip``; the reason when the scene is refused.
+
+    The first hole of a drawn scene is plain and says nothing of its look.
+    """
     view = scene.view
     try:
         result = measure_pair(*view.images, view.head, view.holes, method=method)
     except VisionError as fault:
         return str(fault)
-    for hole in result.holes[1:]:
+    for hole in result.holes[skip:]:
         errors.add(view, hole, scene.steps[hole.name])
     return None
 

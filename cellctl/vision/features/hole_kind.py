@@ -56,6 +56,8 @@ class HoleKind:
     cone: ClassVar[bool] = False
     """The surface round the rim is a cone. Its grey varies with the azimuth instead of evenly over
     the image, it has no lay, and it ends at an edge that must be kept out of the fit."""
+    turns: ClassVar[bool] = False
+    """Inside the rim are the turns of a thread."""
     may_show_wall: ClassVar[bool] = True
     """A wall may be seen below the rim."""
     face_begins_radii: ClassVar[float] = 1.0
@@ -65,9 +67,6 @@ class HoleKind:
     lends_blur: ClassVar[bool] = True
     """The blur of the image can be read off its rim. Other kinds are measured last and are told
     the blur that the rims before them have shown."""
-    ring_cost: ClassVar[float] = 80.0
-    """By how much chi square must fall for a ring to be accepted. Turns of a thread imitate a
-    ring; real rings bring a fall of thousands."""
 
     def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """The second edge that must be fitted together with the rim; None when one edge does."""

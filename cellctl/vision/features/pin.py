@@ -12,8 +12,6 @@ class Pin(HoleKind):
     """A bore, deburred or not."""
 
     name = "pin"
-    # A bore has no turns that a ring could be confused with.
-    ring_cost = 0.0
 
     def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """A broken edge a pixel or two wide, when both images together ask for it."""

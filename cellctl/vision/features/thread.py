@@ -9,6 +9,7 @@ class Thread(HoleKind):
     """A thread, chamfered or not."""
 
     name = "thread"
+    turns = True
     # The face is judged from beyond the widest chamfer on.
     face_begins_radii = 1.15
     first_ring_px = 2.0

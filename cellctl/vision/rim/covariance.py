@@ -1,4 +1,4 @@
-"""The uncertainty of a fitted rim: pixel noise, texture, and what the model leaves unexplained.
+"""The uncertainty of a fitted rim: the noise of its pixels and what the model leaves unexplained.
 
 The inverse of the normal matrix would be the covariance if all errors of the pixels were
 independent and the model were complete. Neither holds on machined parts, so what the residuals show
@@ -8,15 +8,11 @@ of the contrary is added.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.fft import irfft2, next_fast_len, rfft2
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.problem import RimProblem
 from cellctl.vision.rim.shape import RimShape
 from cellctl.vision.rim.solver import RimFit
-
-IntArray = NDArray[np.intp]
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
@@ -30,14 +26,6 @@ _LOST = 1.4
 _SHRINK = 0.3
 _CHANCE = 2.1
 """Sums over a few arcs reach this share of what independent errors give by chance alone."""
-
-_LAG = 24
-"""Distance in px over which texture is followed."""
-_FEWEST_PAIRS = 40
-_NEIGHBOURS = ((0, 1), (1, 0), (1, 2), (2, 1), (0, 3), (3, 0))
-_WHITE_SIGMAS = 3.0
-"""Steps between pixels of the band, and what their products may be by chance."""
-_CLIP_GREY = 30.0
 
 _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
@@ -70,21 +58,14 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     rows = [solution.lights + index for index in range(count)]
     everything = solution.covariance
     covariance = everything[np.ix_(rows, rows)]
-    influence = everything[rows] @ solution.noise.weigh(solution.design)
     unexplained = solution.noise.own(solution.residuals)
     scores = everything[rows] @ solution.design * solution.noise.weights * unexplained
-    texture, start = np.zeros_like(covariance), 0
-    offsets = []
-    for view in problem.views:
-        part = slice(start, start + len(view.pixels.grey))
-        start = part.stop
-        offsets.append(view.pixels.points - view.shape(solution.vector).centre[:, None])
-        texture += texture_covariance(
-            view.pixels.place, unexplained[part], solution.outside[part], influence[:, part]
-        )
+    offsets = [
+        view.pixels.points - shape.centre[:, None]
+        for view, shape in zip(problem.views, fit.shapes, strict=True)
+    ]
     x, y = np.concatenate(offsets, axis=1)
-    arcs = arc_covariance(scores, np.arctan2(y, x))
-    covariance = _widened(_widened(covariance, arcs), texture)
+    covariance = _widened(covariance, arc_covariance(scores, np.arctan2(y, x)))
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
     contrast = float(np.average(grey, weights=outside + 1e-9)) - float(
@@ -118,56 +99,6 @@ def arc_covariance(scores: Array, azimuth: Array) -> Array:
     sector = ((azimuth + np.pi) / (2.0 * np.pi) * _BINS).astype(int) % _BINS
     sums = np.stack([np.bincount(sector, row, minlength=_BINS) for row in scores])
     return np.asarray(_LOST * sums @ _KERNEL @ sums.T)
-
-
-def texture_covariance(
-    place: IntArray, residuals: Array, outside: Array, influence: Array
-) -> Array:
-    """Covariance of the centre from the texture of the bright side, shape (k, k).
-
-    Texture along the rim moves the fit and leaves no residual there. But texture is the same all
-    over the surface: its autocorrelation, seen where it does no harm, tells how much of it gets
-    through to the centre. ``place`` (2, n) are columns and rows, ``influence`` (k, n) is the
-    derivative of the centre by each pixel.
-    """
-    columns, rows = place - place.min(axis=1, keepdims=True)
-    size = next_fast_len(int(max(columns.max(), rows.max())) + _LAG, real=True)
-    bright = outside > _BRIGHT
-    clipped = np.clip(residuals, -_CLIP_GREY, _CLIP_GREY)
-    shares = influence * outside
-    images = np.zeros((2 + len(shares), size, size), dtype=np.float32)
-    images[:, rows, columns] = np.vstack([clipped * bright, bright, shares])
-    if _is_white(images[0], images[1]):
-        return np.zeros((len(shares), len(shares)))
-    spectra = rfft2(images)
-    seen, pairs = irfft2(np.abs(spectra[:2]) ** 2, s=(size, size))
-    lags = np.minimum(np.arange(size), size - np.arange(size))
-    near = (lags[:, None] <= _LAG) & (lags[None, :] <= _LAG) & (pairs > _FEWEST_PAIRS)
-    texture = np.where(near, seen / np.maximum(pairs, 1.0), 0.0)
-    # By Parseval's theorem; the spectrum of a real image holds half of the frequencies.
-    counted = np.full(spectra.shape[2], 2.0)
-    counted[0] = 1.0
-    counted[-1] = 2.0 - (size + 1) % 2
-    passed = spectra[2:] * (rfft2(texture).real * counted)
-    rows_of = (len(shares), -1)
-    found = (passed.reshape(rows_of) @ spectra[2:].reshape(rows_of).conj().T).real
-    return np.asarray(found / size**2)
-
-
-def _is_white(residuals: Array, used: Array) -> bool:
-    """Whether neighbours in an image (h, w) are as independent as noise; ``used`` is 0 or 1.
-
-    Most holes have no texture worth the Fourier transforms: this test costs far less.
-    """
-    variance = float((residuals * residuals).sum()) / max(float(used.sum()), 1.0)
-    for down, right in _NEIGHBOURS:
-        here, there = slice(down, None), slice(None, -down or None)
-        east, west = slice(right, None), slice(None, -right or None)
-        products = float((residuals[here, east] * residuals[there, west]).sum())
-        pairs = float((used[here, east] * used[there, west]).sum())
-        if abs(products) > _WHITE_SIGMAS * variance * np.sqrt(max(pairs, 1.0)):
-            return False
-    return True
 
 
 def _widened(covariance: Array, seen: Array) -> Array:

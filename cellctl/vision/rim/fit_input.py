@@ -148,4 +148,4 @@ def _pixels(
     columns, rows = columns[wanted], rows[wanted]
     points, jacobians = patch.from_px(columns.astype(float), rows.astype(float))
     grey = image[rows, columns].astype(float)
-    return RimPixels(points, jacobians, grey, np.stack([columns, rows]), patch.unit_px)
+    return RimPixels(points, jacobians, grey, patch.unit_px)

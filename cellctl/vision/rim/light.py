@@ -16,11 +16,8 @@ from cellctl.vision.rim.shape import Border, RimPixels, RimShape, wall_depth
 _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
-_WALL_GREY, _RELIEF_GREY = 40.0, 10.0
-"""How much the light of a wall may differ from an even fade at that rate. A relief above the turns
-of a thread gets less freedom, because the turns below it have terms of their own."""
-_CONE_SLOPE_GREY = 25.0
-"""Change of a cone's azimuthal variation over one radius; it is straight, so this is little."""
+_WALL_GREY = 40.0
+"""How much the light of a wall may differ from an even fade at that rate."""
 _THREAD_BAND = 0.15
 """Radial extent, in radii, over which the flanks of a thread change by about their contrast."""
 
@@ -80,7 +77,7 @@ def surfaces(
         terms, sigma = _free(_around(points(0, rim), shape))
         found.append(Surface(0, rim, terms, sigma, ring=True))
     if shape.wall_ratio is not None:
-        found.append(Surface(rim, rim + 1, *_wall(points(rim, rim + 1), shape, light)))
+        found.append(Surface(rim, rim + 1, *_wall(points(rim, rim + 1), shape)))
     found.append(Surface(rim, None, *_inside(points(rim, None), shape, light)))
     return found
 
@@ -132,22 +129,18 @@ def _plate(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Ar
         return _free(np.stack([np.ones_like(flat[0]), *flat]))
     around = _around(points, shape)
     above = _polar(points, shape)[0] - 1.0
-    terms = np.concatenate([around, above * around[:3]])
-    return terms, np.array([*[np.inf] * 6, _CONE_SLOPE_GREY, _CONE_SLOPE_GREY])
+    return _free(np.concatenate([around, above[None]]))
 
 
-def _wall(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
+def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
     depth = wall_depth(points, shape)
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
     deep = 1.0 - fade
     around = np.stack([np.ones_like(depth), met[0], met[1]])
-    faster, sigma = fade * depth * around, [_WALL_GREY] * 3
-    if light.turns_grey > 0.0:
-        faster, sigma = faster[:1], [_RELIEF_GREY]
-    terms = np.concatenate([fade * around, faster, deep * around])
-    return terms, np.array([*[np.inf] * 3, *sigma, *[_WALL_GREY] * 3])
+    terms = np.concatenate([fade * around, fade * depth * around, deep * around])
+    return terms, np.array([*[np.inf] * 3, *[_WALL_GREY] * 6])
 
 
 def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:

@@ -116,11 +116,6 @@ class RimSolution:
         """Number of light terms."""
         return len(self.design) - len(self.vector)
 
-    def unevenness_grey(self, sigma_grey: float) -> float:
-        """Root mean square of the terms of the light whose prior has this standard deviation."""
-        ours = np.isclose(self.precision[: self.lights], sigma_grey**-2.0)
-        return float(np.sqrt(np.mean(self.pull[: self.lights][ours] ** 2)))
-
     @cached_property
     def cost(self) -> float:
         """Weighted squares of residuals and priors."""

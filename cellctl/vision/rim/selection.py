@@ -35,21 +35,16 @@ _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 _START_BLUR_PX = 1.0
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """From a start above the true depth a fit converges; from far below it may not."""
-_FAINT_GAIN, _HINT_GAIN, _CLEAR_GAIN = 2.0, 4.0, 60.0
-"""Falls of chi square: worth a closer look, worth a fit with a wall, beyond doubt."""
-_BORE_ODDS, _CONE_ODDS = 12.0, -15.0
-"""Difference of the information criteria at which a fit with a wall and one without are equally
-likely. Every bore has a wall, and one that is hardly seen moves the rim all the same; under a cone
-the terms of its light are easily taken for one."""
+_HINT_GAIN = 4.0
+"""Fall of chi square from which on a fit with a wall is worth its time."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
-_RELIEF_M, _RELIEF_SIGMAS = 0.3e-3, 4.0
-"""Depth of a relief above the first turn of a thread."""
 _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
-_CALM_GREY, _CALM_LIMIT_GREY, _WILD_GREY = 15.0, 12.5, 50.0
-"""How uneven turns are expected to be. Where they turn out more uneven than the limit, the wider
-prior is used, and the larger uncertainty reported."""
+_WALL_M, _WALL_SIGMAS = 2e-3, 4.0
+"""Depth of a wall that may be all that there is, and its standard deviation over it."""
+_TURNS_GREY = 15.0
+"""How uneven the turns of a thread are expected to be, standard deviation of each term."""
 _PIXELS_ALIKE = 10.0
 """What a model leaves unexplained is alike in about so many pixels: evidence counts that less."""
 
@@ -127,33 +122,21 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
     light, radius = LightModel(cone=kind.cone), given.roi.nominal_radius
     bare = RimShape(given.centre, given.radius, _START_BLUR_PX)
     problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
+    plain = full_fit(problem, bare.vector)
     if not kind.may_show_wall:
-        return SelectedFit(full_fit(problem, bare.vector), np.zeros((2, 2)))
-    ratios = [depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M]
-
-    def walled(start: RimFit, ratio: float) -> RimFit:
-        shape = replace(start.shapes[0], wall_ratio=ratio)
-        with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
-        return full_fit(with_wall, shape.vector)
-
-    coarse = coarse_fit(problem, bare.vector)
-    tests = ScoreTests(coarse)
-    ratio, gain = tests.likely_wall(ratios)
-    if gain > _CLEAR_GAIN:
-        return SelectedFit(walled(coarse, ratio), np.zeros((2, 2)))
-    plain = refine(coarse)
-    if gain >= _FAINT_GAIN or tests.uneven_inside():
-        # The coarse fit is off by hundredths of a pixel, which may hide or feign a faint wall.
-        tests = ScoreTests(plain)
-        ratio, gain = tests.likely_wall(ratios)
-        if gain >= _HINT_GAIN or tests.uneven_inside():
-            return _likelier(plain, walled(plain, ratio))
-    return SelectedFit(plain, np.zeros((2, 2)))
+        return SelectedFit(plain, np.zeros((2, 2)))
+    tests = ScoreTests(plain)
+    ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
+    if gain < _HINT_GAIN and not tests.uneven_inside():
+        return SelectedFit(plain, np.zeros((2, 2)))
+    shape = replace(plain.shapes[0], wall_ratio=ratio)
+    with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
+    return _likelier(plain, full_fit(with_wall, shape.vector))
 
 
 def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
-    odds = _CONE_ODDS if plain.problem.light.cone else _BORE_ODDS
-    for_wall = float(expit(0.5 * (plain.bic() - walled.bic() + odds)))
+    """The better one by the information criterion; the other widens its covariance."""
+    for_wall = float(expit(0.5 * (plain.bic() - walled.bic())))
     off = walled.solution.vector[:2] - plain.solution.vector[:2]
     best, against = (walled, 1.0 - for_wall) if for_wall > 0.5 else (plain, for_wall)
     return SelectedFit(best, np.outer(off, off) * against)
@@ -205,52 +188,38 @@ def fit_two_edges(
     second: SecondEdge,
     blur_px: tuple[float, float] | None,
 ) -> SelectedFit:
-    """Fit a rim in both images at once: with a ring, with a short wall, and with neither.
+    """Fit a rim in both images at once: with a flat ring, with a cone, or with a wall alone.
 
     ``blur_px`` is the blur that other rims have shown in these images, where there are any. The
-    outer edge of a cone lies nearer to the cameras than the rim and moves against it when the
-    camera moves; the lower edge of a wall lies farther away. That tells the models apart.
+    outer edge of a cone lies nearer to the cameras than the rim, so the two images show it in
+    different places: that tells a cone from a flat ring.
     """
     blurs, blur_sigma = (_START_BLUR_PX, _START_BLUR_PX), _BLUR_SIGMA_PX
     if blur_px is not None:
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()
-    kind, relief = given[0].roi.kind, _RELIEF_M / given[0].roi.distance_m
 
-    def coarse(turns_grey: float, extra_sigma: float, **model: float) -> RimFit:
+    def coarse(sigma: float, **second_edge: float) -> RimFit:
         left, right = (
-            RimShape(one.centre, one.roi.nominal_radius, blur, **model)
+            RimShape(one.centre, one.roi.nominal_radius, blur, **second_edge)
             for one, blur in zip(given, blurs, strict=True)
         )
-        light, sigmas = LightModel(turns_grey=turns_grey), (blur_sigma, extra_sigma)
-        problem = two_image_problem(pixels, (left, right), light, sigmas, across_lay)
+        light = LightModel(turns_grey=_TURNS_GREY)
+        problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
         return coarse_fit(problem, problem.mean)
 
-    def likeliest(turns_grey: float) -> SelectedFit:
-        ring = 1.0 + second.width
-        models = [
-            *(
-                coarse(turns_grey, second.sigma, ring_ratio=ring, ring_slope=slope)
-                for slope in _RING_SLOPES
-            ),
-            coarse(turns_grey, np.inf),
-            coarse(turns_grey, _RELIEF_SIGMAS * relief, wall_ratio=relief),
-        ]
-        return _likeliest(models, kind.ring_cost)
-
-    calm = likeliest(_CALM_GREY)
-    if calm.fit.solution.unevenness_grey(_CALM_GREY) < _CALM_LIMIT_GREY:
-        return calm
-    wild = likeliest(_WILD_GREY)
-    off = wild.fit.solution.vector[:5] - calm.fit.solution.vector[:5]
-    return SelectedFit(wild.fit, wild.spread + np.outer(off, off))
+    ring, wall = 1.0 + second.width, _WALL_M / given[0].roi.distance_m
+    models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
+    if not given[0].roi.kind.turns:
+        # In an image out of focus a bore with a wall looks as if it had a ring.
+        models.append(coarse(_WALL_SIGMAS * wall, wall_ratio=wall))
+    return _likeliest(models)
 
 
-def _likeliest(models: list[RimFit], ring_cost: float) -> SelectedFit:
+def _likeliest(models: list[RimFit]) -> SelectedFit:
     """The best of the models; by how much the others differ, weighted by how likely they are."""
     noise = models[0].solution.noise
-    ringed = np.array([model.shapes[0].ring_ratio is not None for model in models])
-    costs = np.array([model.solution.cost_under(noise) for model in models]) + ring_cost * ringed
+    costs = np.array([model.solution.cost_under(noise) for model in models])
     best = int(np.argmin(costs))
     likelihoods = np.exp(-0.5 * (costs - costs[best]) / _PIXELS_ALIKE)
     geometry = np.array([model.solution.vector[:5] for model in models])

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from cellctl.geometry.pose import Array
@@ -32,8 +31,6 @@ class RimPixels:
     """Shape (2, 2, n): derivative of ``points`` by the pixel's column and row."""
     grey: Array
     """Shape (n,)."""
-    place: NDArray[np.intp]
-    """Column and row in the image, shape (2, n)."""
     unit_px: float
     """Plane units in a pixel."""
 

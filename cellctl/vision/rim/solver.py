@@ -81,28 +81,27 @@ def two_image_problem(
     sigmas: tuple[float, float],
     across_lay: Array | None,
 ) -> RimProblem:
-    """Both images of a rim, plain or with a ring or a wall; ``starts`` are the prior means.
+    """Both images of a rim with a ring round it or a wall below; ``starts`` are the prior means.
 
     A ring two pixels wide whose grey is not known is easily taken for a shift of the rim. Both
     cameras see the same ring in the same light: what they share is estimated once, so that the
     difference between the images, hence the depth, does not suffer from it.
 
     ``sigmas`` are the standard deviations of the blur in px and of the ring or wall ratio. Joint
-    parameters: x, y left; x, y right; radius left; blur left and right; ratio, if any.
+    parameters: x, y left; x, y right; radius left; blur left and right; ratio.
     """
     left, right = starts
-    ratio = [value for value in (left.wall_ratio, left.ring_ratio) if value is not None]
     # Plane units are distances from the camera: the camera that is nearer sees a larger radius.
-    size, nearer = 4 + len(ratio), right.radius / left.radius
-    selections = np.zeros((2, size, 7 + len(ratio)))
-    selections[0, range(size), [0, 1, 4, 5, 7][:size]] = 1.0
-    selections[1, range(size), [2, 3, 4, 6, 7][:size]] = [1.0, 1.0, nearer, 1.0, 1.0][:size]
+    nearer, ratio = right.radius / left.radius, float(left.vector[4])
+    selections = np.zeros((2, 5, 8))
+    selections[0, range(5), [0, 1, 4, 5, 7]] = 1.0
+    selections[1, range(5), [2, 3, 4, 6, 7]] = [1.0, 1.0, nearer, 1.0, 1.0]
     if left.wall_ratio is not None:
         selections[1, 4, 7] = nearer
-    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, *ratio])
+    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, ratio])
     sigma = np.full(len(mean), np.inf)
     sigma[4] = _RADIUS_SIGMA * left.radius
-    sigma[5:7], sigma[7:] = sigmas
+    sigma[5:7], sigma[7] = sigmas
     outer = [float(np.percentile(part.grey, 90)) for part in pixels]
     views = tuple(
         RimView(part, shape, selection, grey / outer[0])
@@ -133,9 +132,10 @@ def _minimised(
     """The best solution, and whether it settled.
 
     The terms of the light depend weakly on the shape. They are held fixed for a few steps and then
-    brought up to date; the series of these rounds converges linearly and is extrapolated. The
-    noise of the pixels is final after ``weighing_rounds``: weights that follow the residuals for
-    ever can make a fit swing between two solutions.
+    brought up to date. The series of these rounds converges linearly, slowly where a wall is nearly
+    as bright as the face, and is therefore extrapolated. The noise of the pixels is final after
+    ``weighing_rounds``: weights that follow the residuals for ever can make a fit swing between two
+    solutions.
     """
     best = start
     before: Array | None = None
@@ -149,7 +149,9 @@ def _minimised(
         if change_px < tolerance_px and not weighing:
             return RimFit(problem, best, converged=True)
         if before is not None and change_px < _EXTRAPOLATE_PX:
-            best = replace(best, vector=best.vector + change * _gain(problem, before, change))
+            best = replace(
+                best, vector=best.vector + change * _rest_of_series(problem, before, change)
+            )
         before = None if weighing else change
         best = relinearised(problem, best, weigh=weighing)
     return RimFit(problem, best, change_px < 4.0 * tolerance_px)
@@ -171,8 +173,8 @@ def _settle(problem: RimProblem, best: RimSolution, settled_px: float) -> RimSol
     return best
 
 
-def _gain(problem: RimProblem, before: Array, change: Array) -> float:
-    """Sum of the rest of a geometric series from its last two terms."""
+def _rest_of_series(problem: RimProblem, before: Array, change: Array) -> float:
+    """Sum of the rest of a geometric series over its last term, from its last two terms."""
     views = problem.views
     last = np.concatenate([(view.selection @ change)[:3] / view.pixels.unit_px for view in views])
     first = np.concatenate([(view.selection @ before)[:3] / view.pixels.unit_px for view in views])

@@ -21,6 +21,7 @@ WORST_PX = {
     "faint wall": 0.06,
     "flat cone": 0.05,
     "bright cone": 0.03,
+    "near cone": 0.05,
     "narrow cone": 0.08,
     "true cone": 0.10,
     "broken edge": 0.10,

@@ -23,7 +23,7 @@ def pixels_round(centre: Array) -> RimPixels:
     # The model is made for the band along a rim: no pixel lies on the centre itself.
     points = centre[:, None] + (np.stack([columns, rows]) + 0.3) * UNIT_PX
     jacobian = np.broadcast_to(np.eye(2)[:, :, None] * UNIT_PX, (2, 2, columns.size)).copy()
-    return RimPixels(points, jacobian, np.zeros(columns.size), np.stack([columns, rows]), UNIT_PX)
+    return RimPixels(points, jacobian, np.zeros(columns.size), UNIT_PX)
 
 
 @pytest.mark.parametrize("name", SHAPES)
