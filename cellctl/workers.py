@@ -4,9 +4,10 @@ import asyncio
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from functools import partial
 from typing import ParamSpec, TypeVar
 
@@ -14,6 +15,8 @@ from cellctl.errors.internal import WorkerDied
 
 P = ParamSpec("P")
 R = TypeVar("R")
+
+_DEAF_TO = (signal.SIGINT, signal.SIGHUP)
 
 NICE = 5
 """Added to the niceness of the workers.
@@ -55,7 +58,9 @@ class VisionWorkers:
         """
         loop = asyncio.get_running_loop()
         try:
-            return await loop.run_in_executor(self._pool, partial(function, *args, **kwargs))
+            with _deaf_children():
+                done = loop.run_in_executor(self._pool, partial(function, *args, **kwargs))
+            return await done
         except BrokenProcessPool as error:
             self._broken = True
             raise WorkerDied("a vision worker ended unexpectedly") from error
@@ -63,6 +68,21 @@ class VisionWorkers:
     def close(self) -> None:
         """End the workers; work that has not begun is dropped."""
         self._pool.shutdown(wait=True, cancel_futures=True)
+
+
+@contextmanager
+def _deaf_children() -> Iterator[None]:
+    """Ctrl-C does not reach a process that is started inside, whatever it has come to.
+
+    A process inherits the signals that its parent blocks. The pool starts its workers when work is
+    handed over, and a worker can only ignore a signal once its interpreter runs: a Ctrl-C before
+    that would end it with a traceback.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _DEAF_TO)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _pool(count: int) -> ProcessPoolExecutor:
@@ -77,6 +97,6 @@ def _initialise() -> None:
     os.nice(NICE)  # before the imports, which compute for a second
     import cv2
 
-    for number in (signal.SIGINT, signal.SIGHUP):
+    for number in _DEAF_TO:
         signal.signal(number, signal.SIG_IGN)
     cv2.setNumThreads(1)

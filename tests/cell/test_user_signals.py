@@ -101,8 +101,9 @@ def test_idle_and_hung_up(visited: OwnCell) -> None:
 
 
 def test_while_heads_move(visited: OwnCell) -> None:
-    slow, far = "speed_percent = 5", "measuring_joints_deg = [-1"  # ten degrees from where it is
-    visited.change("measuring_joints_deg = [-", f"{slow}\n{far}")
+    slow = "speed_percent = 5\nlinear_speed_mm_s = 250.0"
+    visited.change("linear_speed_mm_s = 250.0", slow)  # of both robots that carry a head
+    visited.change("measuring = [-", "measuring = [-1")  # ten degrees from where it is
     calibrated_ten_degrees_aside(visited.calibration)
     daemon = visited.daemon()
     daemon.ready()

@@ -38,3 +38,16 @@ async def test_workers_give_way_to_the_daemon() -> None:
     finally:
         workers.close()
     assert niceness == min(os.getpriority(os.PRIO_PROCESS, 0) + NICE, 19)
+
+
+def blocked() -> set[int]:
+    return {int(number) for number in signal.pthread_sigmask(signal.SIG_BLOCK, ())}
+
+
+async def test_a_worker_is_deaf_to_the_terminal_before_it_runs() -> None:
+    workers = VisionWorkers(1)
+    try:
+        assert {signal.SIGINT, signal.SIGHUP} <= await workers.run(blocked)
+        assert not {signal.SIGINT, signal.SIGHUP} & blocked(), "the daemon itself listens"
+    finally:
+        workers.close()
