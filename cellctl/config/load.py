@@ -1,7 +1,7 @@
 """Read a cell file and say everything that is wrong with it."""
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
 from typing import Any, Protocol, cast
 
@@ -51,8 +51,9 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
         return found, None
     found += _driver_issues(cell)
     found += cross_issues(cell, found)
+    bad_devices = {".".join(issue.key.split(".")[:2]) for issue in found}
     for index, recipe in enumerate(cell.recipes):
-        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent)
+        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent, bad_devices)
     return found, cell
 
 
@@ -153,13 +154,14 @@ def _driver_issues(cell: CellConfig) -> list[ConfigIssue]:
 
 
 def _process_issues(
-    cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    cell: CellConfig, recipe: Recipe, key: str, folder: Path, bad_devices: Set[str]
 ) -> Iterator[ConfigIssue]:
     definition = process_definition(recipe.process)
     missing = list(lacking(cell, definition.roles, recipe, key))
     yield from missing
-    # Without its devices or its settings a process has nothing to judge a recipe by.
-    if not missing and recipe.process in cell.processes:
+    taken = {f"{role.section}.{recipe.device(name)}" for name, role in definition.roles.items()}
+    # Without its settings, and all of its devices in order, a process has nothing to judge by.
+    if not missing and not taken & bad_devices and recipe.process in cell.processes:
         yield from definition.check(cell, recipe, key, folder)
 
 

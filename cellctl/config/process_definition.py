@@ -36,8 +36,9 @@ class ProcessDefinition(ABC):
     ) -> Iterable[ConfigIssue]:
         """Whatever else is wrong with a recipe in this cell; touches no hardware.
 
-        Called when the cell has a device for every role. ``key`` is the recipe's place in the
-        file, for example ``recipes.0``; ``folder`` is that of the cell file.
+        Called when the cell has a device for every role and nothing is wrong with it. ``key`` is
+        the recipe's place in the file, for example ``recipes.0``; ``folder`` is that of the cell
+        file.
         """
 
 

@@ -219,3 +219,8 @@ def test_devices_and_processes_belong_together(
 def test_check_says_which_recipes_the_cell_can_run() -> None:
     result = CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")])
     assert "(deck-to-frame): this cell can run it" in result.output
+
+
+def test_a_sensor_with_bad_settings_is_reported_and_judged_no_further(tmp_path: Path) -> None:
+    path = changed(tmp_path, one=('transport = "tcp"', 'transport = "telepathy"'))
+    assert {problem.key for problem in problems(path)} == {"force_sensors.force.settings.transport"}
