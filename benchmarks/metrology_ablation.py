@@ -120,6 +120,11 @@ TERMS = (
         ((selection, "_WALL_DEPTHS_M", (4e-3,)),),
     ),
     Term(
+        "wall: likelier under a bore than a cone",
+        (*WALLS, *CONES),
+        ((selection, "_BORE_ODDS", 0.0), (selection, "_CONE_ODDS", 0.0)),
+    ),
+    Term(
         "grey at the middle of what a pixel sees",
         EVERYTHING,
         ((light, "_middle", lambda pixels, *_: pixels.points),),
@@ -159,6 +164,17 @@ TERMS = (
                 problem,
                 "surfaces",
                 lambda full: lambda *given: [replace(one, ring=False) for one in full(*given)],
+            ),
+        ),
+    ),
+    Term(
+        "blur known from other rims",
+        RINGS,
+        (
+            changed(
+                stereo_fit,
+                "fit_two_edges",
+                lambda full: lambda given, second, _: full(given, second, None),
             ),
         ),
     ),

@@ -37,6 +37,10 @@ _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """From a start above the true depth a fit converges; from far below it may not."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
+_BORE_ODDS, _CONE_ODDS = 12.0, -15.0
+"""Difference of the information criteria at which a fit with a wall and one without are equally
+likely. Every bore has a wall, and one that is hardly seen moves the rim all the same; under a cone
+the light of the cone is easily taken for a wall."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
@@ -136,7 +140,8 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
 
 def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
     """The better one by the information criterion; the other widens its covariance."""
-    for_wall = float(expit(0.5 * (plain.bic() - walled.bic())))
+    odds = _CONE_ODDS if plain.problem.light.cone else _BORE_ODDS
+    for_wall = float(expit(0.5 * (plain.bic() - walled.bic() + odds)))
     off = walled.solution.vector[:2] - plain.solution.vector[:2]
     best, against = (walled, 1.0 - for_wall) if for_wall > 0.5 else (plain, for_wall)
     return SelectedFit(best, np.outer(off, off) * against)
