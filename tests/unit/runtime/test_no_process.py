@@ -4,6 +4,7 @@ import importlib.metadata
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -42,7 +43,7 @@ def nothing_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if the entry points of all processes were gone; drivers stay."""
     everything = importlib.metadata.entry_points
 
-    def without_processes(**wanted: str) -> object:
+    def without_processes(**wanted: Any) -> object:
         return () if wanted.get("group") == plugins.PROCESS else everything(**wanted)
 
     monkeypatch.setattr(plugins, "entry_points", without_processes)
