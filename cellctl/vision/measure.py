@@ -97,6 +97,7 @@ def _find(
 ) -> list[Assignment]:
     """Assignments of features to holes, best first; a fault when there is none."""
     candidates: list[StereoCandidate] = []
+    # The narrow range first: it costs less, and fewer chance features compete for the drawing.
     for reach in (NEAR, WIDE):
         if expectation is None:
             candidates = search_whole_images(images, holes, reach)
@@ -107,6 +108,7 @@ def _find(
         )
         if found:
             return found
+        # Windows do not depend on the range of distance, so a second search would find the same.
         if expectation is not None:
             break
     raise fault_without_layout(images, holes, candidates, expectation)
@@ -115,7 +117,7 @@ def _find(
 def _done_already(
     places_px: Array, good: Sequence[PairMeasurement], tried: Sequence[Array]
 ) -> bool:
-    """Whether places lead to the holes that are measured, or were tried as they are."""
+    """Whether these places lead to holes that are measured already, or have been tried."""
     measured = [
         np.array([[hole.left_px, hole.right_px] for hole in result.holes]) for result in good
     ]
@@ -132,10 +134,13 @@ def _measure(
     tolerance_m: float,
 ) -> PairMeasurement:
     located = locate_holes(images, holes, assignment.positions_m, expectation)
+    # A wrong arrangement ends here, before the expensive fits. Edges alone are less exact, hence
+    # the allowance.
     check_layout(holes, located.positions_m, tolerance_m + _COARSE_M)
     measured: dict[str, HoleMeasurement] = {}
     blurs: list[tuple[float, float]] = []
-    # Rims that show the blur of the images come first: the others are told it.
+    # Rims that show the blur of the images come first. The others are given it: the turns of a
+    # thread, for one, look like blur themselves.
     for index in sorted(range(len(holes)), key=lambda index: not kind_of(holes[index]).lends_blur):
         hole = holes[index]
         rois = rim_rois(images, hole, located.positions_m[index], located.normal)
@@ -167,6 +172,8 @@ def _stereo(head: StereoHead, hole: Hole, rims: RimPair) -> HoleMeasurement:
     epipolar_px = float(
         epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
     )
+    # Depth is computed along the epipolar line, so it cannot show an error across it. This is the
+    # only check that both images really show the same hole.
     if epipolar_px > _EPIPOLAR_PX:
         raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
     if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:

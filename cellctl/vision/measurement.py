@@ -1,4 +1,4 @@
-"""What a stereo pair yields: the values that the measurement functions share."""
+"""The result of measuring the holes in one stereo pair."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -49,11 +49,13 @@ def fitted_ellipses(image: Image) -> list[Ellipse]:
     contours, _ = cv2.findContours(edges, cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
     found = []
     for contour in contours:
+        # Five points define an ellipse; contours so short fit one without being a rim.
         if len(contour) < 20:
             continue
         (x, y), (first, second), angle_deg = cv2.fitEllipse(contour)
         if not (np.isfinite([x, y, first, second]).all() and min(first, second) > 0):
             continue
+        # OpenCV states the angle of its first axis, whether that is the longer one or not.
         turn = 0.0 if first >= second else 90.0
         axes = (max(first, second) / 2.0, min(first, second) / 2.0)
         found.append(Ellipse(np.array([x, y]), axes, float(np.radians(angle_deg + turn))))

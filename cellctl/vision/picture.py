@@ -1,4 +1,4 @@
-"""Pictures for people: what was found, drawn into the image it was found in."""
+"""Pictures of a measurement: the measured rims, drawn into the image."""
 
 from collections.abc import Sequence
 
@@ -14,6 +14,8 @@ from cellctl.vision.measurement import HoleMeasurement, PairMeasurement, Side
 Picture = NDArray[np.uint8]
 
 _GREEN, _YELLOW, _RED, _BLACK = (60, 220, 60), (0, 220, 255), (60, 60, 255), (0, 0, 0)
+# OpenCV draws with fixed-point coordinates: five bits show a 32nd of a pixel. Whole pixels would
+# hide what is measured here.
 _SHIFT = 5
 _INSET_PX, _INSET_ZOOM_SPAN = 360, 1.5
 _RESIDUAL_SCALE_PX_PER_MM = 2000.0

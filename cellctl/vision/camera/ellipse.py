@@ -27,6 +27,8 @@ class Ellipse:
     def perimeter_px(self) -> float:
         """Circumference, by Ramanujan's second approximation."""
         a, b = self.semi_axes_px
+        # The perimeter of an ellipse has no closed form. For the axes that a tilted circle shows,
+        # the error of this approximation is far below that of the fit.
         h = ((a - b) / (a + b)) ** 2
         return float(np.pi * (a + b) * (1.0 + 3.0 * h / (10.0 + np.sqrt(4.0 - 3.0 * h))))
 

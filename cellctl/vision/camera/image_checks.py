@@ -35,7 +35,10 @@ def check_image(image: Image, size: tuple[int, int], side: str) -> None:
         raise ImageSizeMismatch(f"{side}: image is {have}, calibration is {width}×{height}")
     counts = np.bincount(image[::_STRIDE, ::_STRIDE].ravel(), minlength=256)
     share = np.cumsum(counts) / counts.sum()
+    # Quantiles instead of extremes: a few hot pixels or reflexes would make a black image pass.
     low, high = (int(np.searchsorted(share, part)) for part in (0.002, 0.998))
+    # The order matters: a black or an overexposed image has no contrast either, and the fault must
+    # name the cause, because the operator's remedy is another one.
     if high <= _BLACK_GREY:
         raise ImageBlack(f"{side}: brightest grey value is {high}")
     saturated = 1.0 - float(share[_SATURATED_GREY - 1])

@@ -41,6 +41,8 @@ def undistort(camera: CameraModel, pixels: Array) -> Array:
 
 def distort_jacobian(camera: CameraModel, ray: Array) -> Array:
     """Derivative of ``distort`` at one ray, shape (2, 2), px."""
+    # At a focal length of some thousand pixels this is a few thousandths of a pixel: small against
+    # the curvature of any lens, large against the rounding of the projection.
     step = 1e-6
     offsets = np.array([[step, 0.0], [-step, 0.0], [0.0, step], [0.0, -step]])
     pixels = distort(camera, np.asarray(ray) + offsets)

@@ -16,7 +16,7 @@ X_AXIS = np.array([1.0, 0.0, 0.0])
 
 _POWERS = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
 _QUADRATIC = 6
-"""So many of them, the first ones, span the derivatives of all."""
+"""Number of leading powers that are enough to express the derivatives of all ten."""
 
 
 def _terms(u: Array, v: Array) -> Array:
@@ -36,6 +36,8 @@ def _derivative(axis: int) -> Array:
 
 
 _BY_U, _BY_V = _derivative(0), _derivative(1)
+# Chebyshev nodes keep the error of the polynomial even over the patch. With equidistant nodes it
+# would be largest at the border, which is where the rim lies.
 _LINE: Array = np.cos(np.linspace(0.0, np.pi, 7))
 _NODES: Array = np.stack([axis.ravel() for axis in np.meshgrid(_LINE, _LINE)])
 _FIT: Array = np.asarray(np.linalg.pinv(_terms(*_NODES).T), dtype=float)
@@ -64,6 +66,8 @@ class PlanePatch:
 
     def to_px(self, points: Array) -> Array:
         """Raw pixels, shape (n, 2), of points of the plane, shape (n, 2)."""
+        # Units of the distance make the foot of the camera's perpendicular equal to ``normal``, so
+        # no length enters: the same map holds for any distance of the plane.
         rays = self.normal + points @ self.basis
         return distort(self.camera, rays[:, :2] / rays[:, 2:])
 

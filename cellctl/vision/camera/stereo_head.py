@@ -81,6 +81,7 @@ def read_stereo_head(path: Path) -> StereoHead:
 
 def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:
     """Write a calibration file; ``extra`` adds keys such as the residuals of each view."""
+    # The head comes last, so that no extra key can replace a part of the calibration.
     data = {**(extra or {}), **stereo_head_to_json(head)}
     path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
 
@@ -117,6 +118,7 @@ def _head_from_json(data: Mapping[str, Any]) -> StereoHead:
     rotation = _array(data, "rotation", (3, 3))
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > _ROTATION_TOLERANCE:
         raise ValueError("rotation is not a rotation matrix")
+    # A reflection passes the test of orthogonality; exchanged axes in a file produce one.
     if np.linalg.det(rotation) < 0:
         raise ValueError("rotation is a reflection")
     translation_m = _array(data, "translation_mm", (3,)) * MM

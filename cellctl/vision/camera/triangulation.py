@@ -47,6 +47,8 @@ def epipolar_distances_px(head: StereoHead, left_px: Array, right_px: Array) -> 
     right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
     lines = left @ essential_matrix(head.rotation, head.translation_m).T
     lines /= np.linalg.norm(lines[:, :2], axis=1)[:, None]
+    # The horizontal focal length stands for both: these distances are compared with thresholds,
+    # which need no more than that.
     return np.asarray(np.abs(lines @ right.T) * head.right.camera_matrix[0, 0])
 
 
@@ -69,12 +71,16 @@ def triangulate(
 ) -> StereoPoint:
     """Maximum-likelihood point for two image points with their joint covariance, shape (4, 4)."""
     point = midpoints(head, left_px[None], right_px[None])[0]
+    # The joint covariance, not two separate ones: where both images of a rim were fitted together,
+    # their errors hang together, and what they share changes the depth less than its size suggests.
     weight = np.linalg.inv(covariance_px2)
     for _ in range(_STEPS):
         residual, jacobian = _reprojection(head, point, left_px, right_px)
         normal = jacobian.T @ weight @ jacobian
         step = np.linalg.solve(normal, jacobian.T @ weight @ residual)
         point = point + step
+    # The residual after the last step, to first order: exact enough here, and it saves a
+    # projection.
     residual = residual - jacobian @ step
     misfit = float(np.sqrt(max(float(residual @ weight @ residual), 0.0)))
     return StereoPoint(point, np.asarray(np.linalg.inv(normal), dtype=float), misfit)

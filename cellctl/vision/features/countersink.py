@@ -23,6 +23,8 @@ class Countersink(HoleKind):
         narrow = any(clear_px < _NARROW_PX for clear_px in evidence.clear_px)
         if not (narrow or evidence.ring_seen()):
             return None
+        # The drawing is preferred to the image. Without a stated diameter the width is infinite,
+        # and the image decides.
         stated = (evidence.hole.countersink_m or np.inf) / evidence.hole.diameter_m - 1.0
         if stated < evidence.in_radii(_NARROW_PX):
             return SecondEdge(stated, _STATED_SHARE * stated)
@@ -32,6 +34,8 @@ class Countersink(HoleKind):
             if np.isfinite(clear_px)
         ]
         if not widths:
+            # Narrow, but by the score test alone: neither the drawing nor an edge tells how wide it
+            # is.
             return _UNSEEN
         seen = float(np.mean(widths))
         return SecondEdge(seen, _SEEN_SHARE * seen)

@@ -47,6 +47,7 @@ def read_features(path: Path) -> FeatureFile:
 
 
 def _features(data: Mapping[str, Any]) -> FeatureFile:
+    # A misspelt optional key would otherwise be ignored without a word.
     if unknown := set(data) - _FILE_KEYS:
         raise ValueError(f"unknown key {sorted(unknown)[0]}")
     tables = data.get("hole", [])
@@ -109,6 +110,7 @@ def _hole(table: Mapping[str, Any], index: int, outward: Array | None) -> Hole:
 
 def _positive(table: Mapping[str, Any], key: str, where: str) -> float:
     value = table.get(key)
+    # A bool is an int in Python: ``true`` would pass as a diameter of 1 mm.
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
         raise ValueError(f"{where}: {key} must be a positive number")
     return float(value)

@@ -21,6 +21,8 @@ def kind_of(hole: Hole) -> HoleKind:
 
 def by_brightness(holes: Sequence[Hole]) -> Iterator[tuple[bool, list[Hole]]]:
     """Dark holes, then bright ones, as far as there are any: each is searched for by itself."""
+    # The search votes along the gradient, which points the other way at the rim of a bright
+    # feature.
     for bright in (False, True):
         group = [hole for hole in holes if kind_of(hole).bright == bright]
         if group:

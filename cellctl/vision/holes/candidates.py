@@ -1,4 +1,4 @@
-"""Where round things might be: gradient voting at reduced scale.
+"""Candidates for holes: round features, found by gradient voting at reduced scale.
 
 Every edge pixel votes for centres along its gradient at the radii in question. Arcs vote as well
 as closed contours do, so a visible wall, a thread or a scratch across the rim does not hide a hole.
@@ -67,6 +67,8 @@ def _at_one_scale(
     votes = _vote(small.shape, edges, radii)
     found = _peaks(votes, radii, limit)
     return [
+        # Pixel centres lie at integers, so the corner of the image is at -0.5 at every scale.
+        # Without the two halves all places would be off by half a block.
         Candidate((centre + 0.5) * shrink - 0.5, float(radius * shrink), support)
         for centre, radius, support in found
     ]
@@ -83,6 +85,7 @@ def _shrink(smallest_radius_px: float) -> int:
 def _reduced(image: Image, shrink: int) -> Image32:
     height, width = image.shape
     size = (width // shrink, height // shrink)
+    # Whole blocks only: otherwise the reduction would stretch the image by a fraction of a block.
     cropped = image[: size[1] * shrink, : size[0] * shrink]
     small = cv2.resize(cropped, size, interpolation=cv2.INTER_AREA) if shrink > 1 else cropped
     return np.asarray(cv2.GaussianBlur(small.astype(np.float32), (0, 0), 0.8), dtype=np.float32)
@@ -98,11 +101,15 @@ def _edges(small: Image32, *, bright: bool) -> tuple[Image32, Image32] | None:
     gx = cv2.Sobel(small, cv2.CV_32F, 1, 0, scale=0.125)
     gy = cv2.Sobel(small, cv2.CV_32F, 0, 1, scale=0.125)
     strength = cv2.magnitude(gx, gy)
+    # Edges cover a small part of an image, so the median of the gradient measures noise and texture
+    # alone.
     floor = max(_NOISE_FACTOR * float(np.median(strength)) * 0.6, 1.5)
     rows, columns = np.nonzero(strength > floor)
     if len(rows) == 0:
         return None
     value = strength[rows, columns]
+    # A textured face has edges everywhere. The limit bounds the time of the search; rims
+    # are among the strongest edges.
     if len(rows) > _MAX_EDGES:
         keep = np.argpartition(value, -_MAX_EDGES)[-_MAX_EDGES:]
         rows, columns, value = rows[keep], columns[keep], value[keep]
@@ -122,6 +129,8 @@ def _vote(shape: tuple[int, ...], edges: tuple[Image32, Image32], radii: Array) 
         inside = (centres >= 0).all(axis=1) & (centres[:, 0] < width) & (centres[:, 1] < height)
         flat = centres[inside, 1] * width + centres[inside, 0]
         counts = np.bincount(flat, minlength=height * width).reshape(height, width)
+        # Rounding and the noise of the gradient's direction scatter the votes of one circle over
+        # neighbouring pixels.
         gathered = cv2.boxFilter(counts.astype(np.uint16), cv2.CV_32F, (3, 3), normalize=False)
         # An edge is about two pixels wide, so a full circle gathers some 4 π r votes.
         votes[index] = gathered / (4.0 * np.pi * radius)

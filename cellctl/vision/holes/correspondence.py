@@ -85,6 +85,8 @@ def pair_candidates(
         return []
     points = midpoints(head, left_px[rows], right_px[columns])
     in_right = points @ head.rotation.T + head.translation_m
+    # Sizes are compared in metres, each with the depth of its own camera: in pixels the nearer
+    # camera of a converging pair sees the larger circle.
     left_m = 2.0 * points[:, 2] / head.left.camera_matrix[0, 0]
     right_m = 2.0 * in_right[:, 2] / head.right.camera_matrix[0, 0]
     left_m = left_m * np.array([item.radius_px for item in left])[rows]
@@ -117,6 +119,7 @@ def assignments(
     order = sorted(range(len(holes)), key=lambda index: len(choices[index]))
     wanted = np.linalg.norm(nominal[:, None] - nominal[None], axis=2)
     found = []
+    # Twice the tolerance, because both ends of a distance may be off by it.
     for chosen in _consistent(order, choices, candidates, wanted, 2.0 * tolerance_m):
         assignment = _checked(holes, [candidates[index] for index in chosen], tolerance_m)
         if assignment is not None:
@@ -202,6 +205,8 @@ def _checked(
     misfit_m = float(misfits_m(nominal, measured).max())
     if misfit_m > tolerance_m:
         return None
+    # A layout that is its own mirror image fits in two ways. The face that is seen must look at the
+    # head.
     outward = holes[0].outward
     if outward is not None and kabsch(nominal, measured)[0] @ outward @ measured.mean(axis=0) >= 0:
         return None

@@ -29,6 +29,8 @@ def fault_without_layout(
     expectation: Expectation | None,
 ) -> VisionError:
     """The fault to raise when no assignment of ``candidates`` fits the drawing."""
+    # One or two holes fit nearly any image by chance; only from three on does a fit prove that the
+    # images are exchanged or turned.
     for reach in (NEAR, WIDE) if len(holes) >= 3 else ():
         if (fault := _wrong_images(images, holes, reach)) is not None:
             return fault

@@ -48,7 +48,8 @@ def locate_holes(
     for _ in range(_MOST_PASSES):
         normal, places = _in_best_plane(images, holes, positions_m, expectation)
         before_m, positions_m = positions_m, _positions(images.head, holes, places)
-        # From a place far off the plane is off as well, and the edges are not yet what they seem.
+        # From a place that was far off, the plane was off as well, and with it the edges: the
+        # rims are located again.
         if np.abs(positions_m - before_m).max() < _SETTLED_M:
             break
     normals = possible_normals(holes, positions_m, expectation)
@@ -62,11 +63,14 @@ def _in_best_plane(
     expectation: Expectation | None,
 ) -> tuple[Array, list[tuple[LocatedRim, LocatedRim]]]:
     """The normal for which the rims show most of their edges, and where they do."""
+    # The positions are better than those that the choice was made with, and so is the plane they
+    # span.
     normals = possible_normals(holes, positions_m, expectation)
     if not normals:
         normals = [_normal_by_rims(images, holes, positions_m)]
     found: list[tuple[Array, list[tuple[LocatedRim, LocatedRim]]]] = []
     faults: list[VisionError] = []
+    # The edges decide: in a wrong plane a rim is no circle, and fewer of its azimuths agree on one.
     for normal in normals:
         try:
             found.append((normal, _locate(images, holes, positions_m, normal)))

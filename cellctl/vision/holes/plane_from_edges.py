@@ -66,6 +66,7 @@ class _PlaneProblem:
         self._head, self._rims = head, rims
         middle = np.mean([rim.centre_m for rim in rims], axis=0)
         self._forward = middle / np.linalg.norm(middle)
+        # Holes lie in front of the camera, so the line of sight is never along its y axis.
         first = np.cross(self._forward, [0.0, 1.0, 0.0])
         first /= np.linalg.norm(first)
         self._across = np.stack([first, np.cross(self._forward, first)])
@@ -89,6 +90,8 @@ class _PlaneProblem:
             rows += [
                 left_m * head.left.camera_matrix[0, 0] / centre_m[2],
                 right_m * head.right.camera_matrix[0, 0] / in_right_m[2],
+                # The size is known from the drawing. If it were free, a tilt and an oval rim could
+                # trade with it.
                 move[3:] / _SIZE_SIGMA,
             ]
         return np.concatenate(rows)

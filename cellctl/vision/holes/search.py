@@ -41,6 +41,8 @@ def working_distance_m(head: StereoHead) -> float:
     sine2 = 1.0 - axis[2] ** 2
     baseline = float(np.linalg.norm(head.translation_m))
     along = (origin[2] - axis[2] * float(axis @ origin)) / max(float(sine2), 1e-6)
+    # Axes that are nearly parallel come closest at a distance that small errors of the calibration
+    # decide.
     return float(along) if 1.5 * baseline < along < 12.0 * baseline else 5.0 * baseline
 
 
@@ -110,6 +112,7 @@ def _in_windows(
         if window is None:
             continue
         radii_px = (radius_px * (1.0 - _RADIUS_MARGIN), radius_px * (1.0 + _RADIUS_MARGIN))
+        # Windows of neighbouring holes overlap: a feature that two of them show is kept once.
         for item in find_candidates(window, radii_px, bright=kind_of(hole).bright, limit=12):
             centre = item.centre_px + origin
             if not any(_same(centre, item.radius_px, other) for other in found):

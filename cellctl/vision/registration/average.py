@@ -28,6 +28,7 @@ def average(measurements: Sequence[PairMeasurement]) -> PairMeasurement:
     if any(item.names != names or item.method != method for item in measurements):
         raise ValueError("measurements of different holes or methods cannot be averaged")
     frames = sum(item.frames for item in measurements)
+    # One frame keeps its covariance to the letter, whatever it is made of.
     if len(measurements) == 1:
         return measurements[0]
     columns = zip(*(item.holes for item in measurements), strict=True)
@@ -38,6 +39,7 @@ def _mean_hole(column: tuple[HoleMeasurement, ...]) -> HoleMeasurement:
     position_m, covariance_m2 = _mean(
         [item.position_m for item in column], [item.covariance_m2 for item in column]
     )
+    # An average over a part that moved would be precise and wrong.
     scatter_m = max(float(np.linalg.norm(item.position_m - position_m)) for item in column)
     if scatter_m > _MAX_SCATTER_M:
         raise ResidualsTooLarge(f"{column[0].name} moved by {scatter_m / MM:.3f} mm between frames")

@@ -138,6 +138,8 @@ def _without_outliers(
         distances = np.linalg.norm(fit.residuals_m, axis=1)
         if distances.max() <= limit_m:
             return kept, tuple(outliers)
+        # The hole with the largest residual need not be the wrong one, since a wrong hole drags the
+        # pose towards itself. So each is left out in turn.
         worst = _contradicting(kept, transfer_covariance, limit_m)
         if worst is None:
             facts = ", ".join(
@@ -158,6 +160,8 @@ def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) 
         rest = points.without(index)
         if on_a_line(rest.nominal_m):
             continue
+        # The offset is judged against a pose in which this hole had no part; otherwise its own
+        # error would be counted on both sides.
         fit = register(rest.nominal_m, rest.measured_m, rest.covariances_m2)
         offset = points.measured_m[index] - fit.pose.apply(points.nominal_m[index])
         if np.linalg.norm(fit.residuals_m, axis=1).max() > limit_m:
@@ -189,6 +193,8 @@ def _result(
 ) -> PartPose:
     design = by_pose(pose.rotation.apply(kept.nominal_m)).reshape(-1, 6)
     joint = kept.joint_covariance(transfer_covariance)
+    # The weights of the fit know only the measurement. The errors that points share by ``c1_T_c2``
+    # enter here, where the gain carries them to the pose.
     unexplained = chi_square(_residuals_m(kept, pose), joint, design, gain)
     covariance = np.asarray(gain @ joint @ gain.T) * unexplained.growth
     return PartPose(

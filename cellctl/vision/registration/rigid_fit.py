@@ -25,6 +25,7 @@ def kabsch(nominal_m: Array, measured_m: Array) -> tuple[Array, Array]:
     measured ones; at least three that are not on a line."""
     nominal_mean, measured_mean = nominal_m.mean(axis=0), measured_m.mean(axis=0)
     u, _, vt = np.linalg.svd((measured_m - measured_mean).T @ (nominal_m - nominal_mean))
+    # Noise on points that lie in a plane can make a reflection the best orthogonal matrix.
     u[:, 2] *= np.sign(np.linalg.det(u @ vt))
     rotation = u @ vt
     return rotation, measured_mean - rotation @ nominal_mean
@@ -43,6 +44,8 @@ def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Regi
     pose = RigidTransform.from_components(translation_m, Rotation.from_matrix(rotation))
     weights = np.linalg.inv(covariances_m2)
     gain = np.zeros((6, 3 * len(nominal_m)))
+    # The unweighted start is within the noise of the answer: four Gauss-Newton steps reach
+    # rounding.
     for _ in range(4):
         turned = pose.rotation.apply(nominal_m)
         residuals = measured_m - turned - pose.translation
@@ -71,4 +74,6 @@ def on_a_line(points_m: Array) -> bool:
     if len(points_m) < 3:
         return True
     spread = np.linalg.svd(points_m - points_m.mean(axis=0), compute_uv=False)
+    # Below this ratio the turn about the line would be known twenty times worse than that across
+    # it.
     return bool(spread[1] < 0.05 * spread[0])

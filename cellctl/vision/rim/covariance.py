@@ -22,10 +22,11 @@ _BRIGHT, _DARK = 0.95, 0.05
 _BINS, _REACH = 36, 6
 """Sectors of azimuth, and over how many of them errors may hang together."""
 _LOST = 1.4
-"""What the fit takes out of these sums by bringing their total to zero."""
+"""Factor that makes up for what the fit takes out of these sums: it brings their total to zero."""
 _SHRINK = 0.3
+"""Share of the mean over all directions in the estimate of each."""
 _CHANCE = 2.1
-"""Sums over a few arcs reach this share of what independent errors give by chance alone."""
+"""By chance alone, sums over a few arcs reach this multiple of what independent errors give."""
 
 _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
@@ -59,11 +60,14 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     everything = solution.covariance
     covariance = everything[np.ix_(rows, rows)]
     unexplained = solution.noise.own(solution.residuals)
+    # To first order this is how far each pixel's residual alone moves the centre.
     scores = everything[rows] @ solution.design * solution.noise.weights * unexplained
     offsets = [
         view.pixels.points - shape.centre[:, None]
         for view, shape in zip(problem.views, fit.shapes, strict=True)
     ]
+    # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
+    # both.
     x, y = np.concatenate(offsets, axis=1)
     covariance = _widened(covariance, arc_covariance(scores, np.arctan2(y, x)))
     outside = solution.outside
@@ -71,6 +75,8 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     contrast = float(np.average(grey, weights=outside + 1e-9)) - float(
         np.average(grey, weights=1.0 - outside + 1e-9)
     )
+    # These errors leave no trace in the residuals of one rim, so a share of the visible unevenness
+    # stands for them.
     covariance += _model_covariance(problem, grey, outside, contrast)
     covariance[: len(spread), : len(spread)] += spread
     return RatedFit(fit, covariance, contrast)

@@ -91,6 +91,7 @@ def _radial_edges(
 ) -> _Edges:
     """Peaks of the slope along rays from the centre, to a fraction of a step."""
     step = float(_STEP_PX * patch.unit_px)
+    # Rays begin outside the centre: there all of them would sample the same pixels.
     first = max(radius - reach, 2.0 * step)
     radii = first + step * np.arange(int((radius + reach - first) / step) + 2)
     profile = polar_profile(image, patch, centre, _DIRECTIONS, np.asarray(radii, dtype=float))
@@ -101,6 +102,8 @@ def _radial_edges(
     peak = (middle >= before) & (middle > after) & (middle > limit)
     which, index = np.nonzero(peak)
     value, low, high = (part[which, index] for part in (middle, before, after))
+    # Vertex of the parabola through the three slopes. The bound keeps a flat top from dividing by
+    # zero.
     shift = 0.5 * (low - high) / np.minimum(low - 2.0 * value + high, -1e-9)
     distance = radii[index + 1] + np.clip(shift, -0.5, 0.5) * step
     return _Edges(centre + _DIRECTIONS[which] * distance[:, None], which, value)
@@ -146,6 +149,8 @@ def _consensus(
     centres, radii = centres[plausible], radii[plausible]
     if len(radii) == 0:
         return None
+    # Each edge point counts by how close it is (MSAC), not by yes or no: among circles with the
+    # same number of points the one through their middle wins.
     dx = edges.points[:, 0] - centres[:, :1]
     dy = edges.points[:, 1] - centres[:, 1:]
     offsets = (np.sqrt(dx * dx + dy * dy) - radii[:, None]) / (_TOLERANCE_PX * px)
@@ -190,6 +195,8 @@ def _refined(edges: _Edges, start: tuple[Array, float], patch: PlanePatch) -> Ed
         weighted = design * weight[:, None]
         step = np.linalg.solve(weighted.T @ design, weighted.T @ residual)
         centre, radius = centre + step[:2], radius + float(step[2])
+        # Not below a quarter of a pixel: on a clean rim the tolerance would otherwise shrink until
+        # chance decides which points are left.
         spread = robust_sigma(residual[weight > 0])
         tolerance = min(tolerance, max(4.0 * spread, 0.25 * px))
     close = np.abs(np.linalg.norm(edges.points - centre, axis=1) - radius) < _TOLERANCE_PX * px

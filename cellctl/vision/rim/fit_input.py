@@ -89,6 +89,8 @@ def fit_input(roi: RimRoi, located: LocatedRim, ring_px: float | None = None) ->
     else:
         if roi.kind.cone:
             clear_px = clearance_px(roi.image, patch, centre, radius)
+        # Pixels of the outer edge of a cone would be taken for the light of the cone, and shift the
+        # rim.
         beyond = np.clip(clear_px - _EDGE_PX, _LEAST_OUTSIDE_PX, BAND_OUTSIDE_PX)
         band = _Band(min(_BAND_INSIDE_PX, 0.5 * radius_px), _DENSE_PX, beyond)
     pixels = _pixels(roi.image, patch, located.point_px, radius_px, band)
@@ -108,6 +110,7 @@ def clearance_px(image: Image, patch: PlanePatch, centre: Array, radius: float) 
     wrapped = np.concatenate([profile[-(_SECTOR // 2) :], profile, profile[: _SECTOR // 2]])
     sums = np.cumsum(np.vstack([np.zeros_like(wrapped[:1]), wrapped]), axis=0)
     slope = np.gradient((sums[_SECTOR:] - sums[:-_SECTOR]) / _SECTOR, axis=1) / _STEP_PX
+    # The rim's own edge is the yardstick, because the contrast of a part is not known beforehand.
     own = widths_px <= _OWN_EDGE_PX
     outer = slope[:, ~own]
     limit = _LEAST_SHARE * median(np.abs(slope[:, own]).max(axis=1))
@@ -144,6 +147,8 @@ def _pixels(
     turns = np.arctan2(across, along) / (2.0 * np.pi)
     sector = np.rint(turns * len(band.beyond)).astype(int) % len(band.beyond)
     wanted = (distance > -band.inside) & (distance < band.beyond[sector])
+    # Only pixels near an edge carry its position. Farther away they tell the levels of the light,
+    # which are averages, so a third of them does and the fit is faster.
     wanted &= (np.abs(distance) < band.dense) | ((columns + rows) % 3 == 0)
     columns, rows = columns[wanted], rows[wanted]
     points, jacobians = patch.from_px(columns.astype(float), rows.astype(float))

@@ -101,6 +101,8 @@ def _middle(
         share, slope = share - edges[outer].outside, slope - edges[outer].by_pixel
     shift_px = slope * (shape.blur_px**2 / np.maximum(share, _LEAST_SHARE))
     length = np.sqrt(shift_px[0] ** 2 + shift_px[1] ** 2)
+    # Where the coverage goes to nothing the quotient grows without limit, while the pixel collects
+    # nothing from beyond three blurs.
     shift_px *= np.minimum(1.0, 3.0 * shape.blur_px / np.maximum(length, 1e-9))
     by_pixel = pixels.jacobian
     return np.asarray(pixels.points + by_pixel[:, 0] * shift_px[0] + by_pixel[:, 1] * shift_px[1])
@@ -137,6 +139,8 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
     met = (points - shape.centre[:, None]) / shape.radius + depth * points
     met /= np.maximum(np.sqrt(met[0] ** 2 + met[1] ** 2), 1e-9)
     fade = np.exp(-_FADE * depth)
+    # The rate of the fade is only roughly known and may differ round the bore: these terms let it,
+    # held by their prior.
     deep = 1.0 - fade
     around = np.stack([np.ones_like(depth), met[0], met[1]])
     terms = np.concatenate([fade * around, fade * depth * around, deep * around])
@@ -145,6 +149,8 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
 
 def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
     if light.turns_grey == 0.0:
+        # The dark inside of a bore has one level only. Slopes in it would compete with a shift of
+        # the rim; where the inside is uneven, a score test asks for a wall instead.
         return _free(np.ones((1, points.shape[1])))
     radius, cos, sin = _polar(points, shape)
     double_cos, double_sin = cos * cos - sin * sin, 2.0 * sin * cos

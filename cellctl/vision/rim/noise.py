@@ -16,7 +16,7 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.plane_patch import PlanePatch
 
 _SIGMA_OVER_MEDIAN = 1.4826
-"""Of absolute deviations that are normally distributed."""
+"""Standard deviation over the median of the absolute values, for normally distributed errors."""
 _HUBER = 2.5
 """Residuals beyond so many standard deviations lose weight (Huber): scratches, reflexes, dust."""
 _LEAST_GREY = 0.35
@@ -34,7 +34,7 @@ _ANISOTROPY = 0.2
 """From this share of directed gradients on there is a lay; noise alone stays below a tenth."""
 _GRADIENT_CLIP = 3.0
 _ALONG = 0.3
-"""Change of a stroke over one radius, of its own height."""
+"""Change of a stroke along its length over one radius, as a share of its height."""
 
 
 def median(values: Array) -> float:
@@ -108,6 +108,8 @@ def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
     limit = _CLIP_SIGMAS * _sigma_grey(residuals)
     clipped = np.clip(residuals, -limit, limit)
     level = strokes[: len(strokes) // 2]
+    # The first half of the rows are the levels of the strokes, the second their slopes along the
+    # lay.
     nearest = np.argmax(level, axis=0)
     count = np.bincount(nearest, minlength=len(level))
     mean = np.bincount(nearest, clipped, minlength=len(level)) / np.maximum(count, 1)
@@ -117,6 +119,8 @@ def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
     full = count >= _FEWEST_IN_STROKE
     if np.count_nonzero(full) < _FEWEST_STROKES:
         return own, 0.0
+    # The mean of a stroke scatters by the pixels' own errors too; what exceeds that is the
+    # strokes'.
     between = float(np.mean(mean[full] ** 2 - own**2 / count[full]))
     return own, float(np.sqrt(max(between, 0.0)))
 
@@ -143,6 +147,7 @@ def surface_lay(image: Image, patch: PlanePatch, middle_px: Array, clear_px: flo
     gradient = np.stack(
         [cv2.Sobel(cut, cv2.CV_32F, 1, 0)[ring], cv2.Sobel(cut, cv2.CV_32F, 0, 1)[ring]]
     ).astype(float)
+    # An even change of brightness over the face is shading, not a lay.
     gradient -= gradient.mean(axis=1, keepdims=True)
     size = np.hypot(*gradient)
     limit = _GRADIENT_CLIP * max(median(size), 1e-3)

@@ -21,9 +21,9 @@ _WALL_LIMITS = (0.0, 0.2)
 _RING_LIMITS = (1.02, 1.7)
 """Outside of these a model means something else: a ring of no width has the rim's own edge."""
 _RIDGE = 1e-11
-"""Of a normal matrix with a unit diagonal: terms that no pixel shows stay finite."""
+"""Added to the unit diagonal of a normal matrix, so that terms that no pixel shows stay finite."""
 _FLAT_WEIGHT = 0.04
-"""Of every pixel before its noise is known, 1/grey²."""
+"""Weight of every pixel before its noise is known, 1/grey²."""
 
 
 def add_to_diagonal(matrix: Array, values: Array | float) -> None:
@@ -60,6 +60,8 @@ class RimView:
     def shape(self, vector: Array) -> RimShape:
         """The shape of the rim in this image, inside what is physically possible."""
         values = self.selection @ vector
+        # Clipped here and not in the step of the solver: the search may leave these limits and come
+        # back, while the model is only ever computed inside them.
         values[3] = _inside(values[3], _BLUR_LIMITS_PX)
         if self.model.wall_ratio is not None:
             values[4] = _inside(values[4], _WALL_LIMITS)
@@ -195,6 +197,8 @@ def solve_light(
         terms[block.rows, block.columns] = block.surface.terms * share
     grey = np.concatenate([view.pixels.grey for view in problem.views])
     weighted = noise.weigh(terms)
+    # Terms that overlap fully, such as two levels of the light in a band without contrast, leave
+    # this matrix singular but for the small ridge.
     gram = weighted @ terms.T
     add_to_diagonal(gram, light_precision + 1e-9 * float(gram.diagonal().max()))
     levels = np.linalg.solve(gram, weighted @ grey)

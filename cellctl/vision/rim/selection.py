@@ -29,7 +29,7 @@ from cellctl.vision.rim.solver import (
 _SIGNIFICANT_GAIN = 15.0
 """Fall of chi square by up to six terms that two rims in a hundred show by chance."""
 _RIDGE = 1e-6
-"""Keeps terms that are modelled already from counting."""
+"""Keeps terms that the fit already models from counting as evidence."""
 _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 
 _START_BLUR_PX = 1.0
@@ -95,6 +95,7 @@ class ScoreTests:
         weighted = solution.noise.weigh(rows)
         shared = weighted @ solution.design.T
         size, scale = with_unit_diagonal(weighted @ rows.T)
+        # What the fitted model can imitate of the new terms is no evidence for them.
         size -= (shared @ self._covariance @ shared.T) / (scale[:, None] * scale)
         add_to_diagonal(size, _RIDGE)
         score = (weighted @ solution.residuals) / scale
@@ -129,6 +130,7 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
     plain = full_fit(problem, bare.vector)
     if not kind.may_show_wall:
         return SelectedFit(plain, np.zeros((2, 2)))
+    # The test needs one linear solve, a fit with a wall many. A rim that it passes is done.
     tests = ScoreTests(plain)
     ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
     if gain < _HINT_GAIN and not tests.uneven_inside():
@@ -142,6 +144,8 @@ def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
     """The better one by the information criterion; the other widens its covariance."""
     odds = _CONE_ODDS if plain.problem.light.cone else _BORE_ODDS
     for_wall = float(expit(0.5 * (plain.bic() - walled.bic() + odds)))
+    # The probability of the rejected model times the squared distance of its centre is the variance
+    # that choosing between them adds.
     off = walled.solution.vector[:2] - plain.solution.vector[:2]
     best, against = (walled, 1.0 - for_wall) if for_wall > 0.5 else (plain, for_wall)
     return SelectedFit(best, np.outer(off, off) * against)
@@ -214,6 +218,7 @@ def fit_two_edges(
         return coarse_fit(problem, problem.mean)
 
     ring, wall = 1.0 + second.width, _WALL_M / given[0].roi.distance_m
+    # Coarse fits are enough to compare the models; only the likeliest one is brought to its end.
     models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
     if not given[0].roi.kind.turns:
         # In an image out of focus a bore with a wall looks as if it had a ring.
@@ -223,6 +228,7 @@ def fit_two_edges(
 
 def _likeliest(models: list[RimFit]) -> SelectedFit:
     """The best of the models; by how much the others differ, weighted by how likely they are."""
+    # One noise for all: each model's own would excuse the very residuals that speak against it.
     noise = models[0].solution.noise
     costs = np.array([model.solution.cost_under(noise) for model in models])
     best = int(np.argmin(costs))

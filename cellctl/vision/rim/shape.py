@@ -103,6 +103,8 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
         low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
         by_low = _by_centre_and_radius(low, shape) / shrink
         by_low[4] = (shape.centre @ low.unit + shape.radius) * low.px / shrink**2
+        # The lower edge is hidden wherever it lies outside the rim: there the rim itself ends the
+        # wall, which then covers nothing.
         seen = low.distance_px > rim.distance_px
         inner = _Circle(
             np.where(seen, low.distance_px, rim.distance_px),
@@ -140,6 +142,8 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     dx, dy = x - shape.centre[0], y - shape.centre[1]
     a = x * x + y * y + 1e-9
     b = dx * x + dy * y
+    # Pixels outside the rim meet no wall: the bound makes the root zero for them instead of
+    # undefined.
     c = np.minimum(dx * dx + dy * dy - shape.radius**2, 0.0)
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 

@@ -20,7 +20,8 @@ from cellctl.vision.rim.problem import (
 from cellctl.vision.rim.shape import RimPixels, RimShape
 
 _RADIUS_SIGMA = 0.005
-"""Relative: it counts only where little of a rim stands out."""
+"""Standard deviation of the radius about the drawing's, relative. It counts only where little of a
+rim stands out."""
 _WALL_SIGMAS = 4.0
 """Standard deviation of a wall's depth over its first guess. Where the lower edge of the wall is
 out of sight, nothing else holds its depth."""
@@ -30,7 +31,7 @@ _MAX_ROUNDS, _MAX_STEPS = 12, 8
 _ROUGH_PX, _SETTLED_PX = 0.15, 0.01
 """Steps at which a round ends: before the noise is known, and after."""
 _LOWER_EDGE = 0.03
-"""How much of a movement of the lower edge reaches the rim, at most."""
+"""Largest share of a movement of the wall's lower edge by which the rim follows it."""
 _EXTRAPOLATE_PX = 0.01
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
@@ -53,6 +54,8 @@ class RimFit:
         """Bayesian information criterion, to compare models on the same pixels."""
         residuals = np.abs(self.solution.residuals)
         count = len(residuals)
+        # Clipped like the weights of the fit: otherwise one scratch would decide between two
+        # models.
         limit = 4.0 * max(median(residuals), 0.2)
         mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
         free = int(np.count_nonzero(self.solution.precision == 0.0))
@@ -67,6 +70,8 @@ def single_image_problem(
     ``across_lay`` is the unit vector across the lay of the face, if it has one.
     """
     mean, sigma = start.vector, np.full(len(start.vector), np.inf)
+    # The prior is the size on the drawing, not the located size: the edges that located the rim are
+    # the same pixels, and would be counted twice.
     mean[2], sigma[2] = radius, _RADIUS_SIGMA * radius
     if start.wall_ratio is not None:
         sigma[4] = _WALL_SIGMAS * start.wall_ratio
@@ -161,6 +166,8 @@ def _settle(problem: RimProblem, best: RimSolution, settled_px: float) -> RimSol
     """Damped Gauss-Newton steps (Levenberg-Marquardt) with the terms of the light held fixed."""
     damping = 1e-6
     for _ in range(_MAX_STEPS):
+        # A step that makes it worse is not taken. More damping shortens the next and turns it
+        # towards the steepest descent (Marquardt).
         trial = solve_light(problem, _moved(problem, best, damping), best.noise, best.parts)
         if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
@@ -178,6 +185,7 @@ def _rest_of_series(problem: RimProblem, before: Array, change: Array) -> float:
     views = problem.views
     last = np.concatenate([(view.selection @ change)[:3] / view.pixels.unit_px for view in views])
     first = np.concatenate([(view.selection @ before)[:3] / view.pixels.unit_px for view in views])
+    # At most four times the last step is added: a ratio near one would extrapolate noise.
     ratio = float(np.clip(last @ first / max(float(first @ first), 1e-12), 0.0, 0.8))
     return ratio / (1.0 - ratio)
 
@@ -190,6 +198,8 @@ def _moved(problem: RimProblem, solution: RimSolution, damping: float) -> Array:
     gradient += solution.precision * solution.pull
     step = (np.linalg.solve(scaled, gradient / size) / size)[solution.lights :]
     longest = _step_px(problem, step)
+    # An edge blurred over about a pixel is visible only within a pixel or so: a longer step would
+    # leave the range in which the derivatives say anything.
     return np.asarray(solution.vector + step * min(1.0, _MAX_STEP_PX / max(longest, 1e-12)))
 
 

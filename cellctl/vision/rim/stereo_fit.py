@@ -23,7 +23,7 @@ _FLOOR_PX = 5e-4
 """Lens model and pixel response limit every centre to about this."""
 _MIN_CONTRAST_GREY = 8.0
 _MAX_MOVE_PX = 2.5
-"""Farther from where its edges are a fit has found something else."""
+"""A fit that ends farther than this from the located edges has found something else."""
 _RINGED_RADIUS_TOLERANCE = 0.035
 """Largest relative difference from the nominal size when two edges were fitted: beyond it the
 edges are exchanged."""
@@ -69,6 +69,8 @@ def measure_rims(
     kind = rois[0].kind
     given = _fit_inputs(rois, located, kind.first_ring_px)
     fits = fit_single_image(given[0]), fit_single_image(given[1])
+    # Both single fits come first even where a second edge is likely: they are the evidence by which
+    # the kind decides, and for a rim with one edge they are already the result.
     second = kind.second_edge(StereoEvidence(given, fits))
     if second is None:
         return _from_single_fits(given, fits)
