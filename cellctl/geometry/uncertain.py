@@ -1,4 +1,4 @@
-"""Poses with a covariance, and how it travels along a chain of poses.
+"""Poses with a covariance, and its propagation along a chain of poses.
 
 Convention for the 6x6 covariance of ``a_T_b``: order x, y, z, rx, ry, rz; the origin of b and a
 small rotation vector, both in the axes of a: ``t = t0 + dt``, ``R = Exp(dr) R0``. SI units.
@@ -29,6 +29,7 @@ class UncertainPose:
         rotation = self.pose.rotation.as_matrix()
         arm = rotation @ other.pose.translation
         from_self = np.eye(6)
+        # Turning a by dr moves the origin of c by dr × arm = −arm × dr.
         from_self[:3, 3:] = -skew(arm)
         from_other = np.kron(np.eye(2), rotation)
         covariance = (
@@ -41,6 +42,7 @@ class UncertainPose:
         rotation_t = self.pose.rotation.inv().as_matrix()
         jacobian = np.zeros((6, 6))
         jacobian[:3, :3] = -rotation_t
+        # t' = −Rᵀ t: a turn of b by dr changes Rᵀ, and with it t', by −Rᵀ (t × dr).
         jacobian[:3, 3:] = -rotation_t @ skew(self.pose.translation)
         jacobian[3:, 3:] = -rotation_t
         return UncertainPose(self.pose.inv(), jacobian @ self.covariance @ jacobian.T)

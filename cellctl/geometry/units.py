@@ -1,4 +1,4 @@
-"""The edge between SI and what people read."""
+"""Conversion from SI to the units in which people read poses."""
 
 import numpy as np
 

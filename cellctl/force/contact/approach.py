@@ -1,4 +1,4 @@
-"""How fast, from where and how far to move towards a contact, derived from what is known.
+"""Speed, start and length of the moves towards a contact, derived from the figures of arm and part.
 
 Once two parts touch, the force between them grows at the rate ``k·v``. Until the arm stands, a time
 ``T`` later, it has grown by ``k·v·T``. So the greatest speed follows from how much growth the force
@@ -89,8 +89,12 @@ def peak_at(speed_m_s: float, figures: ApproachFigures) -> ApproachSpeed:
     touch_n = figures.touch.force_at_alarm(stiffness * speed_m_s, figures.sample_period_s)
     latency_n = stiffness * speed_m_s * figures.delay_s
     ramp_n = stiffness * speed_m_s**2 / (2.0 * figures.deceleration_m_s2)
+    # The impact of a mass on a spring. The stiffness of the contact alone counts: in these
+    # milliseconds the mass moves on without the arm, whose compliance lies behind it.
     impact_n = speed_m_s * float(np.sqrt(figures.contact_stiffness_n_m * figures.moving_mass_kg))
     tare_n = figures.tare_uncertainty_n
+    # The terms do not all peak at the same moment. Their plain sum is an upper bound, and the plan
+    # needs one.
     peak_n = touch_n + latency_n + ramp_n + impact_n + tare_n
     return ApproachSpeed(speed_m_s, peak_n, touch_n, latency_n, ramp_n, impact_n, tare_n, figures)
 
@@ -110,6 +114,7 @@ def approach_speed(
             f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
             f"tare alone take {least_n:.1f} N"
         )
+    # The root finder needs a change of sign, which a contact that is soft enough does not have.
     if peak_at(greatest_m_s, figures).peak_n <= allowed_peak_n:
         return peak_at(greatest_m_s, figures)
     speed = brentq(
@@ -125,6 +130,9 @@ def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
     before. It adds no more than the stiffness times its length and the arm's own error of a move.
     Raises ``MatingPlanInvalid`` when no move can be that short.
     """
+    # This bound uses neither the latency nor the detector, so it also holds when no stop is obeyed
+    # at all: a robot link with dead times makes the travel slow anyway, and short moves cost little
+    # there.
     spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
     length_m = spare_n / figures.stiffness_n_m - 3.0 * figures.step_sigma_m
     if length_m <= figures.step_sigma_m:
@@ -166,6 +174,8 @@ def contact_window(
     window. Pins are met ``engaged_m`` before the seat, and the fast travel ends above them. Raises
     ``MatingPlanInvalid`` when the contact is known too badly, or is too near.
     """
+    # Not narrower than ``least_half_m``: a covariance that is too small must not turn a good
+    # contact into a fault.
     half_m = max(coverage * sigma_m, least_half_m)
     if half_m > greatest_half_m:
         raise MatingPlanInvalid(
@@ -174,6 +184,8 @@ def contact_window(
         )
     earliest_m = expected_m - half_m - tilt_m
     clear_m = earliest_m - engaged_m - margin_m
+    # Fast travel may not end inside the window, because at its speed a contact goes past the force
+    # limit.
     if clear_m <= 0.0:
         raise MatingPlanInvalid(
             f"expected contact after {expected_m * 1e3:.3f} mm leaves no clear travel before its "

@@ -53,6 +53,7 @@ def estimate_stop_latency(speeds_m_s: Array, overruns_m: Array) -> LatencyEstima
     the intercept. Raises ``CommissioningFailed`` when the speeds are too few or too alike, or the
     slope makes no sense.
     """
+    # Two points always lie on a line, and speeds that are alike leave its slope to the noise.
     if len(speeds_m_s) < 3 or np.ptp(speeds_m_s) < 0.3 * np.max(speeds_m_s):
         raise CommissioningFailed(
             "latency needs three or more stops at speeds that differ by 30 % or more, got "
@@ -60,6 +61,8 @@ def estimate_stop_latency(speeds_m_s: Array, overruns_m: Array) -> LatencyEstima
             + " mm/s"
         )
     slope, offset, slope_sigma, rms = _line(speeds_m_s, overruns_m)
+    # A latency this uncertain has an upper bound of more than twice its value: better no record
+    # than one on which an approach is planned.
     if slope <= 0.0 or slope_sigma > 0.5 * slope:
         raise CommissioningFailed(
             f"overruns do not grow with speed: slope {slope * 1e3:.1f} ± {slope_sigma * 1e3:.1f} ms"
@@ -74,6 +77,8 @@ def estimate_stiffness(
 
     Raises ``CommissioningFailed`` when fewer than three readings are left or force falls.
     """
+    # Just after touch only a part of the faces bears, so the first readings show too soft a
+    # contact, and their noise is largest in proportion.
     used = force_n >= least_n
     if int(used.sum()) < 3 or np.ptp(travel_m[used]) <= 0.0:
         raise CommissioningFailed(
@@ -95,6 +100,8 @@ def joint_stiffness(estimates: Sequence[StiffnessEstimate]) -> StiffnessEstimate
     inner = np.mean([estimate.sigma_n_m**2 for estimate in estimates])
     return StiffnessEstimate(
         stiffness_n_m=float(slopes.mean()),
+        # Two independent sources, so their variances add: how well each slope is known, and how
+        # much the contacts differ.
         sigma_n_m=float(np.sqrt(inner + slopes.var(ddof=1))),
         contact_m=float(np.mean([estimate.contact_m for estimate in estimates])),
         residual_n=float(np.sqrt(np.mean([estimate.residual_n**2 for estimate in estimates]))),

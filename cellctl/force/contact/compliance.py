@@ -95,6 +95,8 @@ def next_move(law: ComplianceLaw, so_far: LateralOffset, wrench: Array) -> Later
 
 def _shift(law: ComplianceLaw, so_far: LateralOffset, across_n: Array) -> Array:
     size_n = float(np.hypot(*across_n))
+    # Below the dead band the reading is mostly tare and friction: following it would let the part
+    # wander.
     if size_n <= law.dead_band_n:
         return np.zeros(2)
     step_m = across_n / size_n * min(law.gain * size_n / law.stiffness_n_m, law.greatest_step_m)
@@ -102,6 +104,8 @@ def _shift(law: ComplianceLaw, so_far: LateralOffset, across_n: Array) -> Array:
     target_m = here_m + step_m
     distance_m = float(np.hypot(*target_m))
     if distance_m > law.greatest_travel_m:
+        # Shortened towards the stand-off instead of clipped per axis, so that the bound is a circle
+        # and the part slides along it.
         target_m *= law.greatest_travel_m / distance_m
     return np.asarray(target_m - here_m)
 

@@ -90,10 +90,14 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
     resistance = law.damping_n_s_m + law.mass_kg / law.period_s
     step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
     stiffest = min(law.stiffness_n_m, law.stiffening_ratio * state.stiffness_n_m)
+    # The contact stiffens while it closes, and no move is exactly as long as commanded. Both are
+    # allowed for before the step is made, because a step cannot be stopped half-way.
     furthest_m = (law.abort_n - state.force_n) / stiffest - 3.0 * law.step_sigma_m
     bound_m = min(law.greatest_step_m, max(furthest_m, law.smallest_step_m))
     step_m = float(np.clip(step_m, -law.greatest_step_m, bound_m))
     if abs(step_m) < law.smallest_step_m:
+        # The force is outside its window, so standing still would never end. The smallest step is
+        # the least that the controller carries out.
         step_m = float(np.copysign(law.smallest_step_m, error_n))
     return step_m
 
@@ -111,9 +115,13 @@ def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float
     unsure_m = 3.0 * law.step_sigma_m
     if moved_m <= 2.0 * unsure_m:
         return after
+    # The difference of two readings scatters by √2 of one. Adding three sigmas of it keeps the
+    # estimate on the safe side: too stiff costs a few steps, too soft overshoots.
     noise_n = 3.0 * np.sqrt(2.0) * law.force_sigma_n
     rose_n = abs(force_n - state.anchor_force_n)
     shown = law.stiffness_margin_ratio * (rose_n + noise_n) / (moved_m - unsure_m)
+    # At most halved in one step: a single soft reading, such as that of a part settling, must not
+    # open the way for a long step onto a stiff seat.
     stiffness = min(max(shown, 0.5 * state.stiffness_n_m), law.stiffness_n_m)
     after = replace(after, stiffness_n_m=float(stiffness))
     if moved_m <= 6.0 * unsure_m:

@@ -17,7 +17,7 @@ class ForceCurve:
     """Shape (n, 6): gravity compensated and tared, about the origin and in the axes of the guard's
     wrench frame."""
     travel_m: Array
-    """Shape (n,): travel along the approach from the stand-off; NaN where nobody knows it."""
+    """Shape (n,): travel along the approach from the stand-off; NaN where it is not known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +62,8 @@ def curve_statistics(
 
 def moving_average(signal: Array, samples: int) -> Array:
     """Mean of the last ``samples`` values, of fewer at the start; shape as given, (n,)."""
+    # Differences of a cumulative sum make the mean independent of the window's length: curves have
+    # tens of thousands of samples.
     total = np.concatenate([[0.0], np.cumsum(signal)])
     end = np.arange(1, len(signal) + 1)
     begin = np.maximum(end - samples, 0)

@@ -59,4 +59,6 @@ class CusumDetector:
 
 def touch_threshold_n(rate_hz: float) -> float:
     """Threshold of the sum that means the same touch at any sample rate."""
+    # In proportion to the rate, because the sum has one term for each sample: the same force then
+    # takes the same time to alarm.
     return max(TOUCH_IMPULSE_N_S * rate_hz, LEAST_THRESHOLD_N)

@@ -1,7 +1,7 @@
-"""Is the part seated? The force alone does not tell: depth and side load must agree with it.
+"""Judges whether a part is seated, by force, depth and side load together.
 
-A part that stands on the tip of a pin presses as hard as one that lies on its face. Only that it is
-some millimetres too high, or that it is pushed sideways, shows the difference.
+The force alone does not tell: a part that stands on the tip of a pin presses as hard as one that
+lies on its face. The difference is that it stands some millimetres too high, or is pushed sideways.
 """
 
 from dataclasses import dataclass
@@ -60,9 +60,11 @@ def seat_limits(
     lateral_n = REST_RATIO * max_lateral_n
     return SeatLimits(
         force_low_n=target_force_n,
+        # Below the guard's limit: the noise of a force that the seat allows must not trip it.
         force_high_n=abort_force_n,
         lateral_n=lateral_n,
         moment_n_m=(
+            # The moment about x has its lever along y, and the other way round.
             abort_force_n * half_y_m + margin_x_n_m,
             abort_force_n * half_x_m + margin_y_n_m,
             REST_RATIO * lateral_n * half_x_m,
@@ -103,6 +105,7 @@ def judge_seat(
     in series); that part of the travel is not depth and is subtracted.
     """
     force_n = float(wrench[2])
+    # Without the elastic part a seated part would seem to lie deeper the harder it is pressed.
     gap_m = expected_m - (travel_m - force_n / stiffness_n_m)
     lateral_n = float(np.hypot(wrench[0], wrench[1]))
     moments = np.abs(wrench[3:])

@@ -1,4 +1,4 @@
-"""Is an identified payload good enough for the guard to rely on? One check for each question."""
+"""Acceptance of an identified payload: the checks to pass before the guard relies on it."""
 
 from dataclasses import dataclass
 
@@ -62,6 +62,7 @@ def residual_checks(
 
 def drift_check(first: Array, repeated: Array, limits: PayloadLimits) -> PayloadCheck:
     """Change of force between the first pose and its repetition at the end, shape (6,) each."""
+    # The same pose twice needs no model: what differs is the sensor, its temperature or a hose.
     drift_n = float(np.linalg.norm(repeated[:3] - first[:3]))
     return PayloadCheck("drift of the repeated pose", drift_n, limits.drift_n, "N")
 
@@ -74,6 +75,8 @@ def rigid_checks(
     They find what no residual shows: a wrong part on the gripper, or a robot that is not level.
     """
     rigid = identification.rigid
+    # Over wide poses gravity itself moves by so much that cross-talk cannot pass for it, and the
+    # limits hold as they are.
     allowance = 0.0 if identification.excitation.wide else limits.crosstalk_ratio
     checks = []
     if expected_mass_kg is not None:

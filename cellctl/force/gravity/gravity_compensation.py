@@ -1,4 +1,4 @@
-"""Gravity compensation of a six-axis sensor: subtract what the load that hangs on it weighs.
+"""Gravity compensation of a six-axis sensor: subtract the weight of the load that hangs on it.
 
 At rest a sensor reads ``y = A u + b``, where ``u`` is the unit vector of gravity in sensor axes. A
 rigid load on an ideal sensor would need four numbers (mass and centre of mass) beside the offset;

@@ -82,6 +82,8 @@ def identify_payload(
     """
     found = require_excitation(base_R_sensor, "affine24")
     rigid = fit_rigid12(base_R_sensor, wrenches, gravity_m_s2)
+    # In a narrow cone the direction that rigid12 finds is mostly cross-talk, so the base counts as
+    # level there.
     down = rigid.base_down if found.wide else BASE_DOWN
     affine = fit_affine24(base_R_sensor, wrenches, down)
     return PayloadIdentification(rigid, affine, found, len(wrenches))
@@ -103,6 +105,7 @@ def fit_rigid12(
     solution, *_ = np.linalg.lstsq(design, wrenches[:, :3].ravel())
     force_offset, weight = solution[:3], solution[3:]
 
+    # The second half of rigid12: τ = c × f + τ0 is linear in c once the force is known.
     load = sensor_R_base @ weight
     arms = np.stack([-skew(force) for force in load])
     design = np.concatenate([eye, arms], axis=2).reshape(-1, 6)
@@ -111,6 +114,8 @@ def fit_rigid12(
 
     modelled = np.hstack([load + force_offset, np.cross(centre, load) + torque_offset])
     size = float(np.linalg.norm(weight))
+    # Some sensors state what the load does to them, others what they do to the load. The sign of
+    # the weight tells which, and the compensation works with either.
     reads_reaction = bool(weight[2] > 0.0)
     up = weight / size if reads_reaction else -weight / size
     return Rigid12(
@@ -148,6 +153,8 @@ def fit_affine24(
     # The leave-one-out residual of a linear fit is r / (1 − h), with h the leverage of the row: no
     # need to fit n times.
     leverage = np.einsum("ij,ji->i", design, np.linalg.pinv(design))
+    # A pose that alone determines a direction has leverage one: its left-out residual is unknown,
+    # here very large, and not a division by zero.
     free = np.clip(1.0 - leverage, 1e-6, None)
     return Affine24(model, residual, residual / free[:, None])
 

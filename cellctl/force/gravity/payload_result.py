@@ -57,6 +57,7 @@ def evaluate_payload(
     affine = identification.affine
     hold_out = record.having(PoseRole.HOLD_OUT)
     if hold_out.roles:
+        # The affine model is the one that is used afterwards, so it is the one that is tested.
         left = affine.compensation.apply(hold_out.wrenches, hold_out.base_R_sensor)
         checks += residual_checks("hold-out", left, limits)
     else:

@@ -42,6 +42,8 @@ class PoseRecord:
 
 def parse_pose_file(text: str) -> PoseRecord:
     """Read the text of a file; raises ``PayloadFileInvalid`` naming line and column."""
+    # Spreadsheet programs write a byte order mark, which would become a part of the first column's
+    # name.
     lines = [line for line in text.lstrip("\ufeff").splitlines() if not line.startswith("#")]
     reader = csv.DictReader(io.StringIO("\n".join(lines)), strict=True, skipinitialspace=True)
     try:
@@ -82,6 +84,8 @@ def _require_columns(found: object) -> None:
 
 
 def _numbers(row: dict[str, str], columns: tuple[str, ...], line: int) -> list[float]:
+    # ``csv`` collects surplus fields under the key None. They mean a decimal comma or a shifted
+    # row.
     if None in row:
         raise PayloadFileInvalid(f"line {line}: more fields than columns")
     values = []

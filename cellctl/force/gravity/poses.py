@@ -48,6 +48,8 @@ def plan_identification(
     the middle of the gripped part as the pivot, the part sweeps the least room.
     """
     tilts = [np.zeros(2), *_disc(fit_poses - 1, half_angle_rad, turn_rad=0.0)]
+    # Inside the cone and between the poses of the fit: the test is to interpolate, as the mating
+    # does, not to extrapolate.
     held_out = _disc(hold_out_poses, 0.8 * half_angle_rad, turn_rad=1.0)
     poses = [
         IdentificationPose(_tilted(base_T_flange, tilt, pivot_in_flange_m), role)
@@ -60,6 +62,8 @@ def plan_identification(
 def _disc(count: int, radius: float, turn_rad: float) -> list[Array]:
     """Points that fill a disc evenly up to its rim (sunflower), as tilts about base x and y."""
     index = np.arange(1, count + 1)
+    # The square root gives equal areas to equal numbers of points; without it they crowd in the
+    # middle.
     distance = radius * np.sqrt(index / max(count, 1))
     azimuth = index * GOLDEN_ANGLE_RAD + turn_rad
     return list(np.column_stack([distance * np.cos(azimuth), distance * np.sin(azimuth)]))
@@ -68,6 +72,8 @@ def _disc(count: int, radius: float, turn_rad: float) -> list[Array]:
 def _tilted(
     base_T_flange: RigidTransform, tilt_rad: Array, pivot_in_flange_m: Array
 ) -> RigidTransform:
+    # About axes of the base: only such tilts are sure to move gravity in the sensor, whatever the
+    # gripper looks like.
     tilt = Rotation.from_rotvec([tilt_rad[0], tilt_rad[1], 0.0])
     rotation = tilt * base_T_flange.rotation
     pivot_in_base = base_T_flange.apply(pivot_in_flange_m)
