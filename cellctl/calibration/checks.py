@@ -20,6 +20,7 @@ class LimitCheck:
     @property
     def passed(self) -> bool:
         """False also for a value that is not a number."""
+        # Written as the comparison that must hold: with NaN every comparison is false.
         return bool(self.value <= self.limit if self.side == "max" else self.value >= self.limit)
 
     def __str__(self) -> str:

@@ -111,11 +111,16 @@ def shape_modes(board: CalibrationBoard, shape: BoardShape) -> ShapeModes:
     if shape is not BoardShape.RIGID:
         u = flat[:, 0] / np.abs(flat[:, 0]).max()
         v = flat[:, 1] / np.abs(flat[:, 1]).max()
+        # Legendre polynomials are nearly orthogonal on the grid, so the heights of the modes can be
+        # told apart one by one.
         for i, j in _orders(board):
             height = legendre.legval(u, np.eye(5)[i]) * legendre.legval(v, np.eye(5)[j])
             columns.append(np.outer(height, [0.0, 0.0, 1.0]))
+            # Boards bend smoothly: the higher the order, the smaller it is.
             sigma.append(BEND_SIGMA_M / (i + j - 1))
     if shape is BoardShape.FREE:
+        # Stretched along x and shrunk along y, so that the scale of the board stays the drawing's:
+        # images alone cannot tell it.
         columns.append(flat * [0.5, -0.5, 0.0])
         columns.append(flat[:, [1, 0, 2]] * [0.5, 0.5, 0.0])
         sigma += [PRINT_SIGMA, PRINT_SIGMA]
@@ -129,5 +134,6 @@ def _orders(board: CalibrationBoard) -> list[tuple[int, int]]:
         (i, j)
         for i in range(5)
         for j in range(5)
+        # Degrees 0 and 1 are a shift and a tilt of the board, which its pose already contains.
         if 2 <= i + j <= 4 and i < board.columns and j < board.rows
     ]

@@ -1,4 +1,4 @@
-"""Corners of a calibration board in images, and the wrong images that give none."""
+"""Corners of a calibration board in images, and the faults of images that show none."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -61,6 +61,7 @@ def detect_views(pairs: Sequence[BoardImages], board: CalibrationBoard) -> Detec
             views.append(view)
             continue
         missing.append(pair.name)
+        # Trying all sizes of board takes long, so only twice, and only while most pairs fail.
         if len(missing) in _SUSPICIOUS and len(views) < len(missing):
             _check_board(pair, board)
     if not views:
@@ -138,9 +139,12 @@ def _common_size(pairs: Sequence[BoardImages]) -> tuple[int, int]:
 
 
 def _check_exposure(name: str, image: Image, *, board_found: bool) -> None:
+    # A quantile, because some hot pixels do not light a black image.
     if float(np.percentile(image, 99.9)) < _BLACK_LEVEL:
         raise ImageBlack(f"{name}: 99.9 % of the pixels are below level {_BLACK_LEVEL}")
     full = float((image >= _FULL_LEVEL).mean())
+    # White squares may be at full scale without harm to the corners. Where no board was found,
+    # saturation is likely to be the reason.
     if full > (_FULL_ALWAYS if board_found else _FULL_SUSPECT):
         raise ImageSaturated(f"{name}: {full:.0%} of the pixels are at full scale")
 
@@ -151,6 +155,7 @@ def _check_board(pair: BoardImages, board: CalibrationBoard) -> None:
     if seen is None:
         return
     columns, rows = seen
+    # Markers would have been found: this board has none.
     if board.charuco is not None:
         raise WrongBoard(f"{pair.name} shows a chessboard without a marker of the {board}")
     if {columns, rows} != {board.columns, board.rows}:

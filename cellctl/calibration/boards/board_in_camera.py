@@ -47,6 +47,7 @@ def board_in_camera(
     squares = float(residuals @ residuals)
     if sigma_px is None:
         sigma_px = float(np.sqrt(squares / max(len(residuals) - 6, 1)))
+    # The Jacobian of the last step: the pose moves by less than rounding after it.
     covariance = np.linalg.inv(jacobian.T @ jacobian) * sigma_px**2
     pose = RigidTransform.from_components(translation, rotation)
     return UncertainPose(pose, covariance), float(np.sqrt(squares / len(board_m)))

@@ -83,7 +83,9 @@ def fit_board(
         # Against the typical disc: noise that was stated too small must not reject good discs.
         if squares[worst] <= _OUTLIER_CHI2 * max(1.0, _typical(squares)):
             break
+        # One at a time, because one bad disc makes good ones look bad until it is gone.
         outliers.append(used.pop(worst).name)
+    # With more, the consensus may be the wrong discs.
     if len(outliers) > len(points) // 3:
         raise BoardPoseInvalid(f"discs off their drawing: {', '.join(outliers)}")
     distances = {

@@ -1,4 +1,4 @@
-"""Where a chessboard is in an image, to a pixel or so, in the board's own order."""
+"""Finds a chessboard in an image, to about a pixel, with its corners in the board's own order."""
 
 import cv2
 import numpy as np
@@ -25,6 +25,8 @@ def find_chessboard(image: Image, board: CalibrationBoard) -> Array | None:
     grid = _right_handed(found.reshape(board.rows, board.columns, 2))
     if _continues(image, grid):
         return None
+    # The colours tell which end is the first, so that an upside-down camera does not pass for a
+    # turned board.
     if not board.symmetric and not _first_cell_is_dark(image, grid):
         grid = grid[::-1, ::-1]
     return np.ascontiguousarray(grid.reshape(-1, 2))
@@ -53,6 +55,7 @@ def _search(image: Image, size: tuple[int, int]) -> Array | None:
         is_found, corners = search(small, size, flags=flags)
         if is_found:
             ratio = np.array([image.shape[1] / small.shape[1], image.shape[0] / small.shape[0]])
+            # Pixel centres lie at integers, so the image's corner is at -0.5 at every scale.
             return np.asarray((corners.reshape(-1, 2) + 0.5) * ratio - 0.5, dtype=float)
     return None
 
@@ -78,6 +81,7 @@ def _continues(image: Image, grid: Array) -> bool:
         turned = np.rot90(grid, quarter)
         last, before, earlier = turned[0], turned[1], turned[2]
         across, along = (last - before) / 4, np.gradient(last, axis=0) / 4
+        # Quadratic extrapolation: under perspective the distance between lines of corners changes.
         beyond = 3 * last - 3 * before + earlier
         own = _contrast(image, last, across, along)
         outside = _contrast(image, beyond, across, along)

@@ -37,6 +37,8 @@ def camera_model(vector: Array) -> CameraModel:
     return CameraModel(matrix, np.array(vector[4:9]))
 
 
+# Beside the projection of ``vision.camera.lens``, because the adjustment needs the derivatives by
+# the camera, and the measuring of holes neither needs nor can afford them.
 def project(camera: Array, points_m: Array) -> Projection:
     """Project points of shape (n, 3), given in the camera frame."""
     fx, fy, cx, cy, k1, k2, p1, p2, k3 = camera

@@ -37,6 +37,7 @@ def weighted_least_squares(residuals: Callable[[Array], Array], start: Array) ->
         raise IllConditioned("some unknown has no influence on the data")
     scaled = jacobian / scale
     covariance = np.linalg.inv(scaled.T @ scaled) / np.outer(scale, scale)
+    # At least one: with as many unknowns as data the residuals say nothing about the noise.
     freedom = max(len(jacobian) - len(start), 1)
     chi2_ratio = float(2 * result.cost / freedom)
     # Residuals that scatter less than stated may be luck, so the covariance never shrinks.

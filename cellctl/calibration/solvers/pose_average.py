@@ -18,6 +18,8 @@ def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
     mean = poses[0].pose
     if len(poses) == 1:
         return poses[0], 0.0
+    # Weighted with the full covariances: a pose that is sure of its height and unsure of its tilt
+    # counts for the one and not for the other.
     weights = [np.linalg.inv(pose.covariance) for pose in poses]
     covariance = np.linalg.inv(np.sum(weights, axis=0))
     for _ in range(5):

@@ -96,6 +96,8 @@ def fit_axis(stops: Sequence[AxisStop], joint: int, sign: int, noise: ArmNoise) 
     whitening = _whitening(data, direction, middle, noise)
 
     def axis(parameters: Array) -> tuple[Array, Array]:
+        # Four numbers are all that a line has: its direction and its place can change across it
+        # only. A fifth, along the line, would make the problem singular.
         turned = direction + parameters[:2] @ basis
         return turned / np.linalg.norm(turned), middle + parameters[2:4] @ basis
 
@@ -139,6 +141,7 @@ def _joint_angles(stops: Sequence[AxisStop], joint: int) -> Array:
 
 def _observations(stops: Sequence[AxisStop], angles: Array) -> _Observations:
     seen = [target.name for stop in stops for target in stop.targets]
+    # A target seen at few stops adds three unknowns and little else.
     kept = sorted({name for name in seen if seen.count(name) >= MIN_STOPS})
     if not kept:
         raise AxisMotionInvalid(f"no target was seen at {MIN_STOPS} stops or more")

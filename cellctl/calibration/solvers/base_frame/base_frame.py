@@ -152,6 +152,8 @@ def _base(lines: Array, d1_m: float, a1_angle_rad: float) -> RigidTransform:
     z_axis, point_1, a2_axis, point_2 = lines.reshape(4, 3)
     z = z_axis / np.linalg.norm(z_axis)
     a2_axis = a2_axis / np.linalg.norm(a2_axis)
+    # The axes are square only to the tolerance of the arm. A1 keeps its direction as z, and of A2
+    # the direction across z is used.
     y = a2_axis - (a2_axis @ z) * z
     y = y / np.linalg.norm(y)
     link = Rotation.from_matrix(np.stack([np.cross(y, z), y, z], axis=1))
@@ -203,6 +205,8 @@ def _checks(
     return (
         LimitCheck("A1 residual rms", first.rms_m / MM, limits.rms_m / MM, "mm"),
         LimitCheck("A2 residual rms", second.rms_m / MM, limits.rms_m / MM, "mm"),
+        # The data sheet is an independent witness: exchanged axes, a wrong sign or a wrong link
+        # show here.
         LimitCheck("a1 against D-H", abs(a1_error_m) / MM, limits.a1_error_m / MM, "mm"),
         LimitCheck(
             "squareness of A1 and A2",

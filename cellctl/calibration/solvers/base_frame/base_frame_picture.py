@@ -36,6 +36,7 @@ def _circles(axes: Axes, fit: AxisFit) -> None:
         rows = [name.endswith(f":{target}") for name in fit.residual_names]
         shown = relative[rows]
         points = axes.plot(shown @ first, shown @ second, ".", markersize=4, label=target)
+        # Seen along the axis, a target that wobbles or slipped leaves its circle visibly.
         circle = radius_m / MM * np.stack([np.cos(turn), np.sin(turn)])
         axes.plot(*circle, linewidth=0.5, color=points[0].get_color())
     axes.plot(0, 0, "+", color=INK)

@@ -86,6 +86,8 @@ def _start(
 ) -> tuple[RigidTransform, RigidTransform, Array]:
     """Closed form, and whether the data belong to the other setup."""
     x, z, spread = _closed_form(poses, setup)
+    # The closed form always yields something. The distance of the board tells whether the data fit
+    # the setup, and trying the other setup tells the user what is wrong.
     if _typical_distance(poses, setup, x, z) > _MAX_START_M:
         other_x, other_z, _ = _closed_form(poses, setup.other)
         fits = _typical_distance(poses, setup.other, other_x, other_z) <= _MAX_START_M
@@ -162,6 +164,8 @@ def _whitening(
     factors = []
     for pose in poses:
         robot = UncertainPose(pose.base_T_flange, noise.covariance)
+        # The robot's noise is stated in the base. Where the inverse pose enters, its covariance
+        # must be carried along, or position and rotation noise would not mix as they do.
         turn = robot if setup is Setup.EYE_IN_HAND else robot.inv()
         predicted = back * turn.inv() * board
         total = predicted.covariance + pose.camera_T_board.covariance

@@ -106,5 +106,7 @@ class HandEyeFile(InputFile):
         covariance = entry.covariance_mm_deg
         if covariance is None:
             sigma_m, sigma_rad = self.camera_sigma_mm * MM, np.radians(self.camera_sigma_deg)
+            # A file without covariances is common; one figure for all poses still gives each pose
+            # its weight against the robot's noise.
             covariance = np.diag([sigma_m**2] * 3 + [sigma_rad**2] * 3)
         return UncertainPose(entry.camera_T_board, covariance)

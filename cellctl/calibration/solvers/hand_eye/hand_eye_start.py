@@ -46,6 +46,8 @@ def closed_form(
             f"the flange turns about one direction only; across it {np.degrees(spread[1]):.1f}° rms"
         )
     # Rotation first: axes transform like vectors, R beta = alpha. Translation is linear then.
+    # Longer rotation vectors weigh more in this fit, as they should: their direction is better
+    # known.
     rotation, _ = Rotation.align_vectors(alpha, beta)
     matrices = np.concatenate([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
     knowns = np.concatenate(

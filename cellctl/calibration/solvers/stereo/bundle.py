@@ -88,6 +88,7 @@ def adjust(
     count = sum(r.size for pair in residuals for r in pair)
     freedom = count - _HEAD - len(modes.sigma) - 6 * len(views)
     sigma_px = float(np.sqrt(squares / max(freedom, 1)))
+    # Once more without damping and with the final noise: this matrix is the covariance's inverse.
     normal = _normal_equations(views, flat_m, modes, state, sigma_px)
     reduced, _ = _eliminate(normal, 0.0)
     return BundleResult(state, residuals, sigma_px, _inverse(reduced))
@@ -143,6 +144,7 @@ def _normal_equations(
         for corners, is_right in ((view.left, False), (view.right, True)):
             linear = _linearise(corners, flat_m, modes, state, index, is_right=is_right)
             weight, loss = _huber(linear.residuals / sigma_px)
+            # One weight for both coordinates of a corner: a corner is hidden or blurred as a whole.
             scale = np.sqrt(weight)[:, None, None] / sigma_px
             by_shared = (linear.by_shared * scale).reshape(-1, size)
             by_view = (linear.by_view * scale).reshape(-1, 6)

@@ -72,6 +72,7 @@ def calibrate_stereo(
     result = adjust(ordered, flat_m, modes, start)
     view_rms = np.array([np.sqrt((n**2).mean()) for n in residual_norms(result.residuals)])
     good = _good_views(view_rms)
+    # Judged a second time, because coverage was checked with the views that are now rejected.
     if good.sum() < limits.coverage.views:
         raise TooFewViews(f"{good.sum()} views are left after rejecting {_names(ordered, ~good)}")
     all_residuals = [
@@ -79,6 +80,8 @@ def calibrate_stereo(
     ]
     kept = [view for view, is_good in zip(ordered, good, strict=True) if is_good]
     state = _of_views(result.state, good)
+    # Bad views have pulled the solution, so it is adjusted once more without them, from where it
+    # is.
     if not good.all():
         result = adjust(kept, flat_m, modes, state)
         state = result.state
@@ -150,6 +153,8 @@ def _validate(
     first = np.arange(len(views)) % 2 == 0
     parts = (list(views[0::2]), list(views[1::2]))
     halves = tuple(
+        # Each half starts at the full solution: the start saves time and has no influence on the
+        # minimum.
         adjust(part, board.corners_m, modes, _of_views(state, chosen)).state
         for part, chosen in zip(parts, (first, ~first), strict=True)
     )

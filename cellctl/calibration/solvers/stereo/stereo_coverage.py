@@ -54,6 +54,7 @@ def check_coverage(
         _worst("image cells with corners", "filled_ratio", left, right, limits.filled_ratio),
         _worst("tilt of the board", "tilt_ratio", left, right, limits.tilt_ratio),
     )
+    # Refused before solving: a solution from such views exists, has small residuals, and is wrong.
     failed = [str(check) for check in checks if not check.passed]
     if failed:
         raise PoorCoverage("; ".join(failed))
@@ -70,6 +71,7 @@ def coverage(
         pixels[:, 1], pixels[:, 0], bins=(CELLS[1], CELLS[0]), range=bounds
     )
     slopes = np.stack([_foreshortening(corners, board) for corners in images])
+    # The weakest direction counts: boards tilted about one axis only leave the other undetermined.
     weakest = float(np.linalg.eigvalsh(slopes.T @ slopes / len(slopes))[0])
     return Coverage(cells, float((cells > 0).mean()), float(np.sqrt(max(weakest, 0.0))))
 

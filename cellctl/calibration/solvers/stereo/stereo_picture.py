@@ -35,6 +35,7 @@ def stereo_picture(result: StereoResult) -> bytes:
 
 
 def _residual_field(axes: Axes, field: Array) -> None:
+    # More arrows would cover each other, and a pattern of the residuals shows with fewer.
     chosen = field[:: max(1, len(field) // _MAX_ARROWS)]
     axes.quiver(
         chosen[:, 0],

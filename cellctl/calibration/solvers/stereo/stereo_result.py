@@ -101,6 +101,7 @@ class StereoResult:
 
 def _head_from_record(record: Mapping[str, Any]) -> StereoHead:
     width, height = record["image_size"]
+    # The record is in mm; only the translation, the last three numbers, has a length.
     units = np.array([1.0] * 21 + [MM] * 3)
     return StereoHead(
         image_size=(int(width), int(height)),

@@ -1,4 +1,4 @@
-"""Start values of a stereo adjustment, and the wrong inputs that show themselves there."""
+"""Start values of a stereo adjustment, and the wrong inputs that are recognised there."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -56,7 +56,13 @@ def _single_camera(
     pixels = [corners.pixels.astype(np.float32)[:, None, :] for corners in images]
     try:
         _, matrix, distortion, turns, shifts = cv2.calibrateCamera(
-            points, pixels, image_size, np.eye(3), np.zeros(5)
+            # Each camera by itself first: the joint adjustment converges only from a start near the
+            # solution, and wrong files show themselves in the poses of single cameras.
+            points,
+            pixels,
+            image_size,
+            np.eye(3),
+            np.zeros(5),
         )
     except cv2.error as error:
         raise SolveFailed(f"start values of a camera: {error.err}") from error
@@ -75,12 +81,16 @@ def _common_pose(names: Sequence[str], relative: Array) -> tuple[Array, Array]:
     """The pose right_T_left that the views agree on."""
     rotations = Rotation.from_matrix(relative[:, :3, :3])
     angles = np.stack([(rotations * one.inv()).magnitude() for one in rotations])
+    # The median rotation: a wrongly paired view may be off by any angle and must not pull the
+    # start.
     middle = rotations[int(np.argmin(np.median(angles, axis=1)))]
     off_rad = (rotations * middle.inv()).magnitude()
     translation_m = np.median(relative[off_rad <= np.median(off_rad), :3, 3], axis=0)
     off_m = np.linalg.norm(relative[:, :3, 3] - translation_m, axis=1)
     baseline_m = float(np.linalg.norm(translation_m))
     bad = (off_rad > _MAX_SPREAD_RAD) | (off_m > _MAX_SPREAD_OF_BASELINE * baseline_m)
+    # A few bad views are left to the adjustment, which rejects them by name. That many mean files
+    # that are paired wrongly.
     if bad.mean() > 0.3:
         worst = ", ".join(np.asarray(names)[bad][:8])
         raise PairsInconsistent(f"{bad.sum()} of {len(names)} pairs disagree: {worst}")

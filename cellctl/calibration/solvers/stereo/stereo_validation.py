@@ -1,4 +1,4 @@
-"""Does a calibration hold for views that it has not seen? In millimetres, not pixels.
+"""Tests whether a calibration holds for views that it has not seen, in millimetres.
 
 The views are split into two halves; each half calibrates alone and measures the boards of the
 other half. A low reprojection error says nothing about this (reference: cross-validation diff).
@@ -41,6 +41,7 @@ def cross_validate(
     for half, own in zip(halves, (1, 0), strict=True):
         for view in views[own]:
             ids, points = triangulate_view(half, view)
+            # Board by board: where the board stood is not known, its shape is.
             moved = rigid_fit(board_m[ids], points)
             squares += float(((moved - points) ** 2).sum())
             count += len(ids)

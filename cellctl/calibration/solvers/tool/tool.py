@@ -132,6 +132,7 @@ def _position(
     # With c eliminated only deviations from the mean rotation tell about t.
     spread = (rotations - rotations.mean(axis=0)).reshape(-1, 3)
     singular = np.linalg.svd(spread / np.sqrt(len(poses)), compute_uv=False)
+    # The weakest direction decides: turns about one direction leave the tip free along it.
     if singular[-1] < np.sin(_MIN_TURN_RAD):
         raise PosesNotDiverse(
             f"the flange turns too little or about one direction only "

@@ -91,6 +91,8 @@ def head_1_in_base(
     c_T_base: UncertainPose, c_T_board: UncertainPose, c1_T_board: UncertainPose
 ) -> UncertainPose:
     """Equation 1: B_T_C1 = (C_T_B)^-1 · C_T_P · (C1_T_P)^-1."""
+    # The board is the link: both heads measure it at the same place, and it drops out of the
+    # product.
     return c_T_base.inv() * (c_T_board * c1_T_board.inv())
 
 
@@ -144,6 +146,8 @@ def calibrate_board_transfer(
         LimitCheck("board rms, small-field heads", small_mm, limits.head_rms_m / MM, "mm"),
         LimitCheck("C1_T_C2 position sigma", position_mm, position_limit_mm, "mm"),
         LimitCheck("C1_T_C2 rotation sigma", np.degrees(sigma[3:].max()), rotation_limit_deg, "°"),
+        # Several placements are the only witness of what one placement cannot show: a board that
+        # moved between the two heads' exposures.
         LimitCheck("agreement of placements", max(agreement_1, agreement_2), limits.agreement, ""),
     )
     return TransferResult(
