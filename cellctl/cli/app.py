@@ -16,6 +16,8 @@ def main() -> None:
     try:
         _app_for(sys.argv[1:])()
     except CellError as error:
+        # An operator needs cause and remedy; the traceback is for whoever looks for a bug, and only
+        # on request.
         if settings["debug"]:
             raise
         console = Console(stderr=True, soft_wrap=True, highlight=False)
@@ -27,6 +29,8 @@ def main() -> None:
 
 def _app_for(words: Sequence[str]) -> typer.Typer:
     """Everything, or what loads in a moment when that is enough."""
+    # Loading OpenCV, scipy and matplotlib takes seconds. An Abort does not wait for them, so the
+    # commands to the daemon have a command line of their own that loads none of it.
     command = next((word for word in words if not word.startswith("-")), "")
     if command in operator_commands.NAMES:
         return operator_commands.app

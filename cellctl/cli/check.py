@@ -23,6 +23,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
             console.print(f"F{problem.number} {problem.key} = {problem.value}", markup=False)
             console.print(f"     {problem.allowed}", markup=False)
         raise typer.Exit(1)
+    # Read a second time, as the daemon would: what is printed below is what it will use.
     cell = load_cell(cell_file)
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
@@ -32,6 +33,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
     _say_what_others_need(console, cell)
     calibrations = cell_file.parent / cell.calibration_dir
+    # A hint, not an error: whoever checks a file is often not the user that the daemon runs as.
     if not may_write(calibrations):
         console.print(
             f"  calibration_dir {calibrations}: this user may not write it, the daemon's must",

@@ -13,4 +13,5 @@ def demo(context: typer.Context) -> None:
 
     That program takes the place of this one: a signal must reach it and nobody else.
     """
+    # By name and as another program, because the core must not import the fakes.
     os.execv(sys.executable, [sys.executable, "-m", "fakes", "demo", *context.args])

@@ -1,4 +1,4 @@
-"""`cellctl --help` by what one wants to do."""
+"""Groups the commands of `cellctl --help` by their purpose."""
 
 from typing import Any
 
@@ -12,6 +12,8 @@ class GroupedCommands(TyperGroup):
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
         """Write one section per panel, in the order of registration."""
+        # Without rich markup Typer does not show the panels that commands are registered with, so
+        # they are printed here.
         sections: dict[str, list[tuple[str, str]]] = {}
         for name in self.list_commands(ctx):
             command = self.get_command(ctx, name)

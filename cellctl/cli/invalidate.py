@@ -30,11 +30,14 @@ def invalidate(
 
     Also for a cell that is running: it looks before every start.
     """
+    # The reason is all that an operator will later see of this decision.
     if not reason.strip():
         raise typer.BadParameter("say what happened", param_hint="--reason")
     config = load_cell(cell)
     store = CalibrationStore(cell.parent / config.calibration_dir, calibration_kinds(config))
     kind = store.named(name)
+    # The calibration first and the audit log after it: without the log the cell is still safe from
+    # a bad calibration, the other way round it is not.
     found = store.invalidate([kind], f"{reason} ({by})")
     if not found:
         raise CalibrationMissing(f"{name}: there is no such calibration in {store.path}")
@@ -54,6 +57,8 @@ def _record(
     path = data_dir or Path(config.data_dir)
     try:
         store = RunStore(path, create=False)
+    # A cell that has never run has no store; that must not keep anybody from withdrawing a
+    # calibration.
     except StoreUnavailable as error:
         typer.echo(f"not in the audit log: {error}", err=True)
         return

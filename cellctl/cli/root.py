@@ -16,6 +16,7 @@ def new_app() -> typer.Typer:
         cls=GroupedCommands,
         help="Cell controller for vision- and force-guided satellite assembly.",
         no_args_is_help=True,
+        # Faults are printed by ``main`` with their cause and remedy; a traceback is for bugs.
         pretty_exceptions_enable=False,
         rich_markup_mode=None,
     )

@@ -23,6 +23,7 @@ def run(
     ] = log.LogLevel.INFO,
 ) -> None:
     """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
+    # Imported here, so that ``--help`` and the other commands need not load the daemon.
     from cellctl.daemon.app import serve
 
     log.configure(level=log_level)

@@ -27,6 +27,7 @@ _COLOURS = {"good": "green", None: "yellow"}
 
 @contextmanager
 def _store(data_dir: Path) -> Iterator[RunStore]:
+    # A mistyped folder must be an error, not a new and empty store.
     store = RunStore(data_dir, create=False)
     try:
         yield store
@@ -58,6 +59,7 @@ def show(run: Run, data_dir: DataDir = DEFAULT) -> None:
     console.print(_table([record.head]))
     if record.head.fault:
         console.print(record.head.fault, style="red", markup=False)
+    # ``dict.fromkeys`` keeps the order of the run, which a set would lose.
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
@@ -97,6 +99,8 @@ def gauge(
 ) -> None:
     """Enter a plug-gauge result of a run."""
     with _store(data_dir) as store:
+        # A gauge result comes after the run was sealed, so it has a seal of its own, and the audit
+        # log names whoever measured.
         store.set_gauge(run, hole, mm, source)
         store.audit(source, "gauge", {"run": run, "hole": hole, "diameter_mm": mm})
     typer.echo(f"run {run}, hole {hole}: {mm:.2f} mm by {source}")
@@ -139,6 +143,7 @@ def _table(runs: Sequence[RunHead]) -> Table:
 def _row(head: RunHead) -> tuple[str, ...]:
     result = head.result or "open"
     colour = _COLOURS.get(head.result, "red")
+    # A run of the fake cell must never pass for evidence about a real part.
     mark = " (sim)" if head.simulated else ""
     return (
         str(head.number),
@@ -171,6 +176,7 @@ def _figures(judged: Sequence[Figure]) -> Table:
     table = Table("figure", "value", "at least", "at most", "verdict", box=None)
     for entry in judged:
         texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
+        # The verdict is that of the run, with the limits of that day; it is not judged anew here.
         style = "green" if entry.verdict is Verdict.PASS else "red"
         table.add_row(entry.label, *texts, f"[{style}]{entry.verdict}[/]")
     return table

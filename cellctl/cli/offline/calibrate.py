@@ -165,10 +165,13 @@ def _board(
 
 
 def _pairs(left: str, right: str) -> list[BoardImages]:
+    # Expanded here, not by the shell: one option takes one value, and both lists must be in one
+    # order.
     names = [sorted(glob.glob(pattern)) for pattern in (left, right)]
     for pattern, found in zip((left, right), names, strict=True):
         if not found:
             raise FileInvalid(f"no file matches {pattern}")
+    # One missing image would shift every later pair by one.
     if len(names[0]) != len(names[1]):
         raise FileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
     return [
@@ -204,6 +207,8 @@ def _finish(
         console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
     for warning in warnings:
         console.print(f"  warning: {warning}", markup=False)
+    # Also when it did not pass: the figures show why, and the exit code keeps a script from using
+    # it.
     if out is not None:
         write_file(out, json.dumps(result.to_record(), indent=2).encode() + b"\n")
     if picture is not None:

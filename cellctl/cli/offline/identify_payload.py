@@ -74,6 +74,7 @@ def _show(result: PayloadResult, console: Console) -> None:
         f"{excitation.condition_rigid12:.1f}, {excitation.condition_affine24:.1f}",
     )
     console.print(table)
+    # Without this note a weight that points up would look like a mistake.
     if rigid.reads_reaction:
         console.print("note: weight points up in this file, so it states reactions, not loads")
     for check in result.checks:

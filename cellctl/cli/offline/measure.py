@@ -60,6 +60,8 @@ def measure(  # noqa: PLR0917 - the options of the command
             write_file(picture, _picture(images, result))
         if out is not None:
             write_file(out, text.encode())
+    # An exit code of its own: a script that scans many images must tell "not in the picture" from a
+    # wrong file.
     except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
         typer.echo(f"{fault}\n  {fault.remedy}", err=True)
         raise typer.Exit(EXIT_NOT_FOUND) from fault
@@ -73,12 +75,16 @@ def measure(  # noqa: PLR0917 - the options of the command
 def read_image(path: Path) -> Image:
     """An 8 bit grey image from a file; raises ``ImageFileInvalid``."""
     try:
+        # Read here instead of by OpenCV, which returns nothing at all for a missing file, without a
+        # reason.
         data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
     except OSError as error:
         raise ImageFileInvalid(f"{path}: {error.strerror or error}") from error
     image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
     if image is None:
         raise ImageFileInvalid(f"{path}: not an image")
+    # Many programs save grey images with three equal channels. Images of more than 8 bit are
+    # refused: to scale them would be a guess about their range.
     if image.ndim == 3 and image.dtype == np.uint8:
         image = cv2.cvtColor(
             image, cv2.COLOR_BGR2GRAY if image.shape[2] == 3 else cv2.COLOR_BGRA2GRAY
@@ -146,9 +152,10 @@ def _method(name: str) -> Method:
 
 
 def _pose(result: PairMeasurement, holes: tuple[Hole, ...]) -> PartPose | None:
-    """The part's pose by registration where the holes span a plane, whatever the image method."""
+    """The part's pose, by registration whatever the image method; None for holes on a line."""
     if on_a_line(np.array([hole.position_m for hole in holes])):
         return None
+    # Wide limits: the user of this command wants to see the residuals, which a fault would hide.
     limit_m = 2.0 * MM if result.method == "paper" else 0.5 * MM
     return part_pose(result, None, None, holes, residual_limit_m=limit_m)
 

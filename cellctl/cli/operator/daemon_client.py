@@ -1,4 +1,4 @@
-"""The other end of the local API: how commands of the operator reach the daemon."""
+"""Client of the local API: brings the commands of the operator to the daemon."""
 
 import socket
 import time
@@ -53,6 +53,7 @@ class DaemonClient:
     """Asks the daemon, one connection per question."""
 
     def __init__(self, path: Path | None) -> None:
+        # The installed service goes before a daemon that somebody has started in this folder.
         self._path = path or (SERVICE if SERVICE.exists() else HERE)
 
     def status(self) -> StatusReport:
@@ -71,10 +72,14 @@ class DaemonClient:
     def settled(
         self, states: Collection[str] = (), timeout_s: float | None = SETTLE_S
     ) -> StatusReport:
-        """Wait until the unit is in one of the states, or, without any, on its way nowhere."""
+        """Wait until the unit is in one of ``states``; without any, until it stays where it is.
+
+        Raises ``CommandMissedItsGoal`` after ``timeout_s``; None waits without an end.
+        """
         end_s = None if timeout_s is None else now_s() + timeout_s
         while True:
             report = self.status()
+            # An acting state is on its way to another one; only in a wait state are both the same.
             there = report.state in states if states else report.state == report.state_requested
             if there:
                 return report
@@ -92,6 +97,8 @@ class DaemonClient:
                     line = lines.readline(ANSWER_LIMIT)
         except OSError as error:
             raise DaemonNotReached(f"{self._path}: {error.strerror or error}") from error
+        # A line without its end was cut off: the daemon ended, or the answer is longer than an
+        # answer may be.
         if not line.endswith(b"\n"):
             raise DaemonNotReached(f"{self._path}: it hung up")
         answer = parse_answer(line)

@@ -21,8 +21,12 @@ def status(
     socket: SocketOption = None,
 ) -> None:
     """State, faults with their remedy, calibrations, links and the last run."""
+    # One client for all questions, but a connection for each: a daemon that is restarted meanwhile
+    # is found again.
     client = DaemonClient(socket)
     if json:
+        # The message as it came: programs get the fields that the API promises, whatever the screen
+        # shows.
         typer.echo(client.status().model_dump_json(indent=1))
     elif watch:
         _follow(client)

@@ -1,4 +1,4 @@
-"""A status report for eyes."""
+"""The status of the cell as a screen for operators."""
 
 from datetime import datetime
 
@@ -28,6 +28,8 @@ def screen(report: StatusReport, now: datetime) -> RenderableType:
     parts: list[RenderableType] = [_head(report)]
     parts += [_fault(fault, "fault", "red") for fault in report.faults]
     latched = {fault.number for fault in report.faults}
+    # A latched fault is on the list of alarms, too. Shown once, it does not push others off the
+    # screen.
     parts += [_fault(a, "alarm", "yellow") for a in report.alarms if a.number not in latched]
     return Group(*parts, _calibrations(report, now))
 
@@ -95,6 +97,7 @@ def _calibrations(report: StatusReport, now: datetime) -> Table:
 def _dates(item: CalibrationReport, now: datetime) -> tuple[str, str]:
     if item.made is None or item.valid_until is None:
         return "–", "–"
+    # Whole days, rounded down: a calibration never lasts longer than the screen says.
     left = max(0, (item.valid_until - now).days)
     return f"{(now - item.made).days} d", f"{left} d"
 
