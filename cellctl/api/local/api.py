@@ -1,4 +1,4 @@
-"""The local API of one daemon, put together."""
+"""Wires up the local API of one daemon."""
 
 from pathlib import Path
 
@@ -23,5 +23,7 @@ def local_server(
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
     reporter = Reporter(cell, unit, arbiter, archive)
+    # The terminal is given the way to submit a command and nothing else of the arbiter, so that it
+    # cannot pass by the validation.
     terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter)
     return LocalServer(SocketFile(path, settings.group), terminal.handle)

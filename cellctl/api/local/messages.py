@@ -25,6 +25,8 @@ PlainName = Literal["clear", "reset", "hold", "unhold", "stop", "abort"]
 class Message(BaseModel):
     """Strict: no unknown keys, no value of another type."""
 
+    # Strict, because a command moves a machine: a number in quotes or a misspelt option is refused,
+    # never interpreted.
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
@@ -148,6 +150,7 @@ def _parse(adapter: TypeAdapter[M], line: bytes) -> M:
 
 
 def _malformed(error: ValidationError) -> MessageMalformed:
+    # Without the input: what a client has sent would otherwise come back to it, and into the log.
     first = error.errors(include_url=False, include_context=False, include_input=False)[0]
     place = ".".join(str(part) for part in first["loc"])
     return MessageMalformed(f"{place}: {first['msg']}" if place else first["msg"])

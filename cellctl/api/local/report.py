@@ -1,4 +1,4 @@
-"""What `cellctl status` is told."""
+"""The status of the cell as `cellctl status` receives it."""
 
 from datetime import datetime
 from typing import Literal

@@ -27,6 +27,8 @@ class Reporter:
 
     async def report(self) -> StatusReport:
         """Everything at this moment. What cannot be read is reported as such, not raised."""
+        # First what needs waiting, then everything else in one turn of the loop: state, step and
+        # faults of one report belong to one moment.
         calibrations = await asyncio.to_thread(self._calibrations)
         texts, last_run, records = await self._from_store()
         unit, machine = self._unit, self._unit.machine
@@ -63,6 +65,7 @@ class Reporter:
             alarms = await self._archive.do(RunStore.active_alarms)
             heads = await self._archive.do(RunStore.runs, 1)
         except CellError as error:
+            # A store that fails must not keep the operator from seeing the state and the faults.
             return {}, None, str(error)
         runs = [
             RunReport(
@@ -105,6 +108,7 @@ def _fault(error: CellError) -> FaultReport:
 
 
 def _alarm(number: int, text: str) -> FaultReport:
+    # The alarm may come from an older store or from a process that is not installed any longer.
     known = next((fault for fault in catalogue() if fault.number == number), CellError)
     return FaultReport(
         number=number,

@@ -27,7 +27,7 @@ _log = log.get(__name__)
 
 @dataclass(frozen=True, slots=True)
 class LocalLimits:
-    """What a connection may cost."""
+    """How many connections are served, and how long each may take."""
 
     clients: int = 16
     idle_s: float = 30.0
@@ -55,11 +55,14 @@ class LocalServer:
         _log.info("local API", socket=str(self._file.path))
 
     async def stop(self) -> None:
-        """Stop listening, drop all clients, let what was begun end. Idempotent."""
+        """Stop listening, drop all clients, and wait for commands that were begun. Idempotent."""
         if self._server is not None:
+            # No ``wait_closed``: it would wait for the clients, which are ended below.
             self._server.close()
             self._server = None
             self._file.remove()
+        # Commands that were begun are awaited, not cancelled: an Abort that has been accepted is
+        # carried out.
         clients = tuple(self._clients)
         for client in clients:
             client.cancel()
@@ -74,6 +77,8 @@ class LocalServer:
         writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
         try:
             await self._serve(reader, writer, peer_uid(writer.get_extra_info("socket")))
+        # The cancellation ends here on purpose: it comes from ``stop`` or from a newer client, and
+        # concerns this connection alone.
         except (TimeoutError, OSError, asyncio.CancelledError) as error:
             _log.info("local client dropped", reason=type(error).__name__)
         finally:
@@ -102,6 +107,8 @@ class LocalServer:
         """A line; raises ``EOFError``, ``TimeoutError`` or ``LimitOverrunError``."""
         async with asyncio.timeout(self._limits.idle_s):
             first = await reader.readexactly(1)
+        # An empty line; waiting for the end of another one would make its sender wait for its
+        # answer.
         if first == b"\n":
             return b""
         async with asyncio.timeout(self._limits.request_s):
@@ -117,6 +124,8 @@ class LocalServer:
         task = asyncio.create_task(_run(self._handle, request, uid))
         self._handling.add(task)
         task.add_done_callback(self._handling.discard)
+        # ``wait`` leaves the task alone when this connection is cancelled: whoever gives a command
+        # and hangs up has given it all the same.
         await asyncio.wait({task})
         error = task.exception()
         if error is None:

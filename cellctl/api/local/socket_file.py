@@ -32,6 +32,8 @@ class SocketFile:
 
         Raises ``LocalApiInUse`` while somebody listens there, else ``CannotServeLocally``.
         """
+        # The kernel's own limit (``sun_path``, 108 bytes with the final zero), whose error names no
+        # reason.
         if len(os.fsencode(self.path)) > 107:
             raise CannotServeLocally(f"{self.path} is longer than 107 bytes")
         listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -39,6 +41,8 @@ class SocketFile:
             self._make_room()
             os.fchmod(listener.fileno(), 0o600)  # of the file to come: nobody connects too early
             listener.bind(str(self.path))
+            # Remembered, so that at the end only this daemon's own file is removed: a successor may
+            # have replaced it by then.
             self._inode = self.path.stat().st_ino
             if self._group:
                 shutil.chown(self.path, group=self._group)
@@ -67,8 +71,10 @@ class SocketFile:
             found = self.path.lstat()
         except FileNotFoundError:
             return
+        # A wrong path in the cell file must not cost anybody a file.
         if not stat.S_ISSOCK(found.st_mode):
             raise FileExistsError("is no socket")
+        # A dead daemon leaves its file behind. Only a connection tells it from one that is alive.
         if _somebody_listens(self.path):
             raise LocalApiInUse(str(self.path))
         self.path.unlink()

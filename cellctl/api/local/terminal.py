@@ -49,11 +49,13 @@ class Terminal:
         """
         if isinstance(request, StatusRequest):
             return Status(report=await self._reporter.report())
+        # Before the user is looked up, because the time of a command is that at which it was given.
         command = self._command(request)
         if not command.ends_motion:
             # A directory service may take a second, which a Stop cannot wait.
             await self._users.look_up(uid)
         command = replace(command, person=self._users.name(uid))
+        # The same validator and queue as for the line; the terminal decides nothing by itself.
         code = await self._submit(Submission(command))
         state = self._machine.state.name
         _log.info("local command", who=command.who, cmd=request.request, reject=code.text)
@@ -95,6 +97,8 @@ class Terminal:
         if not wanted and len(recipes) == 1:
             return recipes[0].id
         found = [recipe.id for recipe in recipes if wanted in (recipe.name, str(recipe.id))]
+        # Two recipes may have one name, and a name may be another one's number. Nothing is guessed:
+        # the validator refuses 0 with the reject code that the line would get.
         return found[0] if len(found) == 1 else 0
 
 

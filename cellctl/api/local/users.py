@@ -26,6 +26,7 @@ class Users:
 
     def __init__(self) -> None:
         self._names: dict[int, str] = {}
+        # Read once and here: ``pwd`` also asks directory services, which may block for seconds.
         for line in _LOCAL_USERS.read_text(encoding="utf-8", errors="replace").splitlines():
             name, *rest = line.split(":")
             if len(rest) > 1 and rest[1].isdigit():
@@ -41,6 +42,8 @@ class Users:
             return
         try:
             async with asyncio.timeout(_LOOKUP_S):
+                # In a thread, because the call cannot be cancelled: after the time-out it ends by
+                # itself, unheard.
                 entry = await asyncio.to_thread(pwd.getpwuid, uid)
         except (TimeoutError, KeyError):
             return
