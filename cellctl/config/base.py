@@ -4,6 +4,8 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
+# The bounds refuse what no cell can hold. TOML has ``inf`` and ``nan``, which must not pass for a
+# length either: every comparison with ``nan`` is false.
 Millimetres = Annotated[float, Field(ge=-20_000, le=20_000, allow_inf_nan=False)]
 Degrees = Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)]
 WrittenPose = tuple[Millimetres, Millimetres, Millimetres, Degrees, Degrees, Degrees]
@@ -14,4 +16,7 @@ JointsDeg = tuple[Degrees, Degrees, Degrees, Degrees, Degrees, Degrees]
 class Section(BaseModel):
     """A section: immutable, and an unknown key is an error."""
 
+    # A misspelt key would otherwise leave its default in force, and a limit that somebody has set
+    # would not hold. Frozen, because a cell file that is changed while the daemon runs holds only
+    # after a restart.
     model_config = ConfigDict(extra="forbid", frozen=True)

@@ -38,6 +38,8 @@ class Plc(Section):
     @classmethod
     def _clients_are_addresses(cls, clients: tuple[str, ...]) -> tuple[str, ...]:
         for client in clients:
+            # Names are refused: looking them up can block, and whoever answers for them decides who
+            # may connect.
             ipaddress.ip_network(client, strict=False)
         return clients
 
@@ -86,6 +88,8 @@ class CellConfig(Section):
         for section, group in GROUPS.items():
             for name, device in self.section(section).items():
                 found[f"{section}.{name}"] = group, device
+                # The guard's line to the robot has a driver of its own, although it is written
+                # inside the sensor.
                 if isinstance(device, ForceSensorConfig):
                     stop_channel = plugins.STOP_CHANNEL, device.stop_channel
                     found[f"{section}.{name}.stop_channel"] = stop_channel
@@ -94,6 +98,8 @@ class CellConfig(Section):
     @property
     def simulated(self) -> bool:
         """True when the devices are fakes: all of them are, or none."""
+        # ``any`` is enough, because the cross checks refuse a cell in which some are real and some
+        # are not.
         return any(device.simulated for _, device in self.devices().values())
 
     def recipe(self, recipe_id: int) -> Recipe | None:

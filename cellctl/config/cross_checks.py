@@ -1,4 +1,4 @@
-"""What only the sections of a cell file together can tell."""
+"""Checks that need several sections of a cell file at once."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -52,16 +52,19 @@ def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
     mounted = Counter(sensor.mounted_on for sensor in cell.force_sensors.values())
     for name, sensor in cell.force_sensors.items():
         if mounted[sensor.mounted_on] > 1:
+            # A robot has one channel for a guard, and a guard has one sensor (decision 0003).
             key = f"force_sensors.{name}.mounted_on"
             yield ConfigIssue(key, repr(sensor.mounted_on), "a robot carries one force sensor")
 
 
 def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:
-    """A guard that is more impatient than its sensor is fast would stop at every sample."""
+    """A limit of silence below the pace of the sensor would trip the guard at every sample."""
     for name, sensor in cell.force_sensors.items():
         key = f"force_sensors.{name}"
         if any(issue.key.startswith((f"{key}.driver", f"{key}.settings")) for issue in found):
             continue  # its rate is not known
+        # Two samples: the arrival of one sample jitters, so a limit of one would trip on an even
+        # stream.
         least_ms = least_stale_ms(sensor)
         if sensor.stale_ms < least_ms:
             allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
@@ -70,6 +73,8 @@ def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssu
 
 def _simulation(cell: CellConfig) -> Iterator[ConfigIssue]:
     devices = {key: device for key, (_, device) in cell.devices().items()}
+    # A cell of real and simulated devices would move a real arm by what a picture of another world
+    # shows.
     if len({device.simulated for device in devices.values()}) > 1:
         named = [key for key, device in devices.items() if device.simulated]
         text = f"{MixedSimulation.text}; mark all or none"

@@ -1,4 +1,4 @@
-"""What a check finds wrong."""
+"""One finding of a check of the cell file."""
 
 from dataclasses import dataclass
 

@@ -49,8 +49,11 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
     found, cell = _parse(_read_toml(path))
     if cell is None:
         return found, None
+    # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
     found += _driver_issues(cell)
     found += cross_issues(cell, found)
+    # Faults of devices are reported once, where they are, and not again by every recipe that uses
+    # them.
     bad_devices = {".".join(issue.key.split(".")[:2]) for issue in found}
     for index, recipe in enumerate(cell.recipes):
         found += _process_issues(cell, recipe, f"recipes.{index}", path.parent, bad_devices)
@@ -89,6 +92,8 @@ def _recipes(raw: Any, found: list[ConfigIssue]) -> Iterator[Recipe | None]:
         return
     for index, entry in enumerate(raw):
         key = f"recipes.{index}"
+        # Which keys are allowed, only the process says: without it the entry cannot be checked any
+        # further.
         definition = _definition(entry, key, found)
         if definition is None:
             yield None
@@ -168,6 +173,8 @@ def _process_issues(
 def _from_pydantic(prefix: str, error: ValidationError) -> list[ConfigIssue]:
     found = []
     items = error.errors(include_url=False)
+    # pydantic calls a list with one bad entry "too short", in addition to what is wrong with the
+    # entry. That would send the user to look for a missing one.
     parents = {item["loc"][:depth] for item in items for depth in range(1, len(item["loc"]))}
     for item in items:
         if item["type"] == "too_short" and item["loc"] in parents:

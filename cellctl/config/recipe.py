@@ -25,4 +25,6 @@ class Recipe(Section):
 
     def device(self, role: str) -> str:
         """Name of the device that takes a role."""
+        # By default the device with the role's own name, so that the usual cell needs no table of
+        # roles.
         return self.roles.get(role, role)

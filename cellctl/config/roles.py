@@ -84,6 +84,7 @@ def _lacking_for(cell: CellConfig, role: Role, device: str, key: str) -> Iterato
     if role.carried and carrier is None:
         yield ConfigIssue(f"{role.section}.{device}.carried_by", "(missing)", "a robot carries it")
     robot = found if isinstance(found, RobotConfig) else cell.robots.get(carrier or "")
+    # A camera has no poses of its own: what is taught for it belongs to the robot that carries it.
     place = device if isinstance(found, RobotConfig) else carrier
     for pose in role.poses if robot is not None else ():
         if robot is not None and pose not in robot.poses_deg:
@@ -96,4 +97,6 @@ def _offers(role: Role, driver: str) -> bool:
     try:
         return issubclass(plugins.load(GROUPS[role.section], driver), role.interface)
     except UnknownDriver:
+        # Its driver cannot be loaded, which is reported as such. Whether it would offer the
+        # interface is not known.
         return True
