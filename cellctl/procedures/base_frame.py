@@ -52,6 +52,7 @@ async def calibrate_base(
     its arc.
     """
     motions = _Turner(context, robot, tracker, turns)
+    # One axis at a time, because the line of an axis shows only while everything else is still.
     a1_stops = await motions.turn(0)
     a2_stops = await motions.turn(1)
     await motions.move(turns.start_rad)
@@ -76,6 +77,8 @@ class _Turner:
 
     async def turn(self, axis: int) -> list[AxisStop]:
         targets = _angles(self.turns, axis)
+        # Back to the start first: while one axis turns, all others must stand where the start has
+        # them.
         await self.move(self.turns.start_rad)
         stops = []
         for number, joints_rad in enumerate(targets, start=1):
@@ -83,7 +86,10 @@ class _Turner:
             await self.move(joints_rad)
             seen = await self.tracker.measure(self.turns.frames)
             prefix = self.turns.target_prefix
+            # The tracker also sees the targets of board and frame. They do not turn with the axis.
             flange = tuple(target for target in seen if target.name.startswith(prefix))
+            # The angles that the robot reports, not those that were commanded: it may have stopped
+            # a little beside.
             stops.append(AxisStop(self.robot.state().joints_rad, flange))
         return stops
 

@@ -1,4 +1,4 @@
-"""Where a head looks from while its cameras are calibrated."""
+"""The views from which a head looks at the board while its cameras are calibrated."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -27,6 +27,8 @@ def stereo_views(count: int, pivot_m: np.ndarray) -> list[RigidTransform]:
         rotation = Rotation.from_euler("ZYX", [90.0 * turned, tilt_y, tilt_x], degrees=True)
         shifts = TURNED_SHIFTS_M if turned else UPRIGHT_SHIFTS_M
         shift = (*shifts[index // 2 % len(shifts)], DISTANCE_CHANGES_M[index % 3])
+        # Turned about the board, not about the head: the board then stays in the middle of the
+        # field, however far the head tilts.
         swing = (
             RigidTransform.from_translation(pivot_m)
             * RigidTransform.from_rotation(rotation)

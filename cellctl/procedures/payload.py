@@ -60,8 +60,11 @@ async def identify_payload_on_cell(
     robot = arm.robot
     poses = plan_identification(
         robot.state().base_T_flange,
+        # With the part as the pivot the flange itself would travel, and the main axes with it,
+        # towards their limits.
         pivot_in_flange_m=np.zeros(3),
         half_angle_rad=float(np.radians(cone_deg)),
+        # One pose is the repeat. Six are the least that ``affine24`` can be fitted to.
         fit_poses=max(pose_count - HOLD_OUT_POSES - 1, 6),
         hold_out_poses=HOLD_OUT_POSES,
     )
@@ -97,6 +100,8 @@ async def still_wrench(
     """
     limits = np.array([STEADY_N] * 3 + [STEADY_N_M] * 3)
     for _ in range(STEADY_TRIES):
+        # Raw readings: a compensation that is active belongs to the old payload, and would be
+        # identified again as a part of the new one.
         raw = await _raw_samples(guard, SETTLE_S, AVERAGE_S)
         scatter = raw.std(axis=0)
         if (scatter < limits).all():
@@ -110,6 +115,8 @@ async def _raw_samples(guard: SampleSource, settle_s: float, average_s: float) -
     loop = asyncio.get_running_loop()
     begin_s = loop.time() + settle_s
     end_s = begin_s + average_s
+    # Waits for the sample, not for the time: samples come late when the machine is busy, and a
+    # sensor that went silent must not leave an average over fewer of them.
     while guard.latest().time_s < end_s:
         if loop.time() > end_s + READ_TIMEOUT_S:
             raise SensorSilent("no samples while reading a pose of the payload")

@@ -39,12 +39,17 @@ async def calibrate_head(
         await context.progress(number, len(poses), f"{station.name}: view")
         await _move(station, base_T_flange)
         pair = await station.camera.grab()
+        # In the order of OpenCV, width first; arrays have the height first.
         image_size = (pair.left.shape[1], pair.left.shape[0])
         view = await workers.run(
             detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
         )
+        # A view without the board is no fault: at the borders of the field it may be cut off. What
+        # all views together must cover, the solver checks.
         if view is not None:
             views.append(view)
+    # Back before the solution is tried: it may raise, and the head must not be left tilted over the
+    # board.
     await _move(station, poses[0])
     if not views:
         raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")

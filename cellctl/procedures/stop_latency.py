@@ -115,13 +115,18 @@ async def measure_stop_latency(
     for number, speed_m_s in enumerate(speeds, start=1):
         await safe_point(number, len(speeds))
         overruns.append(await _overrun(robot, direction, speed_m_s))
+        # A stop latches the robot; it takes no further motion before this.
         await robot.rearm()
+        # Back to where it began, so that the travel is known to be free each time.
         await robot.move_linear(home, speed_m_s=0.01, acceleration_m_s2=ACCELERATION_M_S2)
     data = np.array(speeds), np.array(overruns)
     return StopLatency(estimate_stop_latency(*data), *data)
 
 
 async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
+    # With an override on the pendant the arm is slower than commanded, and the slope of overrun
+    # against commanded speed would be a latency that is too short. Asked again after the stop,
+    # because the override may be turned on the way.
     require_full_speed(robot)
     start = robot.state().base_T_flange
     target = RigidTransform.from_translation(direction * TRAVEL_M) * start
@@ -133,14 +138,20 @@ async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
         await asyncio.sleep(RUN_S)
         state, request_s = robot.state(), asyncio.get_running_loop().time()
         seen_m = float((state.base_T_flange.translation - start.translation) @ direction)
+        # The newest report is up to one cycle of the robot old; at constant speed the way since
+        # then is known.
         at_request_m = seen_m + speed_m_s * (request_s - state.time_s)
         await robot.stop()
         await _aborted(motion)
     finally:
+        # Also after a fault: a motion that nobody awaits would go on without anyone to see how it
+        # ends.
         motion.cancel()
         await asyncio.gather(motion, return_exceptions=True)
     require_full_speed(robot)
     end_m = float((await _at_rest(robot) - start.translation) @ direction)
+    # Too near to its target, the arm was braking by itself, and the overrun says nothing about the
+    # stop.
     if end_m > TRAVEL_M - speed_m_s * 0.1:
         raise CommissioningFailed(
             f"at {speed_m_s / MM:.1f} mm/s the arm ran to its target instead of stopping"

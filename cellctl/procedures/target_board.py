@@ -37,10 +37,12 @@ async def place_board(
 ) -> BoardPlacement:
     """The board as head and large-field head see it, both at once.
 
-    ``flange_T_board``: where it lies under the head's robot, roughly, for it looks the same upside
-    down. Raises the faults of vision, and what the devices raise.
+    ``flange_T_board`` is roughly where the board lies under the head's robot. It is needed because
+    the board looks the same upside down. Raises the faults of vision, and what the devices raise.
     """
     head_T_board = station.flange_T_head.inv() * flange_T_board
+    # At once: a board that moved between the two measurements would show as a pose between the
+    # heads.
     in_head, in_large_field = await gather_or_cancel(
         _in_head(station, model, workers, head_T_board), _in_large_field(tracker, tracker_frames)
     )
@@ -62,6 +64,8 @@ async def _in_head(
                 pair.right,
                 model,
                 discs,
+                # The board has nine equal discs and looks the same after half a turn; only a
+                # predicted pose tells which disc is which.
                 camera_T_part=head_T_board,
                 search_radius_m=SEARCH_RADIUS_M,
             )
