@@ -1,4 +1,4 @@
-"""Files that are there whole or not at all, also after a power cut."""
+"""Files that are written as a whole or not at all, also when the power fails."""
 
 import os
 import tempfile
@@ -6,12 +6,18 @@ from pathlib import Path
 
 
 def write_durably(path: Path, data: bytes) -> None:
-    """Draft, its bytes to the disk, its name, then the folder's entry; raises ``OSError``."""
+    """Write a file so that after a power cut either the old or the new one is there, whole.
+
+    Returns when the disk has the bytes and the name. Raises ``OSError``.
+    """
     made = make_folder(path.parent)
+    # In the same folder: a rename is atomic only within one file system.
     draft = path.with_name(f"{path.name}.part")
     with draft.open("wb") as file:
         file.write(data)
         file.flush()
+        # Before the rename: without it the new name may reach the disk before the bytes, and a
+        # power cut leaves an empty file under the good name.
         os.fsync(file.fileno())
     draft.replace(path)
     sync_folder(path.parent)
@@ -23,6 +29,7 @@ def remove_durably(path: Path) -> None:
     """Remove a file if it is there; raises ``OSError``."""
     if path.exists():
         path.unlink()
+        # The name is an entry of the folder, and reaches the disk with it only.
         sync_folder(path.parent)
 
 
@@ -47,7 +54,7 @@ def may_write(folder: Path) -> bool:
 
 
 def sync_folder(folder: Path) -> None:
-    """Names of the folder to the disk; raises ``OSError``."""
+    """Have the disk store the names in a folder; raises ``OSError``."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         os.fsync(descriptor)

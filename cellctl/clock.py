@@ -6,6 +6,8 @@ from datetime import UTC, datetime
 
 def now_s() -> float:
     """Monotonic time in seconds, CLOCK_MONOTONIC: the same in every process of this PC."""
+    # Named instead of ``time.monotonic``, because stamps of guard and daemon are compared with each
+    # other.
     return time.clock_gettime(time.CLOCK_MONOTONIC)
 
 

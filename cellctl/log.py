@@ -39,6 +39,8 @@ def configure(*, level: LogLevel = LogLevel.INFO) -> None:
         processors=[*before, *after],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level)),
         logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+        # Loggers are made at import, before this function runs. One that was used by then would
+        # otherwise keep the old set-up.
         cache_logger_on_first_use=False,
     )
     handler = logging.StreamHandler(sys.stderr)

@@ -40,7 +40,9 @@ _SETTINGS: dict[Any, Any] = {
     "xtick.color": MUTED,
     "ytick.color": MUTED,
     "legend.frameon": False,
+    # Names inside an SVG are random without it, and a report made twice would differ.
     "svg.hashsalt": "cellctl",
+    # Letters as outlines: a report looks the same on a PC without the font.
     "svg.fonttype": "path",
 }
 
@@ -59,6 +61,7 @@ def to_svg(figure: Figure) -> str:
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     svg = stream.getvalue()
     size = re.compile(r'width="[\d.]+pt" height="[\d.]+pt"')
+    # Without the XML header, which is not allowed inside HTML, and as wide as the page.
     return size.sub('width="100%"', svg[svg.index("<svg") :], count=1)
 
 

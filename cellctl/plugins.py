@@ -25,6 +25,8 @@ def load(group: str, name: str) -> type:
     for point in entry_points(group=group, name=name):
         try:
             loaded = point.load()
+        # A driver whose vendor's library is missing is a fault of this cell file, not a crash of
+        # the command.
         except ImportError as error:
             raise UnknownDriver(f"{group} '{name}' cannot be imported: {error}") from error
         if not isinstance(loaded, type):

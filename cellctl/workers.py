@@ -47,6 +47,8 @@ class VisionWorkers:
 
     def revive(self) -> None:
         """New workers in the place of those that a death has made useless; else nothing."""
+        # A pool whose worker was killed takes no work ever again; the standard library offers no
+        # other remedy.
         if self._broken:
             self._pool.shutdown(wait=False, cancel_futures=True)
             self._pool, self._broken = _pool(self._count), False
@@ -88,6 +90,7 @@ def _deaf_children() -> Iterator[None]:
 def _pool(count: int) -> ProcessPoolExecutor:
     return ProcessPoolExecutor(
         max_workers=count,
+        # ``fork`` would copy the daemon with its locks, sockets and event loop into every worker.
         mp_context=multiprocessing.get_context("spawn"),
         initializer=_initialise,
     )
@@ -99,4 +102,6 @@ def _initialise() -> None:
 
     for number in _DEAF_TO:
         signal.signal(number, signal.SIG_IGN)
+    # Two workers are the parallelism. Threads inside each made the edge detection slower when
+    # measured.
     cv2.setNumThreads(1)
