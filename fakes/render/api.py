@@ -100,6 +100,7 @@ def expose(
     clean: tuple[Image, Image], options: RenderOptions, rng: np.random.Generator
 ) -> tuple[Grey, Grey]:
     """One exposure of an unmoved scene: new noise, 8 bits."""
+    # Two draws of one generator: the noise of both cameras is independent, and still repeatable.
     left, right = clean
     return exposed(left, options, rng), exposed(right, options, rng)
 

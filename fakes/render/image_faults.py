@@ -1,4 +1,4 @@
-"""Things that go wrong in front of or inside the cameras, by name."""
+"""Faults in front of or inside the cameras, by name."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -57,5 +57,7 @@ def _occluded(picture: Image) -> Image:
     pixels = np.rint(points * [width // 8, height // 8]).astype(np.int32)
     cv2.polylines(shade, [pixels], False, 1.0, height // 14)  # noqa: FBT003
     shade = cv2.GaussianBlur(shade, (0, 0), 3.0)
+    # Drawn at an eighth of the size and enlarged: out of focus it has no detail, and this is far
+    # cheaper than a blur of the full picture.
     cover = np.asarray(cv2.resize(shade, (width, height)), dtype=np.float32)
     return np.asarray(picture * (1 - cover) + 25 * cover, dtype=np.float32)

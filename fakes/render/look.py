@@ -21,12 +21,14 @@ def options_of(rendering: Rendering) -> RenderOptions:
         dark_grey=hole,
         wall_grey=hole + rendering.wall_visibility * (plate - hole),
         cone_grey=plate * (darkest + brightest) / 2,
+        # The scenario gives the extremes, the renderer needs mean and relative variation.
         cone_contrast=(brightest - darkest) / (brightest + darkest),
         thread_grey=plate * rendering.thread_levels[1],
         thread_root_grey=plate * rendering.thread_levels[0],
         white_grey=rendering.board_bright_level,
         black_grey=rendering.board_dark_level,
         texture_grey=rendering.texture_levels,
+        # The scenario counts what is seen in one image; a part is larger and is worn all over.
         scratches_per_m2=rendering.scratches / _IMAGE_AREA_M2,
         false_circles_per_m2=rendering.false_circles / _IMAGE_AREA_M2,
         light_gradient_per_m=rendering.light_gradient / _IMAGE_WIDTH_M,

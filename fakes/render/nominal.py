@@ -75,6 +75,7 @@ def nominal_plate(
     """
     holes = nominal_holes(kind)
     triangle = holes[:3] if head == 1 else holes[3:]
+    # A head sees only its own triangle of a part that is a metre long.
     centroid = np.mean([hole.position_m for hole in triangle], axis=0)
     centroid_T_part = RigidTransform.from_translation([-centroid[0], -centroid[1], 0.0])
     pose = facing_pose(shift_m=shift_m, tilt_deg=tilt_deg) * centroid_T_part
@@ -87,6 +88,7 @@ def facing_pose(
     tilt_deg: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> RigidTransform:
     """An object's frame in front of the head, z towards the middle between both cameras."""
+    # Half of the toe-in: the plate then faces the middle between both cameras, as on a real stand.
     half_way = Rotation.from_euler("y", -10, degrees=True)
     towards = half_way * Rotation.from_euler("x", 180, degrees=True)
     rotation = towards * Rotation.from_euler("xyz", tilt_deg, degrees=True)

@@ -47,6 +47,7 @@ def clean_picture(
     seen = [item for item in objects if is_seen(view, pose_of(item))]
     if not seen:
         return image
+    # Painter's algorithm: nearer objects are laid over farther ones.
     seen.sort(key=lambda item: -float(pose_of(item).translation[2]))
     azimuth = light_direction(light_seed)
     draw = partial(_draw, view, image, seen=seen, options=options, light_azimuth=azimuth)
@@ -56,7 +57,11 @@ def clean_picture(
     blur_px = view.lens.blur_px
     measured = draw(seen[-1], blur_px=blur_px)
     light = light_field(view, pose_of(seen[-1]), light_seed, options)
+    # The light of the measured object is laid over everything behind it too, which is only looked
+    # at.
     image *= light
+    # Before the measured details, which bring their own blur from finer cells: blurred once more,
+    # they would be too soft.
     image = blurred(image, blur_px)
     for patch in measured:
         patch.lay_over(image, light)

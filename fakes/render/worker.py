@@ -58,11 +58,14 @@ def render_frame(
     scene: CameraScene, options: RenderOptions, faults: frozenset[str] = frozenset()
 ) -> Frame:
     """One exposure; ``faults`` are names of ``SCENE_FAULTS`` and ``PICTURE_FAULTS``."""
+    # In one fixed order, so that the same set of faults always gives the same picture.
     for name in _in_order(SCENE_FAULTS, faults):
         scene = SCENE_FAULTS[name](scene)
     pictures = _clean(scene, options)
     for name in _in_order(PICTURE_FAULTS, faults):
         pictures = PICTURE_FAULTS[name](pictures)
+    # The seed comes with the scene, because the worker has no memory of how many exposures there
+    # were.
     rng = np.random.default_rng(scene.noise_seed)
     if isinstance(scene.optics, MonoTruth) and scene.optics.colour:
         (picture,) = pictures
@@ -86,6 +89,8 @@ def fingerprint(value: Any) -> Any:
 
 
 def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
+    # What differs from one exposure to the next of an unmoved scene is no part of the clean
+    # picture.
     unmoved = replace(scene, time_s=0.0, noise_seed=0)
     key = fingerprint((unmoved, options))
     pictures = _kept.pop(key, None)

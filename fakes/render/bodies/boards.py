@@ -31,6 +31,8 @@ def draw_target_board(
         if window is None:
             continue
         x_disc, y_disc = surface_map(view, board.camera_T_board, window)
+        # In the plane of the board, where a disc is a circle: perspective and lens make the oval,
+        # so that the centre of the image ellipse is not the image of the centre, as in reality.
         outside = coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m)
         grey = (1 - outside) * options.white_grey
         patches.append(Patch.from_cells(window, outside, grey, blur_px))
@@ -50,8 +52,11 @@ def draw_chessboard(
     else:
         pattern = charuco_print(board)
     window = Window.full(view)
+    # A bow moves the corners in the image by parallax. That is what a calibration with an assumed
+    # flat board gets wrong, so it must be in the picture.
     x, y = surface_map(view, board.camera_T_board, window, z_m=_bow(board), nodes=NODES_FULL)
     draw_face(image, x, y, board.size_m, options.white_grey)
+    # As a factor and not as a grey: the print then takes the light that falls on the paper.
     dark = np.float32(options.black_grey / options.white_grey)
     return [Patch(window, dark + (1 - dark) * white_share(pattern, x, y, blur_px))]
 

@@ -53,12 +53,16 @@ def marks_of(
     seed: int, size_m: tuple[float, float], holes: tuple[SceneHole, ...], per_m2: float
 ) -> tuple[Mark, ...]:
     """False circles of a part, clear of its holes."""
+    # A generator for each kind of clutter, from the seed of the part: more scratches do not move
+    # the stains, and every exposure of a part shows the same ones.
     rng = np.random.default_rng([seed, 21])
     places: list[Mark] = []
     for kind, share, radii_m, strengths in _KINDS:
         for _ in range(round(size_m[0] * size_m[1] * per_m2 * share)):
             radius_m, strength = float(rng.uniform(*radii_m)), float(rng.uniform(*strengths))
             place = rng.uniform(-0.5, 0.5, 2) * size_m
+            # A stain over a rim would spoil the truth of that hole. Scratches may cross rims,
+            # because real ones do.
             if _is_clear(place, radius_m, holes):
                 x, y = (float(value) for value in place)
                 places.append(Mark(kind, (x, y), radius_m, strength))
@@ -84,7 +88,7 @@ def scratches_of(seed: int, size_m: tuple[float, float], per_m2: float) -> tuple
 def draw_clutter(
     view: View, image: Image, plate: ScenePlate, options: RenderOptions, light_azimuth: float
 ) -> None:
-    """Change the face of ``plate`` in ``image`` by what it has met in its life."""
+    """Draw the scratches, stains and marks of ``plate`` into ``image``."""
     _draw_scratches(view, image, plate, options)
     for mark in marks_of(plate.seed, plate.size_m, plate.holes, options.false_circles_per_m2):
         factor = _mark_patch(view, plate, mark, light_azimuth)
@@ -99,11 +103,15 @@ def _draw_scratches(view: View, image: Image, plate: ScenePlate, options: Render
     for scratch in scratches_of(plate.seed, plate.size_m, options.scratches_per_m2):
         points = np.column_stack([scratch.points_m, np.zeros(len(scratch.points_m))])
         in_view = (view.view_T_head * pose).apply(points)
+        # The polynomial of the lens folds back far outside of the image, and would draw such points
+        # into it.
         if np.abs(in_view[:, :2] / in_view[:, 2:]).max() > 0.5:
             continue
         pixels = to_pixels(view, pose, points)
         if (pixels.max(axis=0) > 0).all() and (pixels.min(axis=0) < limits).all():
             fixed = np.rint(pixels * 2**_SHIFT).astype(np.int32)
+            # Collected by strength, because one mask of the size of the image for each scratch
+            # would cost more than all the rest of the picture.
             lines.setdefault(scratch.strength, []).append(fixed)
     for strength, polylines in lines.items():
         mask = np.zeros(image.shape, np.uint8)

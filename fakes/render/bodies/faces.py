@@ -60,6 +60,8 @@ def draw_sides(
     points = np.concatenate(
         [np.column_stack([outline, np.full(len(outline), -z)]) for z in (0.0, thickness_m)]
     )
+    # The outlines of the face and of the bottom together: their convex hull is what a plate of some
+    # thickness covers.
     pixels = to_pixels(view, pose, points).astype(np.float32)
     hull = cv2.convexHull(pixels)
     mask = np.zeros(image.shape, np.uint8)
@@ -70,6 +72,8 @@ def draw_sides(
 def _inside(coordinate: Array | Image, half_m: float) -> Image:
     """Share of each pixel within ±``half_m``, to first order along the steeper image axis."""
     rows, columns = (size // 2 for size in coordinate.shape)
+    # The size of a pixel is taken in the middle of the image for all of it: outlines of plates are
+    # only looked at, never measured.
     near = coordinate[rows : rows + 2, columns : columns + 2]
     pixel_m = np.float32(np.hypot(near[0, 1] - near[0, 0], near[1, 0] - near[0, 0]))
     distance = np.abs(coordinate).astype(np.float32, copy=False)

@@ -1,4 +1,4 @@
-"""Holes with depth: what one sees inside their rim.
+"""Holes with depth: the surfaces that are seen inside their rim.
 
 Between two parallel planes a ray moves along a straight line, so its course inside a hole follows
 from where it meets the face and where it meets the plane of the hole's end. The wall is the
@@ -48,6 +48,8 @@ class _Rays:
         """Depth at which a ray from inside meets a cylinder; 0 for rays that start outside."""
         a = self.slope_x**2 + self.slope_y**2 + 1e-12
         b = self.x * self.slope_x + self.y * self.slope_y
+        # The ray meets the cylinder where |p + d s|² = r²: a quadratic equation in the depth d. Of
+        # its two solutions the larger one is the wall that the ray runs into.
         c = self.x**2 + self.y**2 - radius_m**2
         return np.asarray((-b + np.sqrt(np.maximum(b * b - a * np.minimum(c, 0), 0))) / a)
 
@@ -90,6 +92,8 @@ def hole_patch(
     """
     pose = plate.camera_T_part
     rim = to_pixels(view, pose, circle(hole, outer_diameter(hole), 0.0))
+    # Only the neighbourhood of a hole is divided into fine cells, because their number decides the
+    # time that a picture takes.
     window = window_around(view, rim, margin_px(blur_px), options.sub_samples)
     if window is None:
         return None
@@ -103,6 +107,8 @@ def hole_patch(
     if hole.kind != "pin":
         ring = coverage(rays.radius(depth_m) - radius_m)
         grey += visible * ring * _ring_grey(rays, hole, options, azimuth)
+        # From the front to the back: each surface takes its share of what is still visible, and
+        # leaves the rest.
         visible = visible * (1 - ring)
     if hole.kind == "thread":
         visible = _thread(rays, hole, options, azimuth, visible=visible, grey=grey)
@@ -115,6 +121,8 @@ def hole_patch(
 
 def _rays(view: View, pose: RigidTransform, hole: SceneHole, window: Window) -> _Rays:
     x, y = surface_map(view, pose, window)
+    # Two planes are enough: between them a ray is a straight line, so its place at any depth
+    # follows.
     x_end, y_end = surface_map(view, pose, window, z_m=-hole.depth_m)
     x_hole, y_hole = hole.position_m
     slope_x, slope_y = (x_end - x) / hole.depth_m, (y_end - y) / hole.depth_m
@@ -163,6 +171,8 @@ def _thread(
     lit = 0.75 - 0.25 * np.cos(angle - azimuth)
     root_m = hole.diameter_m / 2
     for number in range(_TURNS):
+        # The depth of the crest grows with the azimuth, as on a helix. Drawn as rings the turns
+        # would look alike on all sides, which those of a tapped thread do not.
         depth = np.maximum(THREAD_PITCH_M * (number - 0.5 + turn), 0.0)
         full = np.minimum(depth / (1.5 * THREAD_PITCH_M), 1.0)
         crest_m = root_m * (1 - (1 - _CREST) * full)
@@ -184,6 +194,7 @@ def _bottom_grey(
     if below is None or not hole.through:
         return bottom
     x, y = surface_map(view, below.camera_T_part, window)
+    # Little light comes through a hole of this size onto the part below.
     shadowed = 0.22 * options.plate_grey
     bottom += (shadowed - options.dark_grey) * (options.wall_grey > options.dark_grey)
     for other in below.holes:

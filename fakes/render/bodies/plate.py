@@ -42,12 +42,14 @@ def draw_plate(
         grey=0.4 * options.plate_grey,
         seen_m=(np.array([x.min(), y.min()]), np.array([x.max(), y.max()])),
     )
+    # Nothing of it can be measured, so a plain face is enough.
     if above is not None and not shown:
         draw_face(image, x, y, plate.size_m, options.plate_grey)
         return []
     face: Image | float = options.plate_grey
     if options.texture_grey > 0:
         face = sample(brushed_tile(plate.seed), x, y)
+        # In place, because each of these arrays has five million pixels.
         face *= np.float32(options.texture_grey)
         face += np.float32(options.plate_grey)
     draw_face(image, x, y, plate.size_m, face)

@@ -56,8 +56,10 @@ def charuco_print(board: SceneCharucoBoard) -> Print:
         column, row = (np.mean(corners, axis=0)[:2] // board.square_m).astype(int)
         marker = cv2.aruco.generateImageMarker(dictionary, int(number), bits) > 0
         top, left = row * per_square + 1, column * per_square + 1
+        # Drawn bit by bit as fields, so that markers have the same exact edges as the squares.
         fields[top : top + bits, left : left + bits] = marker
     white = np.ones((len(lines_y) + 1, len(lines_x) + 1), dtype=bool)
+    # OpenCV counts the rows of a board downwards, this board has y upwards.
     white[1:-1, 1:-1] = fields[::-1]
     return Print(lines_x, -lines_y[::-1], white)
 
@@ -79,6 +81,8 @@ def white_share(pattern: Print, x_m: Array, y_m: Array, blur_px: float) -> Image
     field = pattern.white.astype(np.uint8)[row, column]
     reach = 1 + int(np.ceil(REACH * blur_px))
     kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
+    # Only where another field lies within reach of the blur; all other pixels are plain black or
+    # white.
     places = np.nonzero(cv2.dilate(field, kernel) != cv2.erode(field, kernel))
     side_x = _nearest_line(pattern.lines_x, x_m, *places)
     side_y = _nearest_line(pattern.lines_y, y_m, *places)
@@ -89,6 +93,8 @@ def white_share(pattern: Print, x_m: Array, y_m: Array, blur_px: float) -> Image
     share_x, share_y = side_x.share(blur_px), side_y.share(blur_px)
     near = near_near + share_x * (near_far - near_near)
     far = far_near + share_x * (far_far - far_near)
+    # Where two lines cross at an angle, the share beyond both is not the product of the single
+    # shares.
     saddle = far_far - far_near - near_far + near_near
     value = near + share_y * (far - near) + saddle * _crossing(side_x, side_y, blur_px)
     result = field.astype(np.float32)
@@ -109,7 +115,11 @@ class _Line:
     def share(self, blur_px: float) -> Array:
         """Share of the pixel beyond the line."""
         if blur_px <= 0:
+            # Without blur only the pixel's box is left, for which there is an exact formula.
             return half_plane(self.distance, self.normal_x, self.normal_y)
+        # The pixel's own box has a variance of 1/12. Adding it to that of the Gaussian gives the
+        # right width; the next term corrects the shape, because a box has lighter tails than a
+        # Gaussian.
         sigma2 = blur_px**2 + _PIXEL_VARIANCE
         z = self.distance / np.sqrt(sigma2)
         excess = -(self.normal_x**4 + self.normal_y**4) / (120 * sigma2**2)
@@ -148,6 +158,8 @@ def _lookup(lines: Array, coordinate: Array) -> NDArray[np.int16]:
     """Index of the field of each coordinate, right except within a hair of a line."""
     start, stop = lines[0] - 1e-3, lines[-1] + 1e-3
     step = (stop - start) / _LOOKUP
+    # A table instead of a search for each of five million pixels. It is wrong only within a step of
+    # a line, and pixels there are computed exactly afterwards.
     table = np.searchsorted(lines, start + (np.arange(_LOOKUP) + 0.5) * step).astype(np.int16)
     place = ((coordinate - start) / step).astype(np.int32)
     return np.asarray(table[np.clip(place, 0, _LOOKUP - 1)])

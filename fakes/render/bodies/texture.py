@@ -30,8 +30,11 @@ def brushed_tile(seed: int) -> Image:
     for response, weight in ((strokes, 1.0), (coarse, 0.6), (grain, 0.35), (mottle, 0.5)):
         part = np.fft.irfft2(noise * response, s=_SHAPE)
         tile += weight * part / part.std()
+        # Another part of the same noise for each layer: drawn from the same frequencies, the layers
+        # would add up to one.
         noise = np.roll(noise, 7, axis=1)
     result: Image = ((tile - tile.mean()) / tile.std()).astype(np.float32)
+    # Shared by all pictures of a part through the cache.
     result.setflags(write=False)
     return result
 

@@ -30,6 +30,8 @@ class Patch:
     @classmethod
     def from_cells(cls, window: Window, through: Array, grey: Array, blur_px: float) -> Self:
         """From values of the window's cells, through blur and pixel box."""
+        # Blurred in cells and averaged to pixels afterwards: the other way round the sampled kernel
+        # would depend on where in a pixel an edge lies.
         sigma = blur_px * window.sub
         return cls(
             window,

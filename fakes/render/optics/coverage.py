@@ -17,6 +17,8 @@ def coverage(signed: Array) -> Array:
     """
     gradient_y, gradient_x = np.gradient(signed)
     length = np.hypot(gradient_x, gradient_y)
+    # In the very middle of a circle the gradient vanishes; there the distance is large and decides
+    # alone.
     length = np.maximum(length, np.finfo(float).tiny)
     return half_plane(signed / length, gradient_x / length, gradient_y / length)
 
@@ -27,6 +29,8 @@ def half_plane(distance: Array, normal_x: Array, normal_y: Array) -> Array:
     flat = np.maximum(np.minimum(np.abs(normal_x), np.abs(normal_y)), 1e-9)
     reach = np.minimum(np.abs(distance), (steep + flat) / 2)
     straight = reach / np.maximum(steep, 1e-9)
+    # The edge cuts a corner off the square: the rest is a triangle. Nearer to the middle it cuts
+    # two opposite sides, and the share is linear in the distance.
     corner = 0.5 - ((steep + flat) / 2 - reach) ** 2 / (2 * np.maximum(steep * flat, 1e-18))
     part = np.where(reach <= (steep - flat) / 2, straight, corner)
     return np.asarray(0.5 + np.copysign(part, distance))

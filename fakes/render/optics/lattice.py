@@ -90,12 +90,14 @@ def _chebyshev_nodes(count: int) -> Array:
     return np.asarray(np.cos(np.pi * (np.arange(count) + 0.5) / count))
 
 
+# Windows of holes come in few sizes, and every exposure needs the same matrices again.
 @lru_cache(maxsize=256)
 def _interpolation(count: int, nodes: int) -> NDArray[np.float64]:
     """Matrix (count, nodes) from node values to ``count`` cell centres, barycentric form."""
     unit = _chebyshev_nodes(nodes)
     weights = (-1.0) ** np.arange(nodes) * np.sin(np.pi * (np.arange(nodes) + 0.5) / nodes)
     cells = (2 * np.arange(count) + 1) / count - 1
+    # A cell that coincides with a node would divide by zero; its value is that of the node.
     difference = cells[:, None] - unit
     exact = np.abs(difference) < 1e-15
     terms = weights / np.where(exact, 1.0, difference)

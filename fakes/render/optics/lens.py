@@ -75,6 +75,8 @@ def undistort(lens: LensTruth, pixels: Array) -> Array:
         yn = yn + (jxx * ey - jxy * ex) / determinant
         if max(np.abs(ex).max(), np.abs(ey).max()) < _NEWTON_TOLERANCE:
             return np.column_stack([xn, yn])
+    # A drawn lens can have a distortion that folds the image. A picture through it would be wrong
+    # without anybody noticing.
     raise ValueError("the lens model cannot be inverted over the whole image")
 
 

@@ -38,8 +38,11 @@ def light_field(
     def relative(pixels: Array) -> Array:
         points = meet_surface(view_T_surface, undistort(view.lens, pixels), 0.0)
         along = (points - lamp_centre) @ axis
+        # A plain line would make the light negative at the far end of a large part.
         lamp = 1 + _DEEPEST * np.tanh(options.light_gradient_per_m * along / _DEEPEST)
         lamp += options.light_ripple * np.sin(2 * np.pi * along / options.light_ripple_m)
+        # A highlight is a reflection and lies elsewhere for each camera, so no measurement may take
+        # the light for the same in both.
         spot = points - centre - 0.06 * np.array(highlight)
         lamp += options.gloss * np.exp(-0.5 * (spot[:, 0] / _HIGHLIGHT_WIDTH_M) ** 2)
         lamp += 0.2 * options.gloss * np.cos(spot[:, 1] / _HIGHLIGHT_WIDTH_M + phase)

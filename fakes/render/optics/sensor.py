@@ -56,5 +56,7 @@ def exposed(clean: Image, options: RenderOptions, rng: np.random.Generator) -> G
     if options.noise_grey <= 0:
         return np.asarray(cv2.add(clean, np.zeros_like(clean), dtype=cv2.CV_8U), dtype=np.uint8)
     noise = rng.standard_normal(clean.shape, dtype=np.float32)
+    # Shot noise grows with the light, so the bright side of an edge is noisier than the dark one.
     noise *= noise_sigma(clean, options)
+    # OpenCV adds, rounds and clips in one pass over five million pixels.
     return np.asarray(cv2.add(clean, noise, dtype=cv2.CV_8U), dtype=np.uint8)
