@@ -18,7 +18,7 @@ _DATA_BYTES = 8
 class CanConnection(Connection):
     """Each ``send`` is one command message, each received message one record of ten bytes.
 
-    Interfaces that offer no descriptor are read by python-can's own thread, which rings an eventfd.
+    Interfaces without a descriptor are read by python-can's own thread, which signals an eventfd.
     """
 
     def __init__(self, config: SriConfig) -> None:
@@ -26,6 +26,7 @@ class CanConnection(Connection):
         self._config = config
         self._bus: can.BusABC | None = None
         self._notifier: can.Notifier | None = None
+        # Bounded: should nobody read, the oldest messages are lost, and the sequence shows the gap.
         self._waiting: deque[bytes] = deque(maxlen=65_536)
         self._bell = -1
 
@@ -38,6 +39,8 @@ class CanConnection(Connection):
                 interface=config.can_interface,
                 channel=config.can_channel,
                 can_filters=[
+                    # Filtered by the interface: on a bus with other devices their messages would
+                    # each wake the guard.
                     {"can_id": number, "can_mask": 0x7FF, "extended": False}
                     for number in config.can_data_ids
                 ],
@@ -46,6 +49,8 @@ class CanConnection(Connection):
         except (can.CanError, OSError, ValueError, ImportError) as error:
             raise faults.cannot_connect(self.peer, error) from error
         try:
+            # The guard waits in ``select`` for all of its links at once, so every link must have a
+            # descriptor.
             self._bus.fileno()
         except NotImplementedError:
             self._bell = os.eventfd(0, os.EFD_NONBLOCK)
@@ -58,6 +63,7 @@ class CanConnection(Connection):
     def close(self) -> None:
         """Leave the bus."""
         if self._notifier is not None:
+            # The thread first, because it reads from the bus that is closed next.
             self._notifier.stop()
         if self._bus is not None:
             with contextlib.suppress(can.CanError, OSError):
@@ -108,6 +114,7 @@ class CanConnection(Connection):
 
     def _polled(self, bus: can.BusABC) -> list[bytes]:
         found: list[bytes] = []
+        # All that wait, because one wake-up may stand for several messages.
         while (message := bus.recv(0.0)) is not None:
             found += _record(message)
         return found

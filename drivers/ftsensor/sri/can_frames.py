@@ -31,10 +31,14 @@ class TripleDecoder:
         for identifier, payload in RECORD.iter_unpack(data):
             if identifier not in self._ids:
                 continue
+            # With neither counter nor check, values of two samples could be joined to one that
+            # never was. Only an unbroken order of the three identifiers makes a sample.
             if identifier != self._ids[len(self._parts) // 2]:
                 self._tear(identifier)
                 if identifier != self._ids[0]:
                     continue
+            # Counted as a missing number, so that the clock and the counters see the gap as on the
+            # other transports.
             if not self._parts and self._torn:
                 self._torn = False
                 self._count()

@@ -78,12 +78,16 @@ class SriConfig(BaseModel):
             if not self.device:
                 raise ValueError("transport serial needs `device`")
             frames_hz = self.baud / _BITS_PER_BYTE / self.layout.total_bytes
+            # A line that is too slow does not fail: the box falls behind, and its samples come
+            # later and later.
             if self.rate_hz / self.points > frames_hz:
                 most = int(frames_hz * self.points)
                 raise ValueError(f"{self.baud} baud carries at most {most} Hz in this format")
         if self.transport == "can":
             if not self.can_channel:
                 raise ValueError("transport can needs `can_channel`")
+            # The messages have a fixed layout of two floats each; nothing on CAN can ask for
+            # another one.
             if (self.unit, self.points) != ("E", 1):
                 raise ValueError("on CAN the box sends unit E, one point a frame")
         if sum(self.filter_weights) <= 0:

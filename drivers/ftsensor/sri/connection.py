@@ -1,4 +1,4 @@
-"""What the driver needs from a transport: bytes, a descriptor, and no waiting."""
+"""The interface of a transport: bytes and a descriptor, without waiting."""
 
 from abc import ABC, abstractmethod
 

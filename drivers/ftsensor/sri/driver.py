@@ -48,6 +48,8 @@ class SriSensor(FtSensor):
         session, self._opened = self._session, False
         if session is not None and session.setup is not None:
             try:
+                # Left streaming, the box would fill the next connection with frames before it
+                # answers anything.
                 self._link.connection.send(self._link.stop)
             except LinkLost:
                 self._end()
@@ -64,11 +66,14 @@ class SriSensor(FtSensor):
             raise LinkLost(f"force sensor at {self._link.connection.peer} is not open")
         deadline_s = now_s() + timeout_s
         while True:
+            # What came with the first frame while ``open`` was waiting must not be lost.
             samples = self._ready or self._pump()
             self._ready = []
             left_s = deadline_s - now_s()
             if samples or left_s <= 0.0:
                 return tuple(samples)
+            # In short pieces, because time-outs of a start-up that runs meanwhile have to be looked
+            # at.
             self._link.connection.wait(min(left_s, _LONGEST_WAIT_S))
 
     def health(self) -> FtHealth:
@@ -101,8 +106,12 @@ class SriSensor(FtSensor):
             return self._samples(time_s)
         except LinkError:
             self._end()
+            # During ``open`` the caller has to hear of it. Later the stream comes back by itself,
+            # and the silence until then is judged by the guard.
             if not self._opened:
                 raise
+            # Without a pause a box that refuses connections would keep the guard busy with nothing
+            # else.
             self._retry_s = time_s + self._config.reconnect_s
             return []
 
@@ -114,6 +123,8 @@ class SriSensor(FtSensor):
         if not frames:
             return []
         if not was_streaming and session.setup is not None:
+            # A new stream has a new numbering and a new phase: joined to the old one it would show
+            # a gap that never was, and times that are off.
             self._sampler.restart(session.setup.convert)
             self._firmware = session.setup.firmware
             self._reconnects += self._opened

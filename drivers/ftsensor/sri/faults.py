@@ -1,4 +1,4 @@
-"""Where errors of sockets, serial lines and CAN, and the box's own words, become faults."""
+"""Translates errors of sockets, serial lines and CAN, and the answers of the box, to faults."""
 
 from cellctl.errors.force import SensorSetupWrong
 from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout

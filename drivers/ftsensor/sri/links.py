@@ -1,4 +1,4 @@
-"""What belongs together on each transport: connection, decoder, start-up and stop."""
+"""The parts that belong to each transport: connection, decoder, start-up and stop."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

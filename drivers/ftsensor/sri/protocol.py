@@ -103,6 +103,8 @@ class StreamDecoder:
                 return [frame]
         buffer += data
         found: list[Reply | Frame] = []
+        # One pass with an index and one deletion at its end: deleting after every item would move
+        # the rest of the buffer each time.
         at, size = 0, len(buffer)
         while at < size:
             item, end = self._item(at, size)
@@ -124,6 +126,8 @@ class StreamDecoder:
             frame = self._frame(bytes(buffer[at:end]))
             if frame is not None:
                 return frame, end
+            # The header may have been data: the search goes on one byte later, not behind the
+            # supposed frame.
             self.checksum_errors += 1
         elif buffer.startswith(_REPLY_START, at):
             match = _REPLY.match(buffer, at)
@@ -145,6 +149,7 @@ class StreamDecoder:
 
     def _may_become_reply(self, at: int, size: int) -> bool:
         """A reply is printable up to its CR LF; anything else after ACK+ is data."""
+        # Data that look like the beginning of a reply must not hold the stream up for ever.
         if size - at >= _LONGEST_REPLY:
             return False
         match = _MAYBE_REPLY.match(self._buffer, at)
@@ -164,6 +169,7 @@ class StreamDecoder:
 
 
 def _reply(match: re.Match[bytes]) -> Reply:
+    # How the box words an error is not documented; anything but the one known good end is none.
     ok = match["end"] == b"$OK"
     return Reply(match["name"].decode(), match["value"].decode("ascii", "replace"), ok)
 
@@ -190,6 +196,8 @@ def parse_format(text: str) -> DataFormat:
     kind, _, numbers = weights.strip("()").partition(":")
     if kind != "WMA":
         raise ValueError(f"unknown filter in {text!r}")
+    # Parsed and compared by its fields, because the box answers in its own spelling: weights as
+    # floats, for example.
     names = tuple(name.strip() for name in channels.strip("()").split(","))
     return DataFormat(names, unit, int(points), tuple(float(w) for w in numbers.split(",")))
 

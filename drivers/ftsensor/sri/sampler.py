@@ -35,6 +35,8 @@ class Sampler:
     def take(self, frames: list[Frame], receive_s: float) -> list[WrenchSample]:
         """Samples of frames that arrived together, oldest first."""
         found: list[WrenchSample] = []
+        # Of samples that arrive in one read, only the last can be new; the others were taken
+        # earlier.
         behind = len(frames) * self._points
         for frame in frames:
             gap = self._gap(frame.number)
@@ -55,6 +57,7 @@ class Sampler:
         last, self._last = self._last, number
         if last is None:
             return 0
+        # The number has 16 bits and wraps about once a minute at 1 kHz.
         gap = (number - last - 1) % _NUMBERS
         if gap >= _RENUMBERED:
             self.clock.restart()
@@ -64,9 +67,13 @@ class Sampler:
     def _sample(
         self, receive_s: float, time_s: float, number: int, point: tuple[float, ...]
     ) -> WrenchSample | None:
+        # Spelled out in six plain variables: this runs for every sample in the guard process, where
+        # arrays cost many times as much (decision 0003).
         (a, b, c, d, e, f), at_end = self._convert(point)
         total = a + b + c + d + e + f
         if total - total != 0.0:  # NaN and infinities do not cancel
+            # Dropped and counted, never passed on: comparisons with NaN are false, so no limit
+            # would notice it.
             self.invalid += 1
             return None
         sign = self._sign

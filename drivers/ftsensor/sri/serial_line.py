@@ -24,7 +24,12 @@ class SerialConnection(Connection):
         self.close()
         try:
             self._port = serial.Serial(
-                self.peer, self._baud, timeout=0, write_timeout=0.5, exclusive=True
+                # Exclusive: a terminal program left open on the line would take half of the bytes.
+                self.peer,
+                self._baud,
+                timeout=0,
+                write_timeout=0.5,
+                exclusive=True,
             )
         except (serial.SerialException, ValueError) as error:
             raise faults.cannot_connect(self.peer, error) from error

@@ -69,6 +69,7 @@ class Session:
         frames = self._receive(now_s)
         if frames:
             self._begin_stream()
+            # From here on each frame moves the limit, so a stream that stops ends the session.
             self._deadline_s = now_s + self._config.first_frame_timeout_s
         elif now_s > self._deadline_s or self._quiet(now_s):
             self._time_out(now_s)
@@ -93,8 +94,11 @@ class Session:
         frames: list[Frame] = []
         for item in self._decoder.feed(data):
             if isinstance(item, Frame):
+                # Frames before the end of the set-up may still have the format of the session
+                # before.
                 if self.setup is not None:
                     frames.append(item)
+            # A late answer to another question, such as the stop, must not pass for this one.
             elif self._waiting is not None and item.name == self._waiting.name:
                 self._advance(item, now_s)
         return frames

@@ -58,8 +58,12 @@ class AtStartUp:
 
     def run(self) -> StartUp:
         """A previous session may still stream: stop and drain before anything else."""
+        # The answer comes behind the frames that are still on their way. Quiet counts as an answer
+        # too: a box that sends nothing has stopped.
         yield Exchange(command("GSD", "STOP"), "GSD", _DRAIN_S, _QUIET_S)
         firmware = yield from self._ask("SFWV", "?")
+        # Asked, not set: unit and matrix belong to the calibration of this sensor. To overwrite
+        # them with what the cell file says would hide that the wrong box is connected.
         raw_unit = yield from self._need("DCPCU", "?")
         if raw_unit != self._config.raw_unit:
             raise faults.wrong_setup("unit of the matrix (DCPCU)", raw_unit, self._config.raw_unit)
@@ -68,6 +72,7 @@ class AtStartUp:
         yield from self._set_format()
         yield from self._set_rate()
         convert = yield from self._conversion(matrix)
+        # The start is not acknowledged: the first good frame is the answer.
         yield Exchange(command("GSD"), "", 0.0)
         return Setup(firmware or "unknown firmware", convert)
 
@@ -77,6 +82,8 @@ class AtStartUp:
         expected = self._config.matrix
         for row, want in zip(matrix, expected or matrix, strict=True):
             scale = max(map(abs, want)) or 1.0
+            # Relative to the row: the box prints a limited number of decimals, and forces and
+            # moments differ in size by orders of magnitude.
             if any(abs(a - b) > _MATRIX_TOLERANCE * scale for a, b in zip(row, want, strict=True)):
                 raise faults.wrong_setup("a row of the matrix (DCPM)", row, want)
         return matrix
@@ -94,6 +101,7 @@ class AtStartUp:
         weights = tuple(float(weight) for weight in config.filter_weights)
         want = DataFormat(_CHANNELS, config.unit, config.points, weights)
         yield from self._need("SGDM", str(want))
+        # Read back: an echo does not prove which format is in force.
         text = yield from self._need("SGDM", "?")
         if _parsed("data format (SGDM)", parse_format, text) != want:
             raise faults.wrong_setup("data format (SGDM)", text, want)
@@ -103,6 +111,7 @@ class AtStartUp:
         value = f"{self._config.rate_hz:g}"
         echo = yield from self._ask("SMPF", value)
         if echo is None:
+            # Older firmware knows the rate by this name, and does not know the newer one.
             echo = yield from self._need("SMPR", value)
         if _parsed("rate (SMPF)", float, echo) != self._config.rate_hz:
             raise faults.wrong_setup("rate (SMPF)", echo, value)

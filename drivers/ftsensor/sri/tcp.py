@@ -29,7 +29,10 @@ class TcpConnection(Connection):
             )[0]
             self._socket = socket.socket(family, kind, protocol)
             self._socket.settimeout(0.0)
+            # Otherwise a command waits for the acknowledgement of the one before, some 40 ms.
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            # A pulled cable sends no farewell. Without this limit the kernel repeats what was sent
+            # for a quarter of an hour before it reports the link as lost.
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNANSWERED_MS)
             code = self._socket.connect_ex(address)
         except OSError as error:
@@ -47,6 +50,7 @@ class TcpConnection(Connection):
             raise faults.lost(self.peer, "not connected")
         if not select.select([], [self._socket], [], 0.0)[1]:
             return False
+        # A socket becomes writable when the connection stands and also when it has failed.
         code = self._socket.getsockopt(socket.SOL_SOCKET, socket.SO_ERROR)
         if code:
             self.close()

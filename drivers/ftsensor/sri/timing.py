@@ -1,4 +1,4 @@
-"""When was it sampled? Sample times from arrival times, without the jitter of the way.
+"""Sample times from arrival times, without the jitter of the transport.
 
 A sample cannot arrive before it was taken, and the least delayed one of many arrives almost at
 once. So the estimate runs ahead at the device's pace and is tied to the earliest arrivals.
@@ -49,12 +49,16 @@ class SampleClock:
         self._estimate_s += periods * self._period_s
         self._periods += periods
         delay_s = bound_s - self._estimate_s
+        # A sample cannot arrive before it was taken, so the estimate was late; far behind, it has
+        # missed a pause.
         if delay_s < 0.0 or delay_s > _PAUSE_S:
             self._estimate_s = bound_s
             delay_s = 0.0
         self._least_delay_s = min(delay_s, self._least_delay_s)
         if self._periods >= _WINDOW_S * self._nominal_hz:
             self._end_window(bound_s)
+        # Times never stand still or run backwards, whatever the estimate does: rates and filters
+        # divide by their difference.
         self._last_s = max(self._estimate_s, self._last_s + 0.01 * self._period_s)
         return self._last_s
 
@@ -67,6 +71,8 @@ class SampleClock:
         if self._origin_s is not None:
             fine_s = (self._estimate_s - self._origin_s) / self._periods
             coarse_s = (bound_s - self._arrival_origin_s) / self._periods
+            # The fine pace rests on the phase before. When the pace itself was wrong, so was that
+            # phase, and only the plain arrivals are to be trusted.
             self._period_s = fine_s if abs(fine_s / coarse_s - 1.0) < _PACE_DOUBT else coarse_s
             self.rate_hz = 1.0 / self._period_s
             if abs(self.rate_hz / self._nominal_hz - 1.0) > self._tolerance:

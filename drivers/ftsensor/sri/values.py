@@ -36,12 +36,14 @@ def from_counts(
         _REFERENCE_MV / _FULL_SCALE / channel_gain / volts
         for channel_gain, volts in zip(gain, excitation_v, strict=True)
     ]
+    # Gain, excitation and matrix are multiplied once here, and not for every sample.
     scaled = [[value * scale for value, scale in zip(row, scales, strict=True)] for row in matrix]
     offset = _product(scaled, zero)
 
     def convert(point: tuple[float, ...]) -> tuple[Six, bool]:
         a, b, c, d, e, f = _product(scaled, point)
         g, h, i, j, k, m = offset
+        # A converter at its end reads a value that looks normal; only in counts can that be seen.
         at_end = min(point) <= 0 or max(point) >= _FULL_SCALE
         return (a - g, b - h, c - i, d - j, e - k, f - m), at_end
 
