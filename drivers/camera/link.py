@@ -32,6 +32,7 @@ class RequestLink:
         self._address = (host, port)
         self._connect_timeout_s = connect_timeout_s
         self._limit_bytes = limit_bytes
+        # One request at a time: with two under way, each would read the other's reply.
         self._lock = asyncio.Lock()
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
 
@@ -60,6 +61,8 @@ class RequestLink:
         """Drop the connection. Idempotent."""
         streams, self._streams = self._streams, None
         if streams is not None:
+            # Not a polite close, which would wait until a hung server has taken what is still to be
+            # sent.
             streams[1].transport.abort()
             await asyncio.gather(streams[1].wait_closed(), return_exceptions=True)
 
@@ -73,6 +76,8 @@ class RequestLink:
                     return await talk(*self._streams)
             except DeviceFault:
                 raise  # a whole and proper answer: the connection is fine
+            # Also when the caller is cancelled: its reply is still to come, and the next request
+            # must not get it.
             except BaseException as error:
                 await self.close()
                 fault = self._translated(error, timeout_s)

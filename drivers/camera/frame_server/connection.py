@@ -46,6 +46,8 @@ class FrameServerConnection:
         await self.link.open()
         self._wanted = True
         try:
+            # A connection alone proves nothing: a port forwarder accepts it while no server is
+            # there.
             await self.serial_number()
         except BaseException:
             await self.disconnect()
@@ -71,6 +73,8 @@ class FrameServerConnection:
         time_s = now_s()
         last, self._last = self._last, header
         if last is not None and (
+            # Both must move on. A server that repeats its buffer may still count its replies, and
+            # one whose camera hangs may still read its clock.
             header.frame_id == last.frame_id or header.exposure_time_us <= last.exposure_time_us
         ):
             await self.link.close()
@@ -87,6 +91,7 @@ class FrameServerConnection:
 
     async def _exchange(self, command: Command) -> tuple[Header, bytes]:
         """Send a request and return its checked reply; ``DeviceFault`` for a refusal."""
+        # 32 bits on the wire; zero is left out, so that an empty header never fits.
         self._request_id = self._request_id % 0xFFFF_FFFF + 1
         number = self._request_id
 

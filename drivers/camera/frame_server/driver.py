@@ -33,6 +33,8 @@ class FrameServerHead(StereoCamera):
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""
+        # One request for both cameras: the server triggers them together, two requests would be two
+        # moments.
         exposure = await self._connection.expose(Command.GRAB_PAIR)
         left, right = protocol.split_images(exposure.header, exposure.payload)
         return StereoPair(left, right, exposure.time_s, exposure.header.frame_id)

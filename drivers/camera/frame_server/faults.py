@@ -1,4 +1,4 @@
-"""Where the server's status becomes a numbered fault of the cell."""
+"""Translates the server's status to a numbered fault of the cell."""
 
 from cellctl.errors.link import DeviceFault, LinkError
 from drivers.camera.frame_server.protocol import Status

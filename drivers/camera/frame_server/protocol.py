@@ -97,6 +97,8 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
     if len(data) != HEADER_BYTES:
         raise ProtocolViolation(f"header of {len(data)} bytes")
     magic, version, status, *fields, own_crc = _HEADER.unpack(data)
+    # The header has a check of its own, because it says how many bytes follow: a wrong length would
+    # have to be waited for until the time-out.
     if own_crc != zlib.crc32(data[:-4]):
         raise ProtocolViolation("header CRC does not match")
     if magic != b"CFSR" or version != VERSION:
@@ -104,6 +106,7 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
     if status not in {known.value for known in Status}:
         raise ProtocolViolation(f"unknown status {status}")
     header = Header(Status(status), *fields)
+    # The late reply to an earlier request would be an image from before the arm moved.
     if header.request_id != request_id:
         raise ProtocolViolation(f"reply to request {header.request_id} instead of {request_id}")
     if not _size_fits(header, command):
@@ -126,6 +129,7 @@ def _size_fits(header: Header, command: Command) -> bool:
     if layout is None or layout.pixel_format not in _FORMATS[command]:
         return False
     expected = header.images * header.width * header.height * layout.pixel_bytes
+    # Exactly what the sizes say: an image that is a row short would be read without complaint.
     return 0 < header.payload_bytes == expected <= MAX_PAYLOAD_BYTES
 
 

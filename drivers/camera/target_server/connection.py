@@ -40,6 +40,8 @@ class TargetServerConnection:
             request = build(number)
             _log.debug("%s -> %r", self.link.peer, request)
             writer.write(request)
+            # The limit of the stream ends a line that has no end; otherwise a wrong server could
+            # fill the memory.
             line = await reader.readuntil(b"\n")
             _log.debug("%s <- %r", self.link.peer, line)
             return parse(line, number)

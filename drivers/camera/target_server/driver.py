@@ -51,6 +51,8 @@ class TargetServerTracker(TargetTracker):
         return await self._connection.exchange(
             lambda request_id: protocol.measure(request_id, frames),
             protocol.parse_targets,
+            # An average over many frames takes its time; a fixed limit would have to be that of the
+            # longest one.
             self._config.reply_timeout_s + frames * self._config.frame_timeout_s,
         )
 

@@ -1,4 +1,4 @@
-"""Where an error that the server reports becomes a numbered fault of the cell."""
+"""Translates an error that the server reports to a numbered fault of the cell."""
 
 from cellctl.errors.link import DeviceFault, LinkError
 

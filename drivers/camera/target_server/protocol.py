@@ -42,6 +42,7 @@ def parse_targets(line: bytes, request_id: int) -> tuple[Target, ...]:
     if not isinstance(entries, list):
         raise ProtocolViolation(f"no list of targets: {line[:160]!r}")
     targets = tuple(_target(entry) for entry in entries)
+    # Which of the two is meant cannot be told, and a solver would silently use the last.
     if len({target.name for target in targets}) != len(targets):
         raise ProtocolViolation(f"a target is there twice: {[t.name for t in targets]}")
     return targets
@@ -55,13 +56,16 @@ def _reply(line: bytes, request_id: int) -> dict[str, Any]:
     """The reply as an object; ``DeviceFault`` when the server reports an error."""
     try:
         reply = json.loads(line)
+    # A few kilobytes of brackets exceed the depth of the parser.
     except (ValueError, RecursionError) as error:
         raise ProtocolViolation(f"not JSON: {line[:160]!r}") from error
     if not isinstance(reply, dict):
         raise ProtocolViolation(f"not an object: {line[:160]!r}")
+    # ``True == 1`` in Python: the type has to be looked at as well.
     if type(reply.get("id")) is not int or reply["id"] != request_id:
         raise ProtocolViolation(f"reply to request {reply.get('id')!r} instead of {request_id}")
     if reply.get("status") == "error":
+        # A refusal is a whole and proper answer, so the connection stays.
         raise faults.reported(reply.get("message", "no message"))
     if reply.get("status") != "ok":
         raise ProtocolViolation(f"unknown status {str(reply.get('status'))[:40]!r}")
