@@ -95,6 +95,7 @@ class ModbusClient:
     async def write_output(self, address: int, *, value: bool) -> None:
         """One coil (function 5); the coupler must echo address and value."""
         answer = await self._ask(5, lambda c: c.write_coil(address, value, device_id=self._unit))
+        # The echo is the only confirmation that the right output was switched.
         if answer.address != address or answer.bits[:1] != [value]:
             self._violation(f"echo of output {answer.address} instead of {address}")
 
@@ -142,6 +143,8 @@ class ModbusClient:
     ) -> ModbusPDU:
         """Wait for the answer, its time limit, or the end of the connection, of which pymodbus
         itself does not tell the one who waits."""
+        # Two tasks side by side, because the library lets the request wait for its time-out when
+        # the connection ends meanwhile.
         asking = asyncio.ensure_future(request(client))
         losing = asyncio.ensure_future(lost.wait())
         timeout_s = self._settings.reply_timeout_s

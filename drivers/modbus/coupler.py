@@ -1,4 +1,4 @@
-"""Named signals behind a coupler: fresh values, checked outputs, and a coupler kept awake."""
+"""Named signals behind a coupler: fresh values, checked outputs, and its watchdog kept served."""
 
 import asyncio
 import contextlib
@@ -63,12 +63,15 @@ class Coupler:
             await self._stop_polling()
             try:
                 await self._client.open()
+                # Checked before anything is switched: without a watchdog, outputs would stay on
+                # when this PC dies.
                 watchdog_s = await self._watchdog_s()
                 self._expected = self._outputs.values(await self._read_outputs())
             except BaseException:
                 self._client.close()
                 raise
             self._fault = None
+            # Four times a period: one lost or late poll must not drop the outputs.
             self._polling = asyncio.create_task(self._poll(watchdog_s / POLLS_PER_WATCHDOG))
 
     async def disconnect(self) -> None:
@@ -78,6 +81,7 @@ class Coupler:
             if self._fault is None:
                 self._fault = LinkLost(f"{self._name} is not connected")
                 try:
+                    # Asked for, although the watchdog would do the same: it takes up to a second.
                     for address in self._outputs.addresses.values():
                         await self._client.write_output(address, value=False)
                 except LinkError as error:
@@ -162,6 +166,8 @@ class Coupler:
 
     def _check(self) -> None:
         if self._fault is not None:
+            # A new exception each time: raised again, one object would collect the tracebacks of
+            # all its callers.
             raise type(self._fault)(self._fault.detail)
 
     def _end(self, fault: CellError) -> None:

@@ -1,4 +1,4 @@
-"""Where the coupler's exceptions and the sockets' errors become numbered faults of the cell."""
+"""Translates exceptions of the coupler and errors of sockets to numbered faults of the cell."""
 
 from pymodbus.pdu import ExceptionResponse
 

@@ -18,6 +18,7 @@ class SignalMap:
     @property
     def count(self) -> int:
         """Bits from the lowest to the highest address; 0 without signals."""
+        # One request for the whole span, with what lies between: all values are then of one moment.
         return max(self.addresses.values(), default=-1) - self.start + 1
 
     def values(self, bits: Sequence[bool]) -> dict[str, bool]:

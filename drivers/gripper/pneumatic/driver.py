@@ -31,6 +31,8 @@ class PneumaticGripper(Gripper):
     async def state(self) -> GripperState:
         """Read the sensors now."""
         state = protocol.to_state(await self._coupler.read())
+        # No position of the jaws shows both; a broken wire or a shifted sensor does, and then
+        # neither is known.
         if state.opened and state.closed:
             raise faults.contradiction(self.name)
         return state
@@ -48,6 +50,8 @@ class PneumaticGripper(Gripper):
         """Switch the valve to close, wait for the jaws, then for the part sensor."""
         timeout_s = self._config.travel_timeout_s
         await self._coupler.write(protocol.TO_CLOSE)
+        # Jaws first, part second: while they travel the part sensor may see the part that lies
+        # between them.
         state = await self._wait(lambda state: state.closed, timeout_s)
         if not state.closed:
             raise faults.not_closed(self.name, timeout_s, state)

@@ -1,4 +1,4 @@
-"""Where what the sensors say, or do not say in time, becomes a numbered fault of the cell."""
+"""Translates what the sensors show, or do not show in time, to numbered faults of the cell."""
 
 from cellctl.errors.gripper import (
     GripperNotClosed,

@@ -21,6 +21,7 @@ class ModbusCouplerConfig(CouplerSettings):
             raise ValueError("name at least one input or output")
         check_addresses("inputs", self.inputs.values())
         check_addresses("outputs", self.outputs.values())
+        # Records and messages name signals without their direction.
         if shared := self.inputs.keys() & self.outputs.keys():
             raise ValueError(f"input and output of one name: {', '.join(sorted(shared))}")
         return self

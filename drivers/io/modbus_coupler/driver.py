@@ -33,6 +33,7 @@ class ModbusCouplerIo(DigitalIo):
 
     async def write(self, outputs: Mapping[str, bool]) -> None:
         """Function 5 for each output, in the order given."""
+        # Before the first output is written: half of an order must not be carried out.
         if unknown := sorted(outputs.keys() - set(self.output_names)):
             raise faults.unknown(self.name, unknown, self.output_names)
         await self._coupler.write(outputs)

@@ -1,4 +1,4 @@
-"""Where a signal that the cell file does not name becomes a numbered fault of the cell.
+"""Translates a signal that the cell file does not name to a numbered fault of the cell.
 
 What the coupler and its connection may do wrong is translated in ``drivers.modbus.faults``.
 """

@@ -9,5 +9,8 @@ from drivers.modbus.coupler import SignalReading
 def to_state(reading: SignalReading) -> DigitalIoState:
     """All signals by their names, read-only."""
     return DigitalIoState(
-        reading.time_s, MappingProxyType(reading.inputs), MappingProxyType(reading.outputs)
+        # Read-only views: a frozen state whose mappings can be changed would only look frozen.
+        reading.time_s,
+        MappingProxyType(reading.inputs),
+        MappingProxyType(reading.outputs),
     )
