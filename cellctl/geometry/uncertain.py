@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class UncertainPose:
     """A pose and its 6x6 covariance (m², m·rad, rad²) in the convention of this module."""
 

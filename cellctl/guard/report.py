@@ -92,7 +92,7 @@ class GuardTrip:
         return f"{self.reason.value}: {self.detail}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class GuardSample:
     """One sample as the guard published it."""
 
@@ -109,7 +109,7 @@ class GuardSample:
     """Age of the flange pose that the gravity compensation used; infinite when there is none."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class GuardSamples:
     """A stretch of samples, oldest first."""
 
@@ -125,7 +125,7 @@ class GuardSamples:
     """True when samples of the stretch had been overwritten before they were read."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class TareResult:
     """What was left of the wrench at rest, in the wrench frame; it counts as zero from now on."""
 

@@ -19,7 +19,7 @@ class RobotMode(Enum):
     REMOTE = "remote"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RobotState:
     """What the controller last reported."""
 

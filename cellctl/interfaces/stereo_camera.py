@@ -11,7 +11,7 @@ from cellctl.interfaces.device import Device
 Image = NDArray[np.uint8]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StereoPair:
     """Two images of one exposure."""
 

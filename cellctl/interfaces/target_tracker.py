@@ -7,7 +7,7 @@ from cellctl.geometry.pose import Array
 from cellctl.interfaces.device import Device
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Target:
     """One measured target."""
 

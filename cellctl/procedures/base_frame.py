@@ -19,7 +19,7 @@ from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class AxisTurns:
     """How axes A1 and A2 are turned, one after the other."""
 

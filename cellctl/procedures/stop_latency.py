@@ -34,7 +34,7 @@ RESIDUAL_MM = 0.15
 """The robot reports every 20 ms: at 8 mm/s that is 0.16 mm between two reports."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StopLatency:
     """The measurement with its data."""
 

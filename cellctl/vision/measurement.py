@@ -12,7 +12,7 @@ Method = Literal["default", "paper"]
 Side = Literal["left", "right"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class HoleMeasurement:
     """One hole, measured by both cameras of a head."""
 

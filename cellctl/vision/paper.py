@@ -37,7 +37,7 @@ _LAYOUT_TOLERANCE_M = 1.0e-3
 _EPIPOLAR_PX = 2.5
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Found(Candidate):
     ellipse: Ellipse
 

@@ -30,7 +30,7 @@ class OutOfReachError(ValueError):
     """The wrist centre lies outside the arm's reach."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Links:
     """Fixed transforms of a chain: before the first joint and after each joint, shape (7, 4, 4)."""
 

@@ -11,7 +11,7 @@ from fakes.world.suspension import Contacts, Rows
 OUT_OF_REACH_M = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ContactPoints:
     """Places in the frame of the body that hangs; directions and anchors in that of the other."""
 

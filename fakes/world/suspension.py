@@ -17,7 +17,7 @@ from fakes.world.frames import Array
 Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Contacts:
     """Possible contact points: Jacobian rows (n, 6) of their gaps, stiffness and damping (n,)."""
 

@@ -12,7 +12,7 @@ from fakes.world.frames import MM, Array
 UP = np.array([0.0, 0.0, 1.0])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Target:
     """A target at its real place on the body that carries it."""
 
@@ -23,7 +23,7 @@ class Target:
     """Unit vector away from the body, in its frame."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SeenTarget:
     """Mean of a target's position in the frame of the tracker, and its standard deviation."""
 

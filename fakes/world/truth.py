@@ -44,7 +44,7 @@ class CameraTruth:
     light_seed: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ForceSensorTruth:
     """The force sensor: reading = matrix · load + offset + drift + noise."""
 
@@ -54,7 +54,7 @@ class ForceSensorTruth:
     drift_per_s: Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class TrackerTruth:
     """A tracker, and the targets at their real places on the flange that carries them."""
 

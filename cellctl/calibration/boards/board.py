@@ -57,7 +57,7 @@ class CalibrationBoard:
         return f"{self.columns} x {self.rows} {kind}, {self.square_m * 1e3:g} mm squares"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Corners:
     """Corners of a board in one image."""
 
@@ -93,7 +93,7 @@ PRINT_SIGMA = 2e-4
 """Prior of aspect ratio and squareness, relative."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ShapeModes:
     """Small deviations of a board: corners = flat corners + modes @ parameters."""
 

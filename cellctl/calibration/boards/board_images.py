@@ -26,7 +26,7 @@ _FULL_LEVEL = 254
 _FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BoardImages:
     """Two images of one exposure and the name they are reported by."""
 

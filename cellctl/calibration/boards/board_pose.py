@@ -18,7 +18,7 @@ _OUTLIER_CHI2 = 25.0
 """Squared normalised residual (3 coordinates) of a disc that does not belong: p below 2e-5."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BoardPoint:
     """One measured disc."""
 

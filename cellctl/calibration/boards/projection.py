@@ -11,7 +11,7 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import CameraModel
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Projection:
     """Projected points and how they move."""
 

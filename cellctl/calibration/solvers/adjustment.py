@@ -13,7 +13,7 @@ _MAX_CONDITION = 1e12
 """Of the scaled Jacobian; its inverse normal matrix would have no correct digits beyond."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Adjustment:
     """Minimum of the sum of squares of residuals that are in units of their sigma."""
 

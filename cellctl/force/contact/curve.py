@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ForceCurve:
     """Force and moment over time, as the guard recorded them."""
 
@@ -20,7 +20,7 @@ class ForceCurve:
     """Shape (n,): travel along the approach from the stand-off; NaN where it is not known."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class CurveStatistics:
     """Figures of one curve, in N and N·m, signs as the guard has them."""
 

@@ -27,7 +27,7 @@ SAME_DIRECTION_RAD = np.deg2rad(0.5)
 """Poses whose gravity directions differ by less count once."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
     """How far gravity moves in sensor axes over a set of poses."""
 

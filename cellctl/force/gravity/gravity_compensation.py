@@ -21,7 +21,7 @@ BASE_DOWN: tuple[float, float, float] = (0.0, 0.0, -1.0)
 """Direction of gravity in a robot base that stands level, unit vector."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class GravityCompensation:
     """The wrench of the load at rest as a function of the sensor's orientation."""
 

@@ -22,7 +22,7 @@ from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Rigid12:
     """A rigid load on an ideal sensor: what an operator can compare with CAD."""
 
@@ -50,7 +50,7 @@ class Rigid12:
         return x, y, z
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Affine24:
     """The affine model with its residuals."""
 

@@ -23,7 +23,7 @@ NORM_TOLERANCE = 1e-2
 such as angles."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PoseRecord:
     """n still poses and the mean wrench at each."""
 

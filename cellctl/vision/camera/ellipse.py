@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Ellipse:
     """An ellipse in raw pixels."""
 

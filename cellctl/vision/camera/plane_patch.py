@@ -43,7 +43,7 @@ _NODES: Array = np.stack([axis.ravel() for axis in np.meshgrid(_LINE, _LINE)])
 _FIT: Array = np.asarray(np.linalg.pinv(_terms(*_NODES).T), dtype=float)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlanePatch:
     """The plane ``normal · P = 1`` with ``normal`` pointing away from the camera.
 

@@ -29,7 +29,7 @@ _FILE_UNITS = np.array([1.0] * 21 + [MM] * 3)
 _ROTATION_TOLERANCE = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class CameraModel:
     """One camera: pinhole with OpenCV's five distortion coefficients."""
 
@@ -39,7 +39,7 @@ class CameraModel:
     """Shape (5,): k1, k2, p1, p2, k3."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StereoHead:
     """Two cameras that expose together; ``x_right = rotation @ x_left + translation_m``."""
 

@@ -13,7 +13,7 @@ _STEPS = 2
 """From half-way between the rays, the first step leaves less than 1e-6 px."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StereoPoint:
     """A point seen by both cameras."""
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from cellctl.geometry.pose import Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Hole:
     """One feature with its nominal geometry in the part frame."""
 

@@ -23,7 +23,7 @@ _ARC_SUPPORT = 0.6
 _NOISE_FACTOR = 5.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Candidate:
     """A round feature, coarsely located."""
 

@@ -31,7 +31,7 @@ class Expectation:
     """How far a hole may be from where this pose puts it."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StereoCandidate:
     """A round feature seen by both cameras, coarsely located."""
 

@@ -23,7 +23,7 @@ _EPIPOLAR_PX = 2.5
 _MOST_PASSES, _SETTLED_M = 2, 1.5e-3
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class LocatedHoles:
     """All rims of a part in both images, to a fraction of a pixel."""
 

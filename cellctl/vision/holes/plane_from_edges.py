@@ -30,7 +30,7 @@ _UNKNOWNS = 4
 """Of each rim: a move in three directions and its growth, in radii."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Seen:
     """One rim: where it is thought to be, and its edge points in both cameras."""
 

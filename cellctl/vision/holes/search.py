@@ -25,7 +25,7 @@ _SMALLEST_PX = 3.0
 """Smaller circles have too few edge pixels to vote."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class HeadImages:
     """Two images of one exposure and the head that took them."""
 

@@ -23,7 +23,7 @@ _OUTLIER_SIGMAS = 5.0
 _OUTLIER_MIN_HOLES = 5
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PartPose:
     """A registered part."""
 
@@ -42,7 +42,7 @@ class PartPose:
     """Of the holes used."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Points:
     names: tuple[str, ...]
     nominal_m: Array

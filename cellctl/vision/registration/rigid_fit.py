@@ -9,7 +9,7 @@ from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Registration:
     """``camera_T_part`` that carries nominal points onto measured ones."""
 

@@ -32,7 +32,7 @@ _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RatedFit:
     """A fitted rim with its uncertainty."""
 

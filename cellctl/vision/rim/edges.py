@@ -32,7 +32,7 @@ _ANGLES: Array = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
 _DIRECTIONS: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class EdgeCircle:
     """A circle in the plane, supported by edge points."""
 
@@ -43,7 +43,7 @@ class EdgeCircle:
     """Share of the azimuths with an edge point within the tolerance."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Edges:
     points: Array
     azimuth: NDArray[np.intp]

@@ -37,7 +37,7 @@ _LEAST_SHARE, _SIGMAS = 0.06, 5.0
 """Slopes that count as an edge: of the rim's own slope, and over the noise."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimFitInput:
     """A located rim with the pixels that its model describes."""
 
@@ -61,7 +61,7 @@ class RimFitInput:
         return surface_lay(self.roi.image, self.patch, self.middle_px, begins_px + _CLEAR_PX)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Band:
     """Which pixels of a rim are used, by their distance from it in px."""
 

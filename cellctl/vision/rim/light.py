@@ -33,7 +33,7 @@ class LightModel:
     dark."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Surface:
     """One surface: where it is seen, and the terms of its grey."""
 

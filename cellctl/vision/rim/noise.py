@@ -48,7 +48,7 @@ def robust_sigma(residuals: Array) -> float:
     return _SIGMA_OVER_MEDIAN * median(np.abs(residuals))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PixelNoise:
     """Errors of the pixels: independent ones, and strokes of the face that many pixels share."""
 

@@ -45,7 +45,7 @@ def _inside(value: float, limits: tuple[float, float]) -> float:
     return min(max(value, limits[0]), limits[1])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimView:
     """One image of the rim."""
 
@@ -70,7 +70,7 @@ class RimView:
         return self.model.with_vector(values)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimProblem:
     """All images of one rim, and what is known beforehand."""
 
@@ -93,7 +93,7 @@ class RimProblem:
         return self.views[0].pixels.unit_px
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RimSolution:
     """Best light for one vector of joint parameters, and what the next step needs."""
 

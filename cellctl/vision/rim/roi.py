@@ -28,7 +28,7 @@ a rim; below this an arc of something else would pass for one."""
 _BORDER_PX = 2.0
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimRoi:
     """The region of interest of one rim in one image."""
 
@@ -86,7 +86,7 @@ class RimRoi:
         return patch
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class LocatedRim:
     """A rim located by its edges, to a fraction of a pixel."""
 

@@ -111,7 +111,7 @@ class ScoreTests:
         return np.where(size > 1e-6, squares / np.maximum(size, 1e-6), 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SelectedFit:
     """The likeliest of several models of one rim."""
 

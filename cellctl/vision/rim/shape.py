@@ -21,7 +21,7 @@ from cellctl.geometry.pose import Array
 _SQRT_2PI = float(np.sqrt(2.0 * np.pi))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimPixels:
     """The pixels of a fit."""
 
@@ -35,7 +35,7 @@ class RimPixels:
     """Plane units in a pixel."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimShape:
     """The geometry of a rim in its plane, in units of the plane's distance."""
 
@@ -65,7 +65,7 @@ class RimShape:
         return RimShape(centre, radius, blur_px, wall, ring, self.ring_slope)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Border:
     """One blurred border: how much of each pixel lies outside of it."""
 
@@ -77,7 +77,7 @@ class Border:
     """Derivatives by the pixel's column and row, shape (2, n)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Circle:
     """Signed distance of pixels from a circle, positive outside."""
 

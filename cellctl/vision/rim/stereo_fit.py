@@ -31,7 +31,7 @@ _MAX_SIGMA_PX = 0.2
 """Largest standard deviation of a centre that is reported at all."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Rim:
     """A rim measured in one image."""
 
@@ -46,7 +46,7 @@ class Rim:
     blur_px: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RimPair:
     """One rim in both images."""
 

@@ -40,7 +40,7 @@ class Mark:
     """Relative change of the grey."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Scratch:
     """A line of points in the face, shape (n, 2), and its relative change of the grey."""
 

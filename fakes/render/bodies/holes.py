@@ -30,7 +30,7 @@ _WALL_FADE_M: Final = 7e-3
 _THREAD_FADE_M: Final = 3e-3
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Rays:
     """Rays of all cells relative to the axis of a hole: at the face, and their change per metre
     of depth."""

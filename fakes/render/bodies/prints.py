@@ -19,7 +19,7 @@ _LOOKUP: Final = 16384
 _PIXEL_VARIANCE: Final = 1 / 12
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Print:
     """A pattern of rectangular fields between straight lines, with its outline."""
 
@@ -102,7 +102,7 @@ def white_share(pattern: Print, x_m: Array, y_m: Array, blur_px: float) -> Image
     return result
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Line:
     """The nearest line of each of N pixels."""
 

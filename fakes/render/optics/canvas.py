@@ -17,7 +17,7 @@ def margin_px(blur_px: float) -> int:
     return 3 + int(np.ceil(REACH * blur_px))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Patch:
     """What a small object does to the picture below it: ``below * through + grey``."""
 

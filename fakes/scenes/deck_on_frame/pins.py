@@ -21,7 +21,7 @@ from fakes.world.frames import MM, Array
 DIRECTIONS = 16
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PinFaces:
     """Three rows each direction and pin: wall, chamfer, top."""
 

@@ -44,7 +44,7 @@ class DataFormat:
         return f"({names});{self.unit};{self.points};(WMA:{weights})"
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class SriSettings:
     """What the box keeps over a power cycle."""
 

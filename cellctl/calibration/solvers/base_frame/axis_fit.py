@@ -26,7 +26,7 @@ _STILL_RAD = 1e-4
 MIN_STOPS = 4
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class AxisStop:
     """The arm at rest: its joint angles and the targets that the large-field head sees."""
 
@@ -45,7 +45,7 @@ class ArmNoise:
     """Standard deviation of the turned angle against the reported one."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class AxisFit:
     """An axis in the frame of the head."""
 
@@ -74,7 +74,7 @@ class AxisFit:
         return float(np.sqrt((self.residuals_m**2).sum(axis=1).mean()))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Observations:
     points: Array
     stop: Indices

@@ -24,7 +24,7 @@ _HUBER = 4.0
 """Residual norm in sigmas per axis beyond which a corner loses weight."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BundleState:
     """All unknowns."""
 
@@ -42,7 +42,7 @@ class BundleState:
     """Shape (views, 3)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BundleResult:
     """The adjusted unknowns."""
 
@@ -55,7 +55,7 @@ class BundleResult:
     """Of the shared unknowns, shape (24 + shape, 24 + shape)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Normal:
     shared: Array
     mixed: Array
@@ -65,7 +65,7 @@ class _Normal:
     cost: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Linear:
     """Residuals of one image and their derivatives."""
 

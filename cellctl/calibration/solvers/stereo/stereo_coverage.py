@@ -15,7 +15,7 @@ CELLS = (8, 6)
 """The image is divided into so many columns and rows."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Coverage:
     """Figures of one camera."""
 

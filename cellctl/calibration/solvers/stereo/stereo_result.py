@@ -36,7 +36,7 @@ def _no_residuals() -> Array:
     return np.zeros((0, 4))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StereoResult:
     """A calibrated head and how far to trust it."""
 

@@ -38,7 +38,7 @@ class MatingProgress:
     """With ``ENDED`` only, also when the mating failed."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Reading:
     """Mean wrench at standstill."""
 
@@ -66,7 +66,7 @@ class GivingWay:
     """After it, from the stand-off."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Tare:
     """What compensation left at the stand-off, in the deck frame."""
 

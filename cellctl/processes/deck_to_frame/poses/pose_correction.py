@@ -102,7 +102,7 @@ class Thresholds:
         return np.repeat([self.translation_m, self.rotation_rad], 3)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Judgement:
     """What one measurement at the stand-off says."""
 
