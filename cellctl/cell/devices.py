@@ -48,6 +48,9 @@ class Cell:
         """True from a ``connect`` that reached every device until ``disconnect``."""
         self.unanswered: dict[str, CellError] = {}
         """Devices that did not answer when they were asked last."""
+        self.unstopped: dict[str, BaseException] = {}
+        """Robots that did not confirm their last stop, until a ``connect`` that reached every
+        device. They may still move."""
         self._awaited_trips: set[str] = set()
 
     def stereo_station(self, name: str) -> StereoStation:
@@ -131,7 +134,7 @@ class Cell:
         except BaseException:
             await self.disconnect()
             raise
-        self.connected, self.unanswered = True, {}
+        self.connected, self.unanswered, self.unstopped = True, {}, {}
         _log.info("all devices connected", simulated=self.config.simulated)
 
     async def disconnect(self) -> None:
@@ -147,27 +150,45 @@ class Cell:
                 _log.warning("while disconnecting", error=str(result))
 
     async def stop_motion(self) -> None:
-        """Stop and latch all robots at once, then let the guards watch no more force limits.
+        """Stop and latch all robots at once, and those with a guard over its channel as well.
 
-        Raises the first fault after trying all; a guard that does not answer is only logged, its
-        own supervision reports it. Does nothing while nothing is connected: whoever drops a link to
-        a robot has it stopped.
+        A guard watches no more force limits once its robot stands; that of a robot which does not
+        confirm the stop goes on. Raises the first fault of a robot after trying all, and names
+        those robots in ``unstopped``; a guard that does not answer is only logged, its own
+        supervision reports it. Does nothing while nothing is connected: whoever drops a link to a
+        robot has it stopped.
         """
         if not self.connected:
             return
-        results = await asyncio.gather(
-            *(robot.stop() for robot in self.robots.values()), return_exceptions=True
-        )
-        for guard in self.guards.values():
-            try:
-                await guard.disarm()
-            except CellError as error:
-                _log.warning("guard not disarmed", fault=str(error))
-        failures = [result for result in results if isinstance(result, BaseException)]
+        # All requests leave in the first turn of these tasks, those of the robots first.
+        stops = [asyncio.create_task(robot.stop()) for robot in self.robots.values()]
+        second_stops = [asyncio.create_task(guard.stop_robot()) for guard in self.guards.values()]
+        results = await asyncio.gather(*stops, return_exceptions=True)
+        self.unstopped = {
+            name: result
+            for name, result in zip(self.robots, results, strict=True)
+            if isinstance(result, BaseException)
+        }
+        for name, result in zip(
+            self.guards, await asyncio.gather(*second_stops, return_exceptions=True), strict=True
+        ):
+            if isinstance(result, BaseException):
+                _log.warning("guard did not take the stop", guard=name, fault=str(result))
+        await self._disarm_where_robots_stand()
+        failures = list(self.unstopped.values())
         for second in failures[1:]:
             failures[0].add_note(f"beside it: {second}")
         if failures:
             raise failures[0]
+
+    async def _disarm_where_robots_stand(self) -> None:
+        for name, guard in self.guards.items():
+            if self.config.force_sensors[name].mounted_on in self.unstopped:
+                continue
+            try:
+                await guard.disarm()
+            except CellError as error:
+                _log.warning("guard not disarmed", fault=str(error))
 
     async def rearm(self) -> None:
         """Release the stop latches of guards and robots; moves nothing."""

@@ -157,8 +157,12 @@ class GuardClient:
         """Watch nothing. A latched trip stays latched."""
         await self._request("disarm")
 
+    async def stop_robot(self) -> None:
+        """Have the guard stop its robot on its own channel until ``acknowledge``; limits stay."""
+        await self._request("stop")
+
     async def acknowledge(self) -> None:
-        """Release the latch; disarms.
+        """Release the latch and a stop that was asked for; disarms.
 
         A guard that has died, hangs or has given up its sensor is replaced by a new one, which
         gets the last gravity compensation and wrench frame. It gets no tare: a zero must be taken

@@ -84,7 +84,11 @@ class Robot(Device):
 
     @abstractmethod
     async def stop(self) -> None:
-        """Stop and latch; returns after standstill, else raises ``StopFailed``."""
+        """Stop and latch; returns after standstill, else raises ``StopFailed``.
+
+        A robot that has not confirmed its stop gets no further sign of life: no heartbeat, and no
+        link that it could take for one, until ``connect``. Its latch stays through that.
+        """
 
     @abstractmethod
     async def rearm(self) -> None:

@@ -163,8 +163,10 @@ class PackMLMachine:
             if reaction is Reaction.WARN or (state, command) not in ON_COMMAND:
                 self._report(error)  # nothing moves that it could end
                 return
-            self._latch(error)
+            # What observers do with a fault may fail or wait for a disk; a stop may not.
+            self._faults.append(error)
             self._fire(command)
+            self._report(error)
 
     async def wait_for(self, *states: State, timeout_s: float | None = None) -> State:
         """Wait until the unit is in one of the states; raises ``TimeoutError``.
@@ -225,12 +227,15 @@ class PackMLMachine:
                 if isinstance(error, Exception):
                     self._latch(self._fault(error))
                 return
-            command = None if error is None else self._reaction_to(error)
-            self._fire(command)
+            if error is None:
+                self._fire(None)
+                return
+            fault = self._fault(error)
+            self._faults.append(fault)
+            self._fire(self._reaction_to(fault))
+            self._report(fault)
 
-    def _reaction_to(self, error: BaseException) -> Command | None:
-        fault = self._fault(error)
-        self._latch(fault)
+    def _reaction_to(self, fault: CellError) -> Command | None:
         if self.state is State.ABORTING:
             return None  # nothing is stronger than Aborting: it ends in Aborted, fault latched
         allowed = (c for c in _LEADS_TO[fault.reaction] if (self.state, c) in ON_COMMAND)

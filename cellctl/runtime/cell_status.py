@@ -28,6 +28,8 @@ class CellStatus:
     manual: bool = False
     force_guard_tripped: bool = False
     hold_requested: bool = False
+    stop_not_confirmed: bool = False
+    """A robot did not confirm its last stop and may still move."""
     alarms: tuple[int, ...] = ()
     """Numbers of all active alarms, the oldest first."""
     first_out_alarm: int = 0

@@ -55,6 +55,7 @@ class StatusView:
             manual=self._any_manual(),
             force_guard_tripped=any(guard.trip for guard in self._cell.guards.values()),
             hold_requested=machine.hold_requested,
+            stop_not_confirmed=bool(self._cell.unstopped),
             alarms=alarms,
             first_out_alarm=faults[0].number if faults else 0,
             recipe_active=job.number if job else 0,

@@ -143,7 +143,8 @@ class UnitController:
 
     async def _clearing(self) -> None:
         self._cell.workers.revive()
-        if not self._cell.connected:
+        # Whoever clears says that the robots stand: one that was given up gets its links back.
+        if not self._cell.connected or self._cell.unstopped:
             await self._cell.connect()
 
     async def _resetting(self) -> None:

@@ -18,6 +18,7 @@ _HISTORY = (
         "test_text takes its third register (73); iteration, force_z, force_limit and run_result "
         "added at 74-79; seq_tail moved to 124, the end of the block, to stay there",
     ),
+    (3, "status bit 12, stop_not_confirmed"),
 )
 _RESULTS = {
     Result.NONE: "not ended",

@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 2
+MAP_VERSION = 3
 
 
 class Kind(StrEnum):
@@ -136,6 +136,7 @@ STATUS_BITS: tuple[tuple[str, str], ...] = (
     ),
     ("state_change_in_process", "PackML StateChangeInProcess"),
     ("hold_requested", "Hold or Suspend waits for the next safe point"),
+    ("stop_not_confirmed", "a robot did not confirm its stop and may still move; see the alarms"),
 )
 
 UNDEFINED_I32 = -(2**31)

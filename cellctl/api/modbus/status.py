@@ -86,5 +86,6 @@ def _status_word(status: CellStatus, handshake: Handshake) -> int:
         "force_guard_tripped": status.force_guard_tripped,
         "state_change_in_process": status.state is not status.state_requested,
         "hold_requested": status.hold_requested,
+        "stop_not_confirmed": status.stop_not_confirmed,
     }
     return sum(_BIT[name] for name, on in flags.items() if on)

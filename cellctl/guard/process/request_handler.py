@@ -33,6 +33,7 @@ class RequestHandler:
         self._actions: dict[str, Callable[[Message], None]] = {
             "arm": self._arm,
             "disarm": lambda _: self._monitor.disarm(),
+            "stop": lambda _: self._supervisor.stop(self._now_s),
             "acknowledge": lambda _: self._acknowledge(),
             "gravity_compensation": self._set_gravity_compensation,
             "wrench_frame": self._set_wrench_frame,

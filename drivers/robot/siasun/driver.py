@@ -15,6 +15,7 @@ from cellctl.errors.robot import (
     MotionRejected,
     NotRearmed,
     RobotNotReady,
+    StopFailed,
     StreamNotOffered,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
@@ -169,9 +170,16 @@ class SiasunRobot(StreamingRobot):
         await self._stop_before_leaving()
 
     async def stop(self) -> None:
-        """ABORT on STA; returns after STOPD."""
+        """ABORT on STA; returns after STOPD. Without it both channels are closed until ``connect``:
+        no heartbeat and no link, so that the controller's dead man and its watch over the links
+        stop the arm, which do not depend on the part of the job program that did not answer."""
         self._latch = NotRearmed(f"{self.name}: a stop was requested")
-        await self._state.stop(self._config.stop_timeout_s)
+        try:
+            await self._state.stop(self._config.stop_timeout_s)
+        except StopFailed as fault:
+            self._latch = fault
+            await self._close()
+            raise
 
     async def rearm(self) -> None:
         """REARM; returns when the state shows the latch released."""

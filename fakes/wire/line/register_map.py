@@ -1,10 +1,10 @@
-"""The register map as the line's programmer read it: docs/register-map.md, version 2."""
+"""The register map as the line's programmer read it: docs/register-map.md, version 3."""
 
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MAP_VERSION = 2
+MAP_VERSION = 3
 INPUT_COUNT = 125
 HEARTBEAT_ADDRESS = 40
 NO_VALUE = -(2**31)
@@ -45,6 +45,7 @@ STATUS_BITS = (
     "force_guard_tripped",
     "state_change_in_process",
     "hold_requested",
+    "stop_not_confirmed",
 )
 STEPS = {
     0: "",

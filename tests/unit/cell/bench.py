@@ -98,6 +98,7 @@ class CellInMemory:
     rearm: Any = Cell.rearm
     health_checks: Any = Cell.health_checks
     ask_silent_devices: Any = Cell.ask_silent_devices
+    _disarm_where_robots_stand: Any = Cell._disarm_where_robots_stand
     connect: Any = Cell.connect
     disconnect: Any = Cell.disconnect
     stereo_station: Any = Cell.stereo_station
@@ -121,6 +122,7 @@ class CellInMemory:
         self.workers = InlineWorkers()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}
+        self.unstopped: dict[str, BaseException] = {}
         self._awaited_trips: set[str] = set()
 
     @property

@@ -52,6 +52,9 @@ class TinyGuard:
     async def disarm(self) -> None:
         self._do("disarm")
 
+    async def stop_robot(self) -> None:
+        self._do("stop_robot")
+
     async def acknowledge(self) -> None:
         self._do("acknowledge")
         self.trip = None

@@ -1,5 +1,7 @@
 """All devices together: connect, stop, rearm, whatever fails."""
 
+import asyncio
+
 import pytest
 
 from cellctl.cell.devices import Cell
@@ -53,7 +55,50 @@ async def test_stop_reaches_every_robot_though_one_fails(bench: Bench) -> None:
         await bench.cell.stop_motion()
     assert [robot.stops for robot in bench.cell.robots.values()] == [1, 1, 1]
     assert any("F202" in note for note in caught.value.__notes__)
-    assert bench.cell.guard.asked == ["disarm"]
+    assert list(bench.cell.unstopped) == ["main", "aux_1"]
+
+
+async def test_the_guard_of_a_robot_that_stands_is_disarmed_after_it(bench: Bench) -> None:
+    bench.cell.aux_1.faults["stop"] = StopFailed("aux_1")
+    with pytest.raises(StopFailed):
+        await bench.cell.stop_motion()
+    assert bench.cell.guard.asked == ["stop_robot", "disarm"]
+
+
+async def test_the_guard_of_a_robot_that_may_move_stops_it_too_and_stays_armed(
+    bench: Bench,
+) -> None:
+    bench.cell.main.faults["stop"] = StopFailed("main")
+    with pytest.raises(StopFailed):
+        await bench.cell.stop_motion()
+    assert bench.cell.guard.asked == ["stop_robot"]
+
+
+async def test_the_guard_does_not_wait_for_a_robot_whose_stop_hangs(bench: Bench) -> None:
+    hangs = asyncio.Event()
+
+    async def stop() -> None:
+        await hangs.wait()
+
+    bench.cell.main.stop = stop  # type: ignore[method-assign]
+    stopping = asyncio.create_task(bench.cell.stop_motion())
+    async with asyncio.timeout(1.0):
+        while "stop_robot" not in bench.cell.guard.asked:  # noqa: ASYNC110  no event for it
+            await asyncio.sleep(0)
+    assert not stopping.done()
+    hangs.set()
+    await stopping
+
+
+async def test_a_robot_without_a_confirmed_stop_counts_as_moving_until_connect(
+    bench: Bench,
+) -> None:
+    bench.cell.main.faults["stop"] = StopFailed("main")
+    with pytest.raises(StopFailed):
+        await bench.cell.stop_motion()
+    bench.cell.main.faults.clear()
+    await bench.cell.connect()
+    assert not bench.cell.unstopped
 
 
 async def test_nothing_is_stopped_that_was_never_connected(bench: Bench) -> None:

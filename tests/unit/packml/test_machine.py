@@ -406,3 +406,33 @@ async def test_wait_for_gives_up_in_time(rig: Rig) -> None:
     machine = rig.machine()
     with pytest.raises(TimeoutError):
         await machine.wait_for(State.IDLE, timeout_s=0.01)
+
+
+@pytest.mark.parametrize("inside", [True, False])
+async def test_an_observer_that_fails_does_not_keep_a_fault_from_stopping(
+    rig: Rig, *, inside: bool
+) -> None:
+    breaks, stopping = asyncio.Event(), asyncio.Event()
+
+    async def execute() -> None:
+        await breaks.wait()
+        raise AbortError("in the step")
+
+    async def aborting() -> None:
+        stopping.set()
+
+    def disk_full(_: CellError) -> None:
+        raise OSError("no space left")
+
+    rig.actions[State.ABORTING] = aborting
+    machine = await rig.executing(execute)
+    machine.on_fault.insert(0, disk_full)
+    if inside:
+        breaks.set()
+    else:
+        with pytest.raises(OSError, match="no space"):
+            await machine.fail(AbortError("of a device"))
+    async with asyncio.timeout(1):
+        await stopping.wait()
+    machine.on_fault.clear()
+    await machine.wait_for(State.ABORTED, timeout_s=1)

@@ -242,6 +242,12 @@ async def test_a_stop_that_fails_ends_aborted(rig: DaemonRig) -> None:
     await rig.to(State.ABORTED)
     assert 304 in rig.shown().alarms
     assert (await rig.record()).head.result == "stopped"
+    assert rig.shown().stop_not_confirmed
+    assert "aux_1" in str(rig.unit.machine.fault)
+    rig.bench.cell.aux_1.faults.clear()
+    await rig.take(Command.CLEAR)
+    await rig.to(State.STOPPED)
+    assert not rig.shown().stop_not_confirmed
 
 
 async def test_an_abort_overtakes_a_stop(rig: DaemonRig) -> None:

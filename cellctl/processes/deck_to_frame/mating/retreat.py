@@ -45,10 +45,8 @@ async def retreat(attempt: Attempt, fault: CellError) -> None:
 
     Aborts, stops and mode changes never come here: they cancel the mating.
     """
-    if isinstance(fault, ForceError):
-        fault.curve = attempt.recorder.curve()
     try:
-        await attempt.robot.stop()
+        await _stop(attempt, fault)
         if isinstance(fault, _PRESSES_ON) and _healthy(attempt):
             await attempt.guard.acknowledge()
             await attempt.robot.rearm()
@@ -56,6 +54,15 @@ async def retreat(attempt: Attempt, fault: CellError) -> None:
     except CellError as second:
         fault.add_note(f"while retreating: {second}")
         _log.warning("retreat incomplete", fault=str(fault), second=str(second))
+
+
+async def _stop(attempt: Attempt, fault: CellError) -> None:
+    """Stop, then attach the curve: making it may fail, and must not stand before the stop."""
+    try:
+        await attempt.robot.stop()
+    finally:
+        if isinstance(fault, ForceError):
+            fault.curve = attempt.recorder.curve()
 
 
 def _healthy(attempt: Attempt) -> bool:

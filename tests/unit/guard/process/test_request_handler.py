@@ -2,11 +2,12 @@
 
 import pytest
 
+from cellctl.guard.limits import GuardLimits
 from cellctl.guard.messages import Message
 from cellctl.guard.process.request_handler import RequestHandler
 from cellctl.guard.process.stop_supervisor import StopSupervisor
 from tests.unit.guard.process.samples import HEALTHY, ready_monitor
-from tests.unit.guard.process.test_stop_supervisor import Channel
+from tests.unit.guard.process.test_stop_supervisor import Channel, opened
 
 
 def compensation(weight_n: float) -> Message:
@@ -27,3 +28,27 @@ def test_only_a_load_that_hangs_needs_the_flange_pose(
     answer = handler.answer(compensation(weight_n), 0.0)
     assert answer is not None
     assert ("refused" not in answer) == taken
+
+
+def test_a_stop_goes_out_at_once_armed_or_not_and_is_wanted_until_acknowledged() -> None:
+    channel = Channel()
+    supervisor, monitor = opened(channel), ready_monitor()
+    handler = RequestHandler(monitor, supervisor, lambda: HEALTHY)
+    assert handler.answer({"id": 1, "do": "stop"}, 0.0) == {"id": 1, "result": None}
+    assert channel.stops == 1
+    supervisor.beat(0.05)
+    assert (channel.stops, channel.beats) == (2, 1)
+    supervisor.beat(0.2)
+    assert (channel.stops, channel.beats) == (3, 1), "a stop that is not confirmed ends the beats"
+    handler.answer({"id": 2, "do": "acknowledge"}, 0.3)
+    supervisor.beat(0.3)
+    assert (channel.stops, channel.beats) == (3, 2)
+
+
+def test_a_stop_leaves_the_limits_watched() -> None:
+    monitor = ready_monitor()
+    handler = RequestHandler(monitor, opened(Channel()), lambda: HEALTHY)
+    monitor.channel_up = True
+    monitor.arm(GuardLimits(raw=(20.0,) * 6), HEALTHY, monitor.sample_time_s)
+    handler.answer({"id": 1, "do": "stop"}, 0.0)
+    assert monitor.armed

@@ -126,3 +126,15 @@ async def test_a_stop_that_is_not_confirmed_ends_the_retreat() -> None:
     fault = await scene.after(MatingOverforce("46 N"))
     assert scene.stayed
     assert "while retreating: F304" in fault.__notes__[0]
+
+
+async def test_nothing_that_can_fail_stands_before_the_stop() -> None:
+    scene = Scene()
+
+    def no_memory() -> ForceCurve:
+        raise MemoryError
+
+    scene.attempt.recorder = cast(Recorder, SimpleNamespace(curve=no_memory))
+    with pytest.raises(MemoryError):
+        await retreat(scene.attempt, MatingOverforce("Fz 46 N"))
+    assert scene.robot.stops == 1
