@@ -169,6 +169,14 @@ async def test_nothing_old_is_executed_after_a_restart(line: Line) -> None:
     assert [submission.seq for submission in line.commands] == [8]
 
 
+async def test_the_first_stop_after_a_restart_is_obeyed_whatever_its_number(line: Line) -> None:
+    _, client = await line.open(previous_seq=24)
+    await client.write_registers(0, [0, Command.ABORT, *[0] * 25, 25])
+    block = await until(client, lambda b: b[ACK] == 25)
+    assert block[REJECT] == RejectCode.NONE
+    assert [one.command.cntrl_cmd for one in line.commands] == [Command.ABORT]
+
+
 async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> None:
     _, client = await line.open()
     for seq, command in enumerate((Command.RESET, Command.STOP, Command.ABORT), start=1):
