@@ -1,12 +1,24 @@
 """What every recipe has, whatever its process makes with it."""
 
 from collections.abc import Mapping
+from enum import StrEnum
 from typing import Annotated
 
 from pydantic import Field
 
 from cellctl.config.base import Section
 from cellctl.config.devices import DeviceName
+
+
+class LineLostAction(StrEnum):
+    """What a step in contact does when the line PLC's heartbeat is lost."""
+
+    KEEP = "stop-and-keep"
+    """All robots stop and latch at once; the arm stays where it is, under force if there is one."""
+    BACK_OFF = "stop-and-back-off"
+    """The robot stops and leaves the contact as after a fault of the process."""
+    FINISH = "finish"
+    """The contact is finished; the run holds at the next safe point, or ends."""
 
 
 class Recipe(Section):
@@ -18,6 +30,8 @@ class Recipe(Section):
     name: Annotated[str, Field(min_length=1, max_length=64)]
     roles: dict[DeviceName, DeviceName] = Field(default_factory=dict)
     """Which device takes a role of the process, where it is not the device of the role's name."""
+    line_lost_in_contact: LineLostAction = LineLostAction.KEEP
+    """Steps without contact hold at the next safe point, whatever stands here."""
 
     def files(self) -> Mapping[str, str]:
         """Files that belong to it, relative to the cell file, by the name of their record."""

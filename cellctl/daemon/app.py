@@ -13,7 +13,7 @@ from typing import Any
 
 from cellctl import log
 from cellctl.api.local.api import local_server
-from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
@@ -80,7 +80,7 @@ async def _command_path(
     They share the line's heartbeat: the interface feeds it, and the arbiter asks it whether the
     line is in control.
     """
-    heartbeat = HeartbeatWatch(config.heartbeat_timeout_s, unit.line_lost)
+    heartbeat = LineHeartbeat(config.heartbeat_timeout_s, unit.line_lost)
     arbiter = CommandArbiter(unit, archive, line_alive=lambda: heartbeat.alive)
     plc = PlcInterface(
         config,

@@ -17,6 +17,16 @@ class LineLost(LineError):
     reaction = Reaction.HOLD
 
 
+class LineLostInContact(LineLost):
+    """The PLC's heartbeat stands still while a part is being touched."""
+
+    number = 704
+    text = "Line PLC lost while in contact"
+    cause = "As 701. The recipe's line_lost_in_contact says whether the arm stays or backs off."
+    remedy = "Restore the PLC. Look at the part, then Clear and Reset."
+    reaction = Reaction.ABORT
+
+
 class CannotListen(LineError):
     """The Modbus server cannot be opened."""
 

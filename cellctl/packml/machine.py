@@ -20,6 +20,8 @@ Gate = Callable[[State, Command], RejectCode]
 
 _PAUSE_COMMANDS = {Command.HOLD: State.HELD, Command.SUSPEND: State.SUSPENDED}
 _BEFORE_EXECUTE = frozenset({State.STARTING, State.UNHOLDING, State.UNSUSPENDING})
+_ACTS_WITHOUT_PAUSE = frozenset({State.RESETTING})
+"""Robots may move, and there is no safe point: what would hold elsewhere stops here."""
 _RELEASES_FAULTS = frozenset({Command.CLEAR, Command.RESET, Command.UNHOLD})
 _LEADS_TO = {
     Reaction.HOLD: (Command.HOLD, Command.STOP, Command.ABORT),
@@ -160,6 +162,8 @@ class PackMLMachine:
             command = {Reaction.HOLD: Command.HOLD, Reaction.STOP: Command.STOP}.get(
                 reaction, Command.ABORT
             )
+            if command is Command.HOLD and state in _ACTS_WITHOUT_PAUSE:
+                command = Command.STOP
             if reaction is Reaction.WARN or (state, command) not in ON_COMMAND:
                 self._report(error)  # nothing moves that it could end
                 return

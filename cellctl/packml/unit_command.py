@@ -80,3 +80,8 @@ class UnitCommand:
     def ends_motion(self) -> bool:
         """True for Stop and Abort, which are executed whatever else is wrong with the command."""
         return self.cntrl_cmd in (Command.STOP, Command.ABORT)
+
+    @property
+    def only_halts(self) -> bool:
+        """True for the commands that start nothing: Stop and Abort, Hold and Suspend."""
+        return self.ends_motion or self.cntrl_cmd in (Command.HOLD, Command.SUSPEND)

@@ -2,18 +2,23 @@
 
 from abc import ABC, abstractmethod
 
+from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.records.entries import RunResult
 
 
 class Job(ABC):
-    """Called by the unit only, in this order, in the states named. ``close`` always comes last."""
+    """Called by the unit only, in this order, in the states named. ``close`` always comes last.
+
+    ``interrupt`` may be called at any time in Execute.
+    """
 
     number: int
     """Recipe or procedure, for the line."""
     serial: str
     makes_part: bool = False
     """Its good end is one more part."""
+    line_lost_in_contact: LineLostAction = LineLostAction.KEEP
 
     @property
     def run_number(self) -> int:
@@ -24,6 +29,10 @@ class Job(ABC):
     def outcome(self) -> RunResult:
         """What a run is that came to its end without a fault."""
         return RunResult.GOOD
+
+    def interrupt(self, fault: CellError) -> bool:  # noqa: ARG002 - for jobs that can be
+        """Have a step in contact end by this fault in its own way; False when none can."""
+        return False
 
     @abstractmethod
     async def start(self) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from cellctl import log
+from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.packml.result import Result
 from cellctl.records.entries import RunResult
@@ -45,6 +46,15 @@ class JobRunner:
     def run_number(self) -> int | None:
         """The open run, if there is one with a record."""
         return (self._job.run_number or None) if self._job else None
+
+    @property
+    def line_lost_in_contact(self) -> LineLostAction:
+        """What the present job wants to be done."""
+        return self._job.line_lost_in_contact if self._job else LineLostAction.KEEP
+
+    def interrupt(self, fault: CellError) -> bool:
+        """Have a step in contact end by this fault in its own way; False when none can."""
+        return self._job is not None and self._job.interrupt(fault)
 
     @property
     def makes_part(self) -> bool:

@@ -7,7 +7,7 @@ of it for its cell, and calls the methods below. The rest of cellctl knows no pr
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
 from cellctl.calibration.store.envelope import StoredCalibration
@@ -23,6 +23,7 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.recorder import RunRecorder
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, Steps
@@ -60,6 +61,8 @@ class RunContext:
     """Into its record."""
     safe_point: SafePoint
     """Obeys a pending Hold; a step that waits long or repeats itself calls it in between."""
+    interruption: Interruption = field(default_factory=Interruption)
+    """Ends a step in contact that runs inside it, for a process that then backs off."""
 
 
 class Process(ProcessDefinition, Generic[P, R, S]):

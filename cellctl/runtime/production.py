@@ -8,6 +8,7 @@ from cellctl.errors import CellError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.recorder import RunRecorder
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.process import Process, RunContext
@@ -33,6 +34,8 @@ class ProductionJob(Job):
     ) -> None:
         self.number = recipe.id
         self.serial = command.serial
+        self.line_lost_in_contact = recipe.line_lost_in_contact
+        self._interruption = Interruption()
         self._process = process
         self._recipe = recipe
         self._command = command
@@ -56,6 +59,10 @@ class ProductionJob(Job):
         """A dry run ends without a part: never good."""
         return RunResult.BAD if self._command.dry_run else RunResult.GOOD
 
+    def interrupt(self, fault: CellError) -> bool:
+        """End a step in contact by this fault; False when the process offers no way."""
+        return self._interruption.interrupt(fault)
+
     async def start(self) -> None:
         """Read and check everything, open the record, then bring the cell to the beginning.
 
@@ -64,7 +71,8 @@ class ProductionJob(Job):
         prepared = await self._process.prepare(self._recipe)
         mode = DRY_RUN if self._command.dry_run else PRODUCTION
         await self._record.open(self._recipe, mode, prepared.stored)
-        run = self._process.open(prepared, RunContext(self._recorder, self._safe_point))
+        context = RunContext(self._recorder, self._safe_point, self._interruption)
+        run = self._process.open(prepared, context)
         self._begun = run, await self._process.begin(run)
 
     async def execute(self) -> None:

@@ -6,9 +6,10 @@ from cellctl import log
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
+from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import StateDidNotEnd
-from cellctl.errors.line import LineLost
+from cellctl.errors.line import LineLost, LineLostInContact
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
@@ -117,8 +118,8 @@ class UnitController:
         return self._cell.awaits_trips(sensor_name) or self.board.current.contact
 
     def line_lost(self) -> None:
-        """The line's heartbeat stopped: hold at the next safe point."""
-        self.background.start(self.machine.fail(LineLost()))
+        """The line's heartbeat stopped: hold at the next safe point; in contact as the job says."""
+        self.background.start(self._lose_line())
 
     async def close(self, fault: CellError | None = None) -> None:
         """Abort what runs, because of ``fault`` if there is one, and wait for the records.
@@ -140,6 +141,17 @@ class UnitController:
             _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
         await self.machine.close()
         await self.background.drain()
+
+    async def _lose_line(self) -> None:
+        touches = self.machine.state is State.EXECUTE and self.board.current.contact
+        action = self._jobs.line_lost_in_contact
+        if not touches or action is LineLostAction.FINISH:
+            await self.machine.fail(LineLost())
+            return
+        fault = LineLostInContact(f"in step {self.board.current.step_label}")
+        # What cannot leave the contact in its own way is stopped like everything else.
+        if action is not LineLostAction.BACK_OFF or not self._jobs.interrupt(fault):
+            await self.machine.fail(fault)
 
     async def _clearing(self) -> None:
         self._cell.workers.revive()

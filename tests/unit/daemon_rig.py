@@ -8,10 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.command.arbiter import DISK_TIMEOUT_S, CommandArbiter
 from cellctl.command.submission import Submission
+from cellctl.errors import CellError
+from cellctl.errors.line import LineLostInContact
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
@@ -24,6 +27,7 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunHead, RunRecord
 from cellctl.records.store import RunStore
 from cellctl.runtime.cell_status import CellStatus
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.unit import UnitController
 from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
@@ -75,14 +79,35 @@ class Contact:
         self.may_end.set()
         self.matings = 0
         self.fault: Exception | None = None
+        self.interruptible = True
+        self.interrupted_by: CellError | None = None
+        self.flange: RigidTransform | None = None
+        """Where the arm presses."""
 
     async def __call__(
-        self, robot: Any, guard: Any, measured_plan: Any, report: Any, max_tries: int
+        self,
+        robot: Any,
+        guard: Any,
+        measured_plan: Any,
+        report: Any,
+        *,
+        max_tries: int,
+        interruption: Interruption,
     ) -> MatingResult:
+        mating = self._mate(robot, measured_plan, report)
+        if not self.interruptible:
+            return await mating
+        try:
+            return await interruption.unless(mating)
+        except LineLostInContact as fault:
+            self.interrupted_by = fault
+            raise
+
+    async def _mate(self, robot: Any, measured_plan: Any, report: Any) -> MatingResult:
         plan = await measured_plan(1)
         self.matings += 1
         report(MatingProgress(MatingPhase.ENDED, 0.01, 36.0, curve=curve()))
-        robot.flange = plan.pose_at(plan.window.expected_m)
+        robot.flange = self.flange = plan.pose_at(plan.window.expected_m)
         self.reached.set()
         await self.may_end.wait()
         if self.fault is not None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
@@ -34,7 +34,7 @@ class FakelessCell:
     def __init__(self, execute: Action, result: Result, initial: State = State.ABORTED) -> None:
         self.machine = PackMLMachine({State.EXECUTE: execute}, initial=initial)
         self.commands: list[UnitCommand] = []
-        heartbeat = HeartbeatWatch(Plc().heartbeat_timeout_s, lambda: None)
+        heartbeat = LineHeartbeat(Plc().heartbeat_timeout_s, lambda: None)
         self.port = PlcInterface(Plc(port=0), self.submit, heartbeat, self.remember, previous_seq=1)
         self.tracker = CommandTracker(self.machine, lambda: result)
         self.machine.on_change.append(lambda _before, _after: self.publish())

@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator, Callable
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
 
-from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.submission import LineSubmission
 from cellctl.command.submission import Submission
@@ -59,7 +59,7 @@ class Line:
         """The number is on the disk."""
 
     def interface(self, config: Plc, previous_seq: int | None = None) -> PlcInterface:
-        heartbeat = HeartbeatWatch(config.heartbeat_timeout_s, self.lost.set)
+        heartbeat = LineHeartbeat(config.heartbeat_timeout_s, self.lost.set)
         return PlcInterface(
             config, self.submit, heartbeat, self.remember, previous_seq=previous_seq
         )
@@ -73,8 +73,11 @@ class Line:
         self.ports.append(port)
         return port, await self.connect(port)
 
-    async def connect(self, port: PlcInterface) -> AsyncModbusTcpClient:
-        client = AsyncModbusTcpClient("127.0.0.1", port=port.port, timeout=2, retries=0)
+    async def connect(self, port: PlcInterface, address: str = "127.0.0.1") -> AsyncModbusTcpClient:
+        """``address`` is the client's own; every one in 127.0.0.0/8 is this machine."""
+        client = AsyncModbusTcpClient(
+            "127.0.0.1", port=port.port, timeout=2, retries=0, source_address=(address, 0)
+        )
         assert await client.connect()
         self.clients.append(client)
         return client
@@ -169,6 +172,14 @@ async def test_nothing_old_is_executed_after_a_restart(line: Line) -> None:
     assert [submission.seq for submission in line.commands] == [8]
 
 
+async def test_the_first_stop_after_a_restart_is_obeyed_whatever_its_number(line: Line) -> None:
+    _, client = await line.open(previous_seq=24)
+    await client.write_registers(0, [0, Command.ABORT, *[0] * 25, 25])
+    block = await until(client, lambda b: b[ACK] == 25)
+    assert block[REJECT] == RejectCode.NONE
+    assert [one.command.cntrl_cmd for one in line.commands] == [Command.ABORT]
+
+
 async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> None:
     _, client = await line.open()
     for seq, command in enumerate((Command.RESET, Command.STOP, Command.ABORT), start=1):
@@ -188,6 +199,48 @@ async def test_a_heartbeat_that_stands_still_is_lost_and_comes_back(line: Line) 
     assert (await inputs(client))[STATUS] & LOST
     await line.heartbeat(client)
     assert not (await inputs(client))[STATUS] & LOST
+
+
+async def test_another_client_does_not_keep_the_line_alive(line: Line) -> None:
+    port, plc = await line.open(timeout_s=0.5)
+    page = await line.connect(port, "127.0.0.2")
+    await line.heartbeat(page)  # the first one to beat, as long as nobody commands
+    await line.command(plc, 1, Command.RESET)
+    await until(plc, lambda b: b[ACK] == 1)
+    async with asyncio.timeout(3):
+        while not line.lost.is_set():
+            await line.heartbeat(page)
+            await asyncio.sleep(0.05)
+    await line.heartbeat(page)
+    assert (await inputs(page))[STATUS] & LOST
+    await line.heartbeat(plc)
+    assert not (await inputs(plc))[STATUS] & LOST
+
+
+async def test_who_gives_a_command_needs_a_heartbeat_of_its_own(line: Line) -> None:
+    port, plc = await line.open()
+    standby = await line.connect(port, "127.0.0.2")
+    await line.command(plc, 1, Command.RESET)
+    await until(plc, lambda b: b[ACK] == 1)
+    await standby.write_registers(0, [1, Command.RESET, *[0] * 25, 2])
+    block = await until(standby, lambda b: b[ACK] == 2)
+    assert block[REJECT] == RejectCode.LINE_HEARTBEAT_MISSING
+    await line.command(standby, 3, Command.RESET)
+    block = await until(standby, lambda b: b[ACK] == 3)
+    assert block[REJECT] == RejectCode.NONE
+
+
+async def test_a_stop_of_another_client_does_not_take_over(line: Line) -> None:
+    port, plc = await line.open(timeout_s=0.5)
+    page = await line.connect(port, "127.0.0.2")
+    await line.command(plc, 1, Command.RESET)
+    await until(plc, lambda b: b[ACK] == 1)
+    await line.command(page, 2, Command.STOP)
+    await until(page, lambda b: b[ACK] == 2)
+    async with asyncio.timeout(3):
+        while not line.lost.is_set():
+            await line.heartbeat(page)
+            await asyncio.sleep(0.05)
 
 
 async def test_the_cells_heartbeat_counts_and_wraps(line: Line) -> None:

@@ -15,6 +15,10 @@ from cellctl.errors.link import PortInUse
 READ_TWO = bytes.fromhex("04 0000 0002")
 
 
+def _ignore(_client: str, _value: int) -> None:
+    """A heartbeat that nobody watches."""
+
+
 def frame(transaction: int, pdu: bytes, *, unit: int = 1, protocol: int = 0) -> bytes:
     return struct.pack(">HHHB", transaction, protocol, len(pdu) + 1, unit) + pdu
 
@@ -45,7 +49,7 @@ class Client:
 
 class Rig:
     def __init__(self) -> None:
-        self.registers = RegisterFile(on_commit=lambda: None, on_heartbeat=lambda _value: None)
+        self.registers = RegisterFile(on_commit=lambda _client: None, on_heartbeat=_ignore)
         self.registers.publish(tuple(range(100, 225)))
         self.servers: list[ModbusServer] = []
         self.clients: list[Client] = []

@@ -2,10 +2,11 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from functools import partial
 from importlib.metadata import version
 
 from cellctl import log
-from cellctl.api.modbus.heartbeat import HeartbeatWatch
+from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.image import input_block
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
@@ -39,7 +40,7 @@ class PlcInterface:
         self,
         config: Plc,
         submit: Submit,
-        heartbeat: HeartbeatWatch,
+        heartbeat: LineHeartbeat,
         remember_seq: Callable[[int], Awaitable[object]],
         *,
         previous_seq: int | None = None,
@@ -124,27 +125,31 @@ class PlcInterface:
         if error is not None:
             raise LineTaskDied(f"{type(error).__name__}: {error}") from error
 
-    def _committed(self) -> None:
+    def _committed(self, client: str) -> None:
         committed = self._latch.commit(self._registers.holding)
         if committed is not None:
-            dropped = self._queue.add(self._submission(*committed))
+            seq, command = committed
+            if not command.only_halts:
+                # Anybody may halt the unit, and whoever does so takes nothing over from the PLC.
+                self._line_heartbeat.commanded(client)
+            dropped = self._queue.add(self._submission(seq, command, client))
             if dropped is not None:
                 self._supersede(dropped)
         self._refresh()
 
-    def _submission(self, seq: int, command: UnitCommand) -> LineSubmission:
+    def _submission(self, seq: int, command: UnitCommand, client: str) -> LineSubmission:
         return LineSubmission(
             command,
             seq=seq,
-            heartbeat=self._line_heartbeat,
+            alive=partial(self._line_heartbeat.alive_of, client),
             remember_seq=self._remember_seq,
             stop_waits=self._queue.urgent,
             on_end=self.finish,
         )
 
-    def _beaten(self, value: int) -> None:
-        if self._line_heartbeat.seen(value):
-            _log.info("line heartbeat present")
+    def _beaten(self, client: str, value: int) -> None:
+        if self._line_heartbeat.seen(client, value):
+            _log.info("line heartbeat present", peer=client)
             self._refresh()
 
     def _lost(self) -> None:

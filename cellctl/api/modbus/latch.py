@@ -3,7 +3,8 @@
 Registers 0 to 26 are read as a command at the moment when ``cmd_seq`` changes. The first number
 after a start of the cell is suspect, because it may have been in the PLC for days. Only 1 is
 accepted, with which a PLC says that it begins anew; and not even 1 when that was the last number
-before the start.
+before the start. Commands that can only halt the unit are accepted with any first number: an old
+Stop does no harm, and a new one that is ignored leaves a robot moving.
 """
 
 from collections.abc import Sequence
@@ -50,10 +51,12 @@ class CommandLatch:
             self.result, self.reject_code = Result.NONE, RejectCode.NONE
             return None
         fresh, self._fresh = self._fresh, False
-        if fresh and (seq != 1 or self._previous_seq == 1):
+        command = _parse(holding, self._order)
+        suspect = fresh and (seq != 1 or self._previous_seq == 1)
+        if suspect and not command.only_halts:
             self._end(seq, Result.IGNORED, RejectCode.IGNORED_AFTER_RESTART)
             return None
-        return seq, _parse(holding, self._order)
+        return seq, command
 
     def begin(self, seq: int) -> None:
         """The command is being submitted. It may end before it is known to be accepted."""

@@ -41,21 +41,24 @@ class Responder:
         """``identity`` is vendor, product and version."""
         self._registers = registers
         self._objects = {number: text.encode("ascii") for number, text in enumerate(identity)}
-        self._functions: dict[int, Callable[[bytes], bytes]] = {
-            READ_HOLDING: lambda body: self._read(body, registers.read_holding),
-            READ_INPUT: lambda body: self._read(body, registers.read_input),
+        self._functions: dict[int, Callable[[bytes, str], bytes]] = {
+            READ_HOLDING: lambda body, _client: self._read(body, registers.read_holding),
+            READ_INPUT: lambda body, _client: self._read(body, registers.read_input),
             WRITE_ONE: self._write_one,
             WRITE_MANY: self._write_many,
             MASK_WRITE: self._mask_write,
             READ_WRITE: self._read_write,
-            DEVICE_ID: self._device_id,
+            DEVICE_ID: lambda body, _client: self._device_id(body),
         }
 
-    def answer(self, pdu: bytes) -> bytes:
-        """The answer to a request of at least one byte; bad requests get their exception."""
+    def answer(self, pdu: bytes, client: str) -> bytes:
+        """The answer to a request of at least one byte; bad requests get their exception.
+
+        ``client`` is the address that the request came from.
+        """
         function = pdu[0]
         try:
-            return pdu[:1] + self._functions.get(function, _unsupported)(pdu[1:])
+            return pdu[:1] + self._functions.get(function, _unsupported)(pdu[1:], client)
         except _Unsupported:
             code = Exc.ILLEGAL_FUNCTION
         except AddressRefused:
@@ -69,30 +72,30 @@ class Responder:
         _check(1 <= count <= MAX_READ)
         return _registers(source(address, count))
 
-    def _write_one(self, body: bytes) -> bytes:
+    def _write_one(self, body: bytes, client: str) -> bytes:
         address, value = struct.unpack(">HH", body)
-        self._registers.write_holding(address, [value])
+        self._registers.write_holding(address, [value], client)
         return body
 
-    def _write_many(self, body: bytes) -> bytes:
+    def _write_many(self, body: bytes, client: str) -> bytes:
         address, count, size = struct.unpack(">HHB", body[:5])
         _check(1 <= count <= MAX_WRITE and size == 2 * count)
-        self._registers.write_holding(address, struct.unpack(f">{count}H", body[5:]))
+        self._registers.write_holding(address, struct.unpack(f">{count}H", body[5:]), client)
         return body[:4]
 
-    def _mask_write(self, body: bytes) -> bytes:
+    def _mask_write(self, body: bytes, client: str) -> bytes:
         address, and_mask, or_mask = struct.unpack(">HHH", body)
         (present,) = self._registers.read_holding(address, 1)
         value = (present & and_mask) | (or_mask & ~and_mask & 0xFFFF)
-        self._registers.write_holding(address, [value])
+        self._registers.write_holding(address, [value], client)
         return body
 
-    def _read_write(self, body: bytes) -> bytes:
+    def _read_write(self, body: bytes, client: str) -> bytes:
         address, count, to, written, size = struct.unpack(">HHHHB", body[:9])
         _check(1 <= count <= MAX_READ and 1 <= written <= MAX_READ_WRITE and size == 2 * written)
         values = struct.unpack(f">{written}H", body[9:])
         self._registers.read_holding(address, count)  # refuse the read before anything is written
-        self._registers.write_holding(to, values)
+        self._registers.write_holding(to, values, client)
         return _registers(self._registers.read_holding(address, count))
 
     def _device_id(self, body: bytes) -> bytes:
@@ -117,7 +120,7 @@ def _registers(values: tuple[int, ...]) -> bytes:
     return struct.pack(f">B{len(values)}H", 2 * len(values), *values)
 
 
-def _unsupported(_body: bytes) -> bytes:
+def _unsupported(_body: bytes, _client: str) -> bytes:
     raise _Unsupported
 
 

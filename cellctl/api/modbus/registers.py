@@ -20,8 +20,9 @@ class RegisterFile:
     """
 
     def __init__(
-        self, *, on_commit: Callable[[], None], on_heartbeat: Callable[[int], None]
+        self, *, on_commit: Callable[[str], None], on_heartbeat: Callable[[str, int], None]
     ) -> None:
+        """Both are called with the address of the client that has written."""
         self._holding = [0] * HOLDING_SIZE
         self._input: tuple[int, ...] = (0,) * INPUT_SIZE
         self._on_commit = on_commit
@@ -50,8 +51,10 @@ class RegisterFile:
             raise AddressRefused
         return tuple(self._holding[address : address + count])
 
-    def write_holding(self, address: int, values: Sequence[int]) -> None:
+    def write_holding(self, address: int, values: Sequence[int], client: str) -> None:
         """FC6, 16, 22, 23: all or nothing; an item is written whole or not at all.
+
+        ``client`` is the address that the request came from.
 
         Raises ``AddressRefused``.
         """
@@ -63,6 +66,6 @@ class RegisterFile:
         self._holding[address : address + len(values)] = values
         # The heartbeat first: a command in the same request must not be refused for its absence.
         if _HEARTBEAT in written:
-            self._on_heartbeat(self._holding[_HEARTBEAT])
+            self._on_heartbeat(client, self._holding[_HEARTBEAT])
         if _COMMIT in written:
-            self._on_commit()
+            self._on_commit(client)

@@ -18,6 +18,7 @@ from cellctl.errors.line import CannotListen
 from cellctl.errors.link import PortInUse
 
 _log = log.get(__name__)
+_Address = ipaddress.IPv4Address | ipaddress.IPv6Address
 _HEADER = struct.Struct(">HHHB")
 _LENGTHS = range(2, 255)
 """Unit id and a PDU of 1 to 253 bytes."""
@@ -88,15 +89,15 @@ class ModbusServer:
     async def _connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         task = asyncio.current_task()
         assert task is not None
-        peer = str(writer.get_extra_info("peername")[0])
+        peer = _address(writer)
         self.counters["connections"] += 1
         reason = "refused"
         self._clients.add(task)
         try:
             if self._admits(peer):
                 _tune(writer)
-                _log.info("line connected", peer=peer)
-                reason = await self._serve(reader, writer)
+                _log.info("line connected", peer=str(peer))
+                reason = await self._serve(reader, writer, str(peer))
         except TimeoutError:
             reason = "too slow"
         except OSError as error:
@@ -106,17 +107,17 @@ class ModbusServer:
         finally:
             self._clients.discard(task)
             self.counters[reason] += 1
-            _log.info("line disconnected", peer=peer, reason=reason)
+            _log.info("line disconnected", peer=str(peer), reason=reason)
             writer.transport.abort()  # answers are out; close() would wait for a dead client
 
-    def _admits(self, peer: str) -> bool:
+    def _admits(self, peer: _Address) -> bool:
         if len(self._clients) > self._limits.clients:
             return False
-        address = ipaddress.ip_address(peer)
-        mapped = getattr(address, "ipv4_mapped", None)
-        return not self._allowed or any((mapped or address) in network for network in self._allowed)
+        return not self._allowed or any(peer in network for network in self._allowed)
 
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> str:
+    async def _serve(
+        self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, peer: str
+    ) -> str:
         while True:
             try:
                 async with asyncio.timeout(self._limits.idle_s):
@@ -134,13 +135,20 @@ class ModbusServer:
                     pdu = await reader.readexactly(length - 1)
             except asyncio.IncompleteReadError:
                 return "closed within a request"
-            answer = self._responder.answer(pdu)
+            answer = self._responder.answer(pdu, peer)
             self.counters["requests"] += 1
             self.counters["exceptions"] += answer[0] >= 0x80
             writer.write(_HEADER.pack(transaction, 0, len(answer) + 1, unit) + answer)
             async with asyncio.timeout(self._limits.frame_s):
                 await writer.drain()
             await asyncio.sleep(0)  # a client that floods must not starve the rest of the loop
+
+
+def _address(writer: asyncio.StreamWriter) -> _Address:
+    """Of the client; one that came in over IPv6 from an IPv4 address is known by the latter."""
+    address = ipaddress.ip_address(writer.get_extra_info("peername")[0])
+    mapped = address.ipv4_mapped if isinstance(address, ipaddress.IPv6Address) else None
+    return mapped or address
 
 
 def _tune(writer: asyncio.StreamWriter) -> None:

@@ -3,7 +3,6 @@
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 
-from cellctl.api.modbus.heartbeat import HeartbeatWatch
 from cellctl.command.submission import Submission
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
@@ -15,7 +14,8 @@ class LineSubmission(Submission):
 
     seq: int
     """``cmd_seq`` with which the PLC committed the command."""
-    heartbeat: HeartbeatWatch
+    alive: Callable[[], bool]
+    """Whether the client that gave the command has a heartbeat."""
     remember_seq: Callable[[int], Awaitable[object]]
     stop_waits: Callable[[], Awaitable[None]]
     on_end: Callable[[int, Result], object]
@@ -27,8 +27,7 @@ class LineSubmission(Submission):
 
     def link_fault(self) -> RejectCode:
         """A line without a heartbeat would not notice what its command does."""
-        alive = self.heartbeat.alive
-        return RejectCode.NONE if alive else RejectCode.LINE_HEARTBEAT_MISSING
+        return RejectCode.NONE if self.alive() else RejectCode.LINE_HEARTBEAT_MISSING
 
     async def remember(self) -> None:
         """Keep the number: the same one in the registers after a restart is then known as old."""

@@ -89,7 +89,8 @@ class GuardLoop:
         this process run: the machine stood still, on a virtual machine often for tens of
         milliseconds. Sensor and robot may have sent on time and the data may lie in the socket.
         That time must not count as their silence, or every pause of the machine would stop the
-        robot. It is excused by exactly its length, so a sensor that is silent too is still caught.
+        robot. It is excused by its length, so a sensor that is silent too is still caught, and by
+        ``MOST_EXCUSED_S`` at most, however long or often the machine pauses.
         """
         due_s = self._next_beat_s
         if self._monitor.armed:

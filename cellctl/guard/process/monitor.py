@@ -28,6 +28,12 @@ _FRESH_S = 0.05
 to come, so a staleness limit shorter than that would refuse every arming."""
 _LONGEST_TARE_S = 60.0
 
+MOST_EXCUSED_S = 0.05
+"""So much of a silence may be a machine that stood still; whatever is longer counts as silence.
+
+Once the machine runs again, a box or a robot outside of it has its data in the socket at once.
+"""
+
 
 class WrenchMonitor:
     """Turns each sample into a contact wrench and compares it with the limits that are armed.
@@ -109,6 +115,7 @@ class WrenchMonitor:
         silent_s = now_s - self.sample_time_s - self._sample_excuse_s
         if not silent_s <= limits.stale_s:
             detail = f"no sample for {silent_s * 1e3:.1f} ms, allowed {limits.stale_s * 1e3:.1f} ms"
+            detail += _besides(self._sample_excuse_s)
             self.stop(TripReason.SENSOR_SILENT, now_s, detail, value=silent_s)
         elif armed.rate.check(now_s):
             detail = f"{armed.rate.rate_hz:.0f} Hz, allowed {limits.rate_hz[0]:.0f} … "
@@ -120,10 +127,11 @@ class WrenchMonitor:
     def excuse(self, seconds: float) -> None:
         """Do not count this time as silence: the machine stood still and could not read.
 
-        The next sample or pose ends the excuse, so it never hides more than the pause itself.
+        The next sample or pose ends the excuse, so it never hides more than the pause itself, nor
+        more than ``MOST_EXCUSED_S``: nobody judges the force meanwhile, and the robot moves.
         """
-        self._sample_excuse_s += seconds
-        self._flange_excuse_s += seconds
+        self._sample_excuse_s = min(self._sample_excuse_s + seconds, MOST_EXCUSED_S)
+        self._flange_excuse_s = min(self._flange_excuse_s + seconds, MOST_EXCUSED_S)
         if self._armed is not None:
             self._armed.rate.excuse(seconds)
 
@@ -246,6 +254,7 @@ class WrenchMonitor:
         if not age_s <= limits.flange_age_s:
             allowed_ms = limits.flange_age_s * 1e3
             detail = f"newest pose {age_s * 1e3:.0f} ms old, allowed {allowed_ms:.0f} ms"
+            detail += _besides(self._flange_excuse_s)
             self.stop(TripReason.FLANGE_STALE, now_s, detail, value=age_s)
 
     def _continue_tare(self, tare: TareAverage, wrench: Six, time_s: float) -> None:
@@ -254,6 +263,11 @@ class WrenchMonitor:
             self.contact.set_tare(result.mean)
             self.signal_jumped()
             self._tare, self.tare_result = None, result
+
+
+def _besides(excused_s: float) -> str:
+    """What a trip for silence says about pauses of the machine."""
+    return f", besides {excused_s * 1e3:.0f} ms of a machine that stood still" if excused_s else ""
 
 
 def _raise_peaks(peaks: list[float], wrench: Six) -> None:

@@ -16,6 +16,7 @@ from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement,
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.stations import DeckCell
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, obey_hold
@@ -38,12 +39,13 @@ class OpenRun:
     journal: Journal
     """Numbers iterations and pictures through all beginnings."""
     safe_point: SafePoint
+    interruption: Interruption
 
     @classmethod
     def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
         """A run whose record was opened."""
         journal = Journal(context.recorder, facts.cell.workers)
-        return cls(facts, services.board, journal, context.safe_point)
+        return cls(facts, services.board, journal, context.safe_point, context.interruption)
 
 
 @dataclass(frozen=True, slots=True)

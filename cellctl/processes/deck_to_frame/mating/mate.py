@@ -29,23 +29,31 @@ from cellctl.processes.deck_to_frame.mating.result import (
 )
 from cellctl.processes.deck_to_frame.mating.retreat import retreat
 from cellctl.processes.deck_to_frame.mating.seating import back_off, creep_to, hold, stiffness_of
+from cellctl.runtime.interruption import Interruption
 
 _log = log.get(__name__)
 
 
-async def mate(robot: Robot, guard: GuardPort, plan: MatingPlan, report: Report) -> MatingResult:
+async def mate(
+    robot: Robot,
+    guard: GuardPort,
+    plan: MatingPlan,
+    report: Report,
+    interruption: Interruption | None = None,
+) -> MatingResult:
     """One attempt: settle, tare, travel, touch, creep, hold, judge, relax.
 
     Starts at the stand-off of the plan with both latches released. A seat that is not one comes
     back as ``MatingOutcome.FALSE_SEAT`` with the arm backed off: measure again before the next
     attempt. Any violation stops the robot, backs off where that is right (``retreat``) and raises
     its own fault; a ``ForceError`` carries the force curve, and ``report`` gets it in any case.
+    An ``interruption`` ends it like a violation, without one only cancelling does.
     """
     require_stand_off(robot, plan)
     async with Recorder(robot, guard, plan) as recorder:
         attempt = Attempt(robot, guard, plan, recorder, report)
         try:
-            return await _run(attempt)
+            return await (interruption or Interruption()).unless(_run(attempt))
         except CellError as fault:
             await retreat(attempt, fault)
             raise
@@ -58,7 +66,9 @@ async def mate_until_seated(
     guard: GuardPort,
     measured_plan: Callable[[int], Awaitable[MatingPlan]],
     report: Report,
+    *,
     max_tries: int = 3,
+    interruption: Interruption | None = None,
 ) -> MatingResult:
     """Attempts with a fresh measurement before each, until the deck is seated.
 
@@ -67,7 +77,7 @@ async def mate_until_seated(
     raises.
     """
     for number in range(1, max_tries + 1):
-        result = await mate(robot, guard, await measured_plan(number), report)
+        result = await mate(robot, guard, await measured_plan(number), report, interruption)
         if result.outcome is MatingOutcome.SEATED:
             return result
         _log.warning("false seat", attempt=number, gap_mm=result.verdict.gap_m * 1e3)

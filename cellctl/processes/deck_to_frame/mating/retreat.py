@@ -18,6 +18,7 @@ from cellctl.errors.force import (
     SensorSaturated,
     SensorSilent,
 )
+from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.seating import back_off
 
@@ -35,9 +36,11 @@ _PRESSES_ON = (
     SensorDataInvalid,
     SensorFrozen,
     SensorRateWrong,
+    LineLostInContact,
 )
 """Faults found by mating or guard while the arm may press on the frame with a force that nobody
-knows or wants. Robot, guard and links work with these; any other fault leaves the arm alone."""
+knows or wants, and a lost line where the recipe wants to leave the contact then. Robot, guard and
+links work with these; any other fault leaves the arm alone."""
 
 
 async def retreat(attempt: Attempt, fault: CellError) -> None:

@@ -30,7 +30,12 @@ async def mate_deck(corrected: Corrected) -> Seated:
 
     async with curves_kept(run) as report:
         result = await mate_until_seated(
-            run.cell.main, run.cell.guard, measured_plan, report, run.recipe.mating.max_tries
+            run.cell.main,
+            run.cell.guard,
+            measured_plan,
+            report,
+            max_tries=run.recipe.mating.max_tries,
+            interruption=run.opened.interruption,
         )
     await run.journal.mating_result(result)
     return Seated(

@@ -56,6 +56,19 @@ async def test_a_loop_that_was_held_up_does_not_blame_the_line(rig: Rig) -> None
     await asyncio.wait_for(rig.lost.wait(), 2)  # and then it really stops
 
 
+async def test_a_loop_that_is_always_late_finds_a_dead_line_all_the_same(rig: Rig) -> None:
+    rig.watch.seen(1)
+    turns = 0
+    while not rig.lost.is_set() and turns < 20:
+        turns += 1
+        # Whatever in the daemon holds the loop up, again and again.
+        asyncio.get_running_loop().call_soon(time.sleep, 0.18)
+        await asyncio.sleep(0)
+    # The time-out of 0.1 s and the grace of 0.25 s take two turns each, and one more at each end.
+    assert rig.watch.lost
+    assert turns <= 6
+
+
 async def test_a_line_that_died_while_the_loop_was_held_up_is_lost_after_all(rig: Rig) -> None:
     rig.watch.seen(1)
     asyncio.get_running_loop().call_soon(time.sleep, 0.4)

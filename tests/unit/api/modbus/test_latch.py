@@ -5,7 +5,7 @@ import pytest
 from cellctl.api.modbus.image import encode
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.register_map import HOLDING_SIZE, item
-from cellctl.packml import RejectCode
+from cellctl.packml import Command, RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import Source, UnitCommand
 
@@ -44,6 +44,20 @@ def test_what_stood_in_the_registers_at_the_start_is_ignored(
     assert latch.result is Result.IGNORED
     assert latch.reject_code is RejectCode.IGNORED_AFTER_RESTART
     assert latch.commit(holding(first + 1, cntrl_cmd=2)) is not None
+
+
+@pytest.mark.parametrize("command", [Command.STOP, Command.ABORT, Command.HOLD, Command.SUSPEND])
+@pytest.mark.parametrize(("previous", "first"), [(None, 25), (25, 25), (24, 25), (1, 1)])
+def test_what_halts_the_unit_is_obeyed_from_the_first_number_on(
+    command: Command, previous: int | None, first: int
+) -> None:
+    latch = CommandLatch(previous, "big")
+    assert latch.commit(holding(first, cntrl_cmd=command)) == (
+        first,
+        UnitCommand(Source.LINE, cntrl_cmd=command),
+    )
+    # The number was seen: the PLC counts on from it, and what comes next is no leftover.
+    assert latch.commit(holding(first + 1, cntrl_cmd=Command.RESET)) is not None
 
 
 def test_a_line_that_begins_anew_with_1_is_heard() -> None:

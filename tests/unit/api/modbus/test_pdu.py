@@ -7,20 +7,25 @@ from hypothesis import strategies as st
 from cellctl.api.modbus.pdu import Responder
 from cellctl.api.modbus.registers import RegisterFile
 
+PLC = "192.0.2.10"
+
 
 class Line:
     def __init__(self) -> None:
         self.commits = 0
         self.beats: list[int] = []
-        self.registers = RegisterFile(on_commit=self._commit, on_heartbeat=self.beats.append)
+        self.registers = RegisterFile(on_commit=self._commit, on_heartbeat=self._beat)
         self.registers.publish(tuple(range(125)))
         self._responder = Responder(self.registers, ("V", "Prod", "1.2"))
 
-    def _commit(self) -> None:
+    def _commit(self, _client: str) -> None:
         self.commits += 1
 
+    def _beat(self, _client: str, value: int) -> None:
+        self.beats.append(value)
+
     def ask(self, request: str) -> str:
-        return self._responder.answer(bytes.fromhex(request)).hex(" ")
+        return self._responder.answer(bytes.fromhex(request), PLC).hex(" ")
 
 
 @pytest.fixture
@@ -104,7 +109,9 @@ def test_identification(line: Line) -> None:
 
 @given(st.binary(min_size=1, max_size=253))
 def test_any_request_gets_one_answer_of_its_function(pdu: bytes) -> None:
-    registers = RegisterFile(on_commit=lambda: None, on_heartbeat=lambda _value: None)
-    answer = Responder(registers, ("V", "P", "1")).answer(pdu)
+    registers = RegisterFile(
+        on_commit=lambda _client: None, on_heartbeat=lambda _client, _value: None
+    )
+    answer = Responder(registers, ("V", "P", "1")).answer(pdu, PLC)
     assert answer[0] in (pdu[0], pdu[0] | 0x80)
     assert len(answer) <= 253

@@ -8,7 +8,7 @@ import pytest
 
 from cellctl.errors.force import GuardRefused
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits, Six
-from cellctl.guard.process.monitor import WrenchMonitor
+from cellctl.guard.process.monitor import MOST_EXCUSED_S, WrenchMonitor
 from cellctl.guard.report import TripReason
 from cellctl.interfaces.ft_sensor import FtHealth
 from tests.unit.guard.process.samples import HEALTHY, flange, ready_monitor, sample
@@ -108,6 +108,37 @@ def test_a_stall_of_the_machine_is_no_silence_but_buys_no_more_than_itself() -> 
     assert monitor.trip is None
     monitor.tick(0.0551)
     assert reason(monitor) is TripReason.SENSOR_SILENT
+
+
+TURN_S = 0.002
+
+
+@pytest.mark.parametrize("late_s", [0.02, 0.05, 0.1])
+def test_a_sensor_that_is_silent_while_the_machine_keeps_pausing_trips(late_s: float) -> None:
+    monitor = armed()
+    time_s = until_trip(monitor, late_s)
+    assert reason(monitor) is TripReason.SENSOR_SILENT
+    assert time_s <= LIMITS.stale_s + MOST_EXCUSED_S + late_s + TURN_S
+
+
+@pytest.mark.parametrize("late_s", [0.02, 0.05, 0.1])
+def test_a_robot_that_is_silent_while_the_machine_keeps_pausing_trips(late_s: float) -> None:
+    monitor = armed(has_channel=True)
+    time_s = until_trip(monitor, late_s, samples=True)
+    assert reason(monitor) is TripReason.FLANGE_STALE
+    assert time_s <= LIMITS.flange_age_s + MOST_EXCUSED_S + late_s + TURN_S
+
+
+def until_trip(monitor: WrenchMonitor, late_s: float, *, samples: bool = False) -> float:
+    """Turns as the loop takes them, each of them late; the time of the trip, at most 2 s."""
+    time_s = 0.0
+    while monitor.trip is None and time_s < 2.0:
+        time_s += TURN_S + late_s
+        monitor.excuse(late_s)
+        if samples:
+            monitor.sample(sample(time_s))
+        monitor.tick(time_s)
+    return time_s
 
 
 def test_frozen_values() -> None:

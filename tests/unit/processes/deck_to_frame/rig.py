@@ -18,6 +18,7 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.recorder import RunRecorder
 from cellctl.records.store import RunStore
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.workers import VisionWorkers
 from tests.unit.cell.bench import Bench, TruthMeasurer
@@ -54,7 +55,9 @@ class RunRig:
 
     def run(self, **changes: Any) -> AssemblyRun:
         """With changes of its facts."""
-        opened = OpenRun(self.bench.facts(**changes), self.board, self.journal, self.pauses)
+        opened = OpenRun(
+            self.bench.facts(**changes), self.board, self.journal, self.pauses, Interruption()
+        )
         return AssemblyRun(opened, cast(PartMeasurer, self.truth))
 
     def ready(self, **changes: Any) -> Ready:

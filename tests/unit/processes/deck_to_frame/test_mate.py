@@ -10,6 +10,7 @@ from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from benchmarks.campaign_mating_trial import nominal_settings, plan_for
 from cellctl.errors.force import FalseSeat, MatingPlanInvalid, NotSettled, TareImplausible
+from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.mating.commissioning import measure_contact_stiffness
 from cellctl.processes.deck_to_frame.mating.mate import mate, mate_until_seated
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
@@ -19,6 +20,7 @@ from cellctl.processes.deck_to_frame.mating.result import (
     MatingProgress,
     MatingResult,
 )
+from cellctl.runtime.interruption import Interruption
 
 LATENCY_S = 0.25
 
@@ -174,6 +176,30 @@ def test_cancelling_stops_the_robot() -> None:
     run_simulated(cell.start_s, cell.advance, cancelled)
     assert cell.controller.latched
     assert not cell.arm.moving(cell.world.time_s)
+
+
+def test_an_interruption_stops_the_robot_and_leaves_the_contact() -> None:
+    cell = cell_of()
+    plan = plan_for(cell, nominal_settings(LATENCY_S))
+    lost = LineLostInContact("mate")
+
+    async def interrupted() -> float:
+        interruption = Interruption()
+
+        def report(progress: MatingProgress) -> None:
+            if progress.phase is MatingPhase.HOLD:
+                interruption.interrupt(lost)
+
+        with pytest.raises(LineLostInContact):
+            await mate(cell.robot, cell.guard, plan, report, interruption)
+        return plan.travel_of(cell.robot.reported)
+
+    travel_m = run_simulated(cell.start_s, cell.advance, interrupted)
+    assert not cell.arm.moving(cell.world.time_s)
+    assert cell.world.payload.contact_force_n == 0.0
+    backed_off_m = plan.window.expected_m - travel_m
+    assert backed_off_m == pytest.approx(plan.settings.back_off_m, abs=1e-4)
+    assert not hasattr(lost, "__notes__")
 
 
 def test_contact_stiffness_is_measured_by_touching() -> None:

@@ -1,0 +1,45 @@
+"""How a step in contact is ended from outside without being cancelled: it leaves in its own way."""
+
+import asyncio
+from collections.abc import Coroutine
+from typing import Any, TypeVar
+
+from cellctl.errors import CellError
+
+T = TypeVar("T")
+
+
+class Interruption:
+    """One for each run. A process runs what it wants to be able to leave inside ``unless``.
+
+    Cancelling ends a coroutine with no more than its clean-up, which stops the robot. Whoever
+    presses on a part may have to do more, such as backing off, and does that in the ``except`` of
+    the fault that comes out of ``unless``.
+    """
+
+    def __init__(self) -> None:
+        self._wanted: asyncio.Future[CellError] | None = None
+
+    def interrupt(self, fault: CellError) -> bool:
+        """End what runs by this fault; False when nothing runs that could be left."""
+        if self._wanted is None or self._wanted.done():
+            return False
+        self._wanted.set_result(fault)
+        return True
+
+    async def unless(self, work: Coroutine[Any, Any, T]) -> T:
+        """Run ``work``; when interrupted, cancel it, wait for its clean-up and raise the fault.
+
+        A fault that ``work`` raised by itself at the same moment is the one that counts.
+        """
+        wanted = self._wanted = asyncio.get_running_loop().create_future()
+        working = asyncio.create_task(work)
+        try:
+            await asyncio.wait({working, wanted}, return_when=asyncio.FIRST_COMPLETED)
+            if wanted.done() and not (working.done() and working.exception()):
+                raise wanted.result()
+            return working.result()
+        finally:
+            self._wanted = None
+            working.cancel()
+            await asyncio.gather(working, return_exceptions=True)
