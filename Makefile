@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration cell campaign campaign-mating bench bench-metrology bench-looks bench-guard \
+.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating bench bench-metrology bench-looks bench-guard \
 	format lint types imports check test test-parallel test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -31,6 +31,10 @@ demo: venv
 
 demo-calibration: venv
 	$(BIN)/cellctl demo --calibrate --seed $(SEED)
+
+# RUN is the folder that demo-calibration has written; see docs/decisions/0004.
+ship-demo-calibration: venv
+	$(BIN)/python -m fakes.demo.ship $(RUN) config/demo-calibration
 
 cell: venv
 	$(BIN)/cellctl demo --stay --seed $(SEED)

@@ -43,7 +43,8 @@ def campaign(
         console.print(_statistics(good))
     for result in results:
         if not result["passed"]:
-            console.print(f"seed {result['seed']}: {result['fault']}", style="red")
+            why = result["fault"] or "beyond its limit: " + ", ".join(result.get("beyond", ()))
+            console.print(f"seed {result['seed']}: {why}", style="red")
     console.print(f"{len(good)} of {len(results)} good; figures in {out / 'campaign.json'}")
     raise typer.Exit(0 if len(good) == len(results) else 1)
 

@@ -15,6 +15,9 @@ def run(
     data_dir: Annotated[
         Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
     ] = None,
+    calibration_dir: Annotated[
+        Path | None, typer.Option(help="Overrides calibration_dir of the cell file.")
+    ] = None,
     modbus_port: Annotated[
         int | None, typer.Option(help="Overrides plc.port; 0 takes any free port.")
     ] = None,
@@ -24,7 +27,8 @@ def run(
 ) -> None:
     """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
     # Imported here, so that ``--help`` and the other commands need not load the daemon.
-    from cellctl.daemon.app import serve
+    from cellctl.daemon.app import Overrides, serve
 
     log.configure(level=log_level)
-    sys.exit(asyncio.run(serve(cell_file, data_dir=data_dir, modbus_port=modbus_port)))
+    overrides = Overrides(data_dir, calibration_dir, modbus_port)
+    sys.exit(asyncio.run(serve(cell_file, overrides)))

@@ -6,6 +6,7 @@ import signal
 import sys
 from collections.abc import Coroutine
 from contextlib import AsyncExitStack
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import TracebackType
@@ -33,21 +34,39 @@ _log = log.get(__name__)
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-async def serve(cell_file: Path, *, data_dir: Path | None, modbus_port: int | None) -> int:
+@dataclass(frozen=True, slots=True)
+class Overrides:
+    """What the command line says in place of the cell file; None leaves the cell file's word."""
+
+    data_dir: Path | None = None
+    calibration_dir: Path | None = None
+    modbus_port: int | None = None
+
+    def of(self, config: CellConfig) -> CellConfig:
+        """The cell file's content with these in place."""
+        changes: dict[str, Any] = {}
+        if self.modbus_port is not None:
+            changes["plc"] = config.plc.model_copy(update={"port": self.modbus_port})
+        if self.calibration_dir is not None:
+            changes["calibration_dir"] = str(self.calibration_dir.absolute())
+        return config.model_copy(update=changes)
+
+
+async def serve(cell_file: Path, overrides: Overrides) -> int:
     """Run one cell until a signal; returns the exit code.
 
     Raises the numbered fault when the daemon cannot be started, or when a part of it dies. Devices
     that do not answer leave the unit Aborted, and Clear tries them again. However it ends, motion
     is stopped, an open run is closed as aborted and no child process is left.
     """
-    config = _with_port(load_cell(cell_file), modbus_port)
+    config = overrides.of(load_cell(cell_file))
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in SIGNALS:
         loop.add_signal_handler(number, stop.set)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
-        data_dir = data_dir or Path(config.data_dir)
+        data_dir = overrides.data_dir or Path(config.data_dir)
         archive = AsyncRunStore(data_dir)
         stack.callback(archive.close)
         cell = Cell(config, cell_file.parent)
@@ -142,10 +161,3 @@ def _tell(cell: Cell, plc: PlcInterface, **how: bool | str) -> None:
     notify(f"STATUS={status}, Modbus TCP on port {plc.port}")
     json.dump({**how, "cell": name, "modbus_port": plc.port}, sys.stdout)
     print(flush=True)
-
-
-def _with_port(config: CellConfig, modbus_port: int | None) -> CellConfig:
-    if modbus_port is None:
-        return config
-    plc = config.plc.model_copy(update={"port": modbus_port})
-    return config.model_copy(update={"plc": plc})

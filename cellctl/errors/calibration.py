@@ -223,6 +223,18 @@ class ClockNotTrusted(CalibrationError):
     remedy = "Set the clock, see that it is synchronised, and start again."
 
 
+class CalibrationOfOldForm(CalibrationError):
+    """A stored calibration is of the form whose dates anybody could change."""
+
+    number = 638
+    text = "Stored calibration is of an earlier version"
+    cause = "Its file protects the record alone, not its dates and its serial number."
+    remedy = (
+        "Compare dates and serial numbers with your own papers, then run "
+        "`cellctl calibrate seal --by NAME`; or calibrate again in Maintenance mode."
+    )
+
+
 class HeadPoseChanged(CalibrationError):
     """A head's measuring pose is not the one at which it was calibrated."""
 

@@ -94,6 +94,16 @@ class ValueRefused(RecordsError):
     reaction = Reaction.WARN
 
 
+class FigureBeyondLimit(RecordsError):
+    """A run came to its end with a figure that is not within its limit."""
+
+    number = 811
+    text = "A figure of the run is beyond its limit"
+    cause = "The part or the work on it is not as the recipe demands; the detail names the figures."
+    remedy = "Look at the figures in the report; the part counts as bad until somebody decides."
+    reaction = Reaction.STOP
+
+
 class DiskSilent(RecordsError):
     """The disk did not take or give what a command waits for."""
 

@@ -203,6 +203,12 @@ class SeatedOffPosition(VisionError):
 
     number = 452
     text = "The seated deck is off its position"
-    cause = "The deck slipped while it was pressed, or the last measurement was wrong."
-    remedy = "Check the pin holes with plug gauges; do not fasten before the cause is known."
+    cause = (
+        "The deck slipped while it was pressed, something lies between deck and frame, or the last "
+        "measurement was wrong."
+    )
+    remedy = (
+        "Check the pin holes with plug gauges and the joint with feeler gauges; do not fasten "
+        "before the cause is known."
+    )
     reaction = Reaction.STOP

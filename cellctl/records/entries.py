@@ -277,6 +277,12 @@ class RunRecord:
         """The last figure of each key: a further attempt replaces what an earlier one found."""
         return {entry.key: entry for entry in self.figures}
 
+    @property
+    def beyond_limits(self) -> tuple[Figure, ...]:
+        """Figures that count and are not within their limits."""
+        newest = self.newest_figures.values()
+        return tuple(entry for entry in newest if entry.verdict is Verdict.FAIL)
+
     def value(self, key: str) -> float | None:
         """The last value of a figure; None when it is unknown or was never recorded."""
         found = self.newest_figures.get(key)

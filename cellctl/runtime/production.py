@@ -5,10 +5,12 @@ from typing import Any
 from cellctl import log
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
+from cellctl.errors.records import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.recorder import RunRecorder
 from cellctl.runtime.interruption import Interruption
+from cellctl.records.store import RunStore
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.process import Process, RunContext
@@ -96,12 +98,19 @@ class ProductionJob(Job):
                 _log.info("held meanwhile: everything is measured again")
                 state = await self._process.begin(run)
             else:
+                await self._require_figures_within()
                 return
+
+    async def _require_figures_within(self) -> None:
+        """Raise ``FigureBeyondLimit``: a run is good with all of its figures or not at all."""
+        record = await self._process.services.store.do(RunStore.run, self.run_number)
+        if beyond := record.beyond_limits:
+            raise FigureBeyondLimit(", ".join(f"{one.label} {one.value}" for one in beyond))
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """Close the run record; nothing to close when it could not be opened."""
         self._board.leave_step()
-        if isinstance(fault, tuple(self._process.spoiled_by)):
+        if isinstance(fault, (FigureBeyondLimit, *self._process.spoiled_by)):
             outcome = RunResult.BAD
         await self._record.close(outcome, fault)
         return outcome

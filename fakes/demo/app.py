@@ -17,7 +17,7 @@ from fakes.demo.children import ChildFailed, Family
 from fakes.demo.control import Refused
 from fakes.demo.demo import Demo
 from fakes.demo.ports import PortInUse, check_ports
-from fakes.demo.safety import NotSimulated, as_drawn
+from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, require_simulated
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.scenes.registry import UnknownScene
 
@@ -26,6 +26,7 @@ _REFUSALS = (
     ChildFailed,
     Refused,
     OSError,
+    FolderInUse,
     NotSimulated,
     PortInUse,
     registry.UnknownProcess,
@@ -91,7 +92,8 @@ def demo(
 
 def _check(files: Files) -> None:
     """Everything that can be said before a process starts; raises one of ``_REFUSALS``."""
-    as_drawn(files.cell)
+    require_simulated(files.cell)
+    require_own_folder(files.out)
     try:
         scenario = scenarios.load(files.scenario)
     except (tomllib.TOMLDecodeError, ValidationError) as error:

@@ -47,6 +47,8 @@ class Row:
     """None for what was not measured."""
     form: str = "{}"
     limit: str = ""
+    within: bool | None = None
+    """None where there is no limit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -69,7 +69,8 @@ def result_table(outcome: Outcome) -> Table:
     """For the end of the demonstration."""
     table = Table("figure", "value", "limit", title=f"seed {outcome.seed}: {outcome.result}")
     for row in outcome.judgement.rows:
-        table.add_row(row.name, "–" if row.value is None else row.form.format(row.value), row.limit)
+        written = "–" if row.value is None else row.form.format(row.value)
+        table.add_row(row.name, written, row.limit, style="red" if row.within is False else None)
     table.add_row("wall time, s", f"{outcome.wall_s:.0f}", "")
     return table
 

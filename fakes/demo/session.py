@@ -13,6 +13,7 @@ from fakes.demo.control import Control
 from fakes.demo.demo import Demo
 from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
+from fakes.demo.safety import own_calibrations
 from fakes.demo.verdict import why_not_good
 
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
@@ -64,9 +65,11 @@ class Session:
     def start_daemon(self) -> None:
         """The daemon, until every device of its cell file is connected."""
         store = self._folder / "store"
-        self._daemon = self._spawn(
-            "daemon", ["-m", "cellctl", "run", str(self._files.cell), "--data-dir", str(store)]
-        )
+        command = ["-m", "cellctl", "run", str(self._files.cell), "--data-dir", str(store)]
+        calibrations = own_calibrations(self._files.cell, self._folder)
+        if calibrations is not None:
+            command += ["--calibration-dir", str(calibrations)]
+        self._daemon = self._spawn("daemon", command)
         self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
         self._console.print(f"both are up; record and logs in {self._folder}/")
 

@@ -1,8 +1,8 @@
 """One calibration in its file: a JSON envelope around the record of a result.
 
-The envelope has ``kind``, ``id`` (SHA-256 of the record), ``made``, ``valid_until``, ``software``,
-``serial_number`` and ``record``. A record that was changed by hand no longer fits its id and is
-refused.
+The envelope has ``format``, ``kind``, ``id``, ``made``, ``valid_until``, ``software``,
+``serial_number`` and ``record``. The id is the SHA-256 of all the others: a file of which anything
+was changed by hand, a date too, no longer fits its id and is refused.
 """
 
 import hashlib
@@ -17,9 +17,13 @@ from cellctl.calibration.store.calibration_io import write_file
 from cellctl.calibration.store.marker import require_not_invalidated
 from cellctl.errors.calibration import (
     CalibrationMissing,
+    CalibrationOfOldForm,
     CalibrationRecordInvalid,
     ClockNotTrusted,
 )
+
+FORMAT = 2
+"""Files of format 1 have no such field; their id is that of the record alone (``old_form``)."""
 
 CLOCK_STEP = timedelta(minutes=1)
 """Largest backward step of the system clock that is accepted; a synchronised clock stays within."""
@@ -40,8 +44,8 @@ class StoredCalibration:
 
     @property
     def id(self) -> str:
-        """SHA-256 of the record."""
-        return record_id(self.record)
+        """SHA-256 of everything in the envelope."""
+        return content_id(envelope_of(self))
 
     def require_past(self, now: datetime) -> None:
         """Raise ``ClockNotTrusted`` when it was made later than ``now``."""
@@ -55,31 +59,37 @@ def require_clock_after(newest: datetime, now: datetime, what: str) -> None:
         raise ClockNotTrusted(f"it says {now:%Y-%m-%d %H:%M:%S}, {what} {newest:%Y-%m-%d %H:%M:%S}")
 
 
-def record_id(record: Mapping[str, Any]) -> str:
-    """SHA-256 of the record in canonical JSON."""
-    text = json.dumps(record, sort_keys=True, separators=(",", ":"), allow_nan=False)
+def content_id(content: Mapping[str, Any]) -> str:
+    """SHA-256 of plain data in canonical JSON."""
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def write_stored(folder: Path, stored: StoredCalibration) -> None:
-    """Write ``<kind>.json`` whole or not at all; raises ``CalibrationNotStored``."""
-    envelope = {
+def envelope_of(stored: StoredCalibration) -> dict[str, Any]:
+    """The file's content but for its id."""
+    return {
+        "format": FORMAT,
         "kind": stored.kind,
-        "id": stored.id,
         "made": stored.made.astimezone(UTC).isoformat(),
         "valid_until": stored.valid_until.astimezone(UTC).isoformat(),
         "software": stored.software,
         "serial_number": stored.serial_number,
         "record": stored.record,
     }
-    text = json.dumps(envelope, indent=1, allow_nan=False) + "\n"
+
+
+def write_stored(folder: Path, stored: StoredCalibration) -> None:
+    """Write ``<kind>.json`` whole or not at all; raises ``CalibrationNotStored``."""
+    content = {"id": stored.id, **envelope_of(stored)}
+    text = json.dumps(content, indent=1, allow_nan=False) + "\n"
     write_file(folder / f"{stored.kind}.json", text.encode())
 
 
 def read_calibration(folder: Path, kind: str) -> StoredCalibration:
     """Read a calibration that nothing has invalidated.
 
-    Raises ``CalibrationMissing``, ``CalibrationInvalidated`` or ``CalibrationRecordInvalid``.
+    Raises ``CalibrationMissing``, ``CalibrationInvalidated``, ``CalibrationRecordInvalid`` or
+    ``CalibrationOfOldForm``.
     """
     require_not_invalidated(folder, kind)
     return read_stored(folder, kind)
@@ -88,27 +98,41 @@ def read_calibration(folder: Path, kind: str) -> StoredCalibration:
 def read_stored(folder: Path, kind: str) -> StoredCalibration:
     """Read a calibration, also one that was invalidated.
 
-    Raises ``CalibrationMissing`` or ``CalibrationRecordInvalid``.
+    Raises ``CalibrationMissing``, ``CalibrationRecordInvalid`` or ``CalibrationOfOldForm``.
     """
     path = folder / f"{kind}.json"
+    content = read_content(path, kind)
+    if isinstance(content, dict) and "id" in content and "format" not in content:
+        raise CalibrationOfOldForm(f"{path}")
+    stored, expected = parse_content(path, content)
+    # As it stands in the file, so that a field which nobody reads cannot be changed either.
+    matches = content_id({key: content[key] for key in content if key != "id"}) == expected
+    if not matches or stored.kind != kind or content["format"] != FORMAT:
+        raise CalibrationRecordInvalid(f"{path}: content does not match its id; it was changed")
+    return stored
+
+
+def read_content(path: Path, kind: str) -> Any:
+    """The JSON of a file; raises ``CalibrationMissing`` or ``CalibrationRecordInvalid``."""
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError as error:
         raise CalibrationMissing(f"{kind}: there is no {path}") from error
     except (OSError, ValueError) as error:
         raise CalibrationRecordInvalid(f"{path}: {error}") from error
+
+
+def parse_content(path: Path, content: Any) -> tuple[StoredCalibration, str]:
+    """What a file says, and the id that it has; raises ``CalibrationRecordInvalid``."""
     try:
         stored = StoredCalibration(
-            kind=str(data["kind"]),
-            record=data["record"],
-            made=datetime.fromisoformat(data["made"]),
-            valid_until=datetime.fromisoformat(data["valid_until"]),
-            software=str(data["software"]),
-            serial_number=str(data["serial_number"]),
+            kind=str(content["kind"]),
+            record=content["record"],
+            made=datetime.fromisoformat(content["made"]),
+            valid_until=datetime.fromisoformat(content["valid_until"]),
+            software=str(content["software"]),
+            serial_number=str(content["serial_number"]),
         )
-        matches = stored.kind == kind and stored.id == data["id"]
+        return stored, str(content["id"])
     except (KeyError, TypeError, ValueError) as error:
         raise CalibrationRecordInvalid(f"{path}: {error!r}") from error
-    if not matches:
-        raise CalibrationRecordInvalid(f"{path}: content does not match its id; it was changed")
-    return stored

@@ -35,6 +35,7 @@ from cellctl.calibration.solvers.transfer.transfer_picture import transfer_pictu
 from cellctl.cli.invalidate import invalidate
 from cellctl.cli.offline.measure import read_image
 from cellctl.cli.output import write_file
+from cellctl.cli.seal_calibrations import seal
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -45,6 +46,7 @@ NOT_PASSED = 3
 app = typer.Typer(help="Calibrate from files.", no_args_is_help=True, rich_markup_mode=None)
 
 app.command("invalidate")(invalidate)
+app.command("seal")(seal)
 
 InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/calibration.md.")]
 OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]

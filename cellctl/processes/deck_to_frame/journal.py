@@ -13,17 +13,26 @@ from cellctl.clock import utc_now
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
-from cellctl.processes.deck_to_frame.mating.record import plan_record, result_record
+from cellctl.processes.deck_to_frame.mating.record import (
+    plan_record,
+    result_limits,
+    result_record,
+)
 from cellctl.processes.deck_to_frame.mating.result import MatingProgress, MatingResult
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
 from cellctl.processes.deck_to_frame.poses.pose_correction import Judgement, Thresholds
+from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.entries import (
     error_figures,
     loop_pass,
     measurement_detail,
+    residual_figure,
     rms_um,
+    seat_limits_of,
+    seat_record,
 )
 from cellctl.processes.deck_to_frame.record.keys import (
     BASE,
@@ -32,9 +41,8 @@ from cellctl.processes.deck_to_frame.record.keys import (
     FLANGE_T_DECK,
     FRAME,
     HEAD_1,
+    LOOP,
     MATING,
-    PEAK_FORCE,
-    PIN_OFFSETS,
 )
 from cellctl.records.entries import Document, PoseOrigin
 from cellctl.records.figures import Limit, split_document
@@ -56,7 +64,7 @@ class Journal:
     curves: list[ForceCurve] = field(default_factory=list)
     iterations: int = 0
     """Passes of the measure-correct loop so far."""
-    _limit_force_n: float | None = None
+    _settings: MatingSettings | None = None
     """Of the mating that was planned last."""
     _kept: int = 0
     _names: Counter[str] = field(default_factory=Counter)
@@ -77,6 +85,7 @@ class Journal:
             frames=measured.frames,
             detail=measurement_detail(measured),
         )
+        await self.recorder.add(residual_figure(kind, measured))
         await self._reported(kind, measured)
         await self._pictures(kind, measured)
 
@@ -98,35 +107,31 @@ class Journal:
     ) -> None:
         """One pass of the loop; the correction that will follow, if one will."""
         entry = loop_pass(number, judgement, thresholds, measured, correction)
-        await self.recorder.add(entry, *error_figures(entry))
+        residual = residual_figure(LOOP, measured)
+        await self.recorder.add(entry, *error_figures(entry), residual)
         self.iterations = number
         await self._reported(f"iteration-{number}", measured)
         await self._pictures(f"iteration-{number}", measured)
 
     async def verification(
         self,
-        error: Array,
-        offsets_mm: Mapping[str, float],
-        limit_mm: float,
+        seat: SeatError,
+        recipe: DeckRecipe,
         measured: PartMeasurement,
     ) -> None:
-        """The seated deck: error against the seat, and the offset at each pin hole."""
+        """The seated deck: error against the seat, gap, rotation, offset at each pin hole."""
         await self.measurement("seated", measured)
-        limit = Limit(upper=limit_mm)
-        await self._document(
-            {"seated_error_mm_deg": in_mm_deg(error).tolist(), "pin_offsets_mm": dict(offsets_mm)},
-            {f"{PIN_OFFSETS}.{name}": limit for name in offsets_mm},
-        )
+        await self._document(seat_record(seat), seat_limits_of(seat, recipe))
 
     async def mating_plan(self, plan: MatingPlan) -> None:
         """What was derived before the approach."""
-        self._limit_force_n = plan.settings.limit_force_n
+        self._settings = plan.settings
         await self._document(plan_record(plan))
 
     async def mating_result(self, result: MatingResult) -> None:
         """How the mating went."""
-        limit = Limit(upper=self._limit_force_n)
-        await self._document(result_record(result), {PEAK_FORCE: limit})
+        limits = result_limits(self._settings) if self._settings else {}
+        await self._document(result_record(result), limits)
 
     def mating_progress(self, progress: MatingProgress) -> None:
         """Collects the curve of each attempt; called from within the mating."""

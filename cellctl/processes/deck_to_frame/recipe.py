@@ -108,6 +108,10 @@ class DeckRecipe(Recipe):
     station_tolerance_deg: Annotated[float, Field(gt=0, le=20)] = 3.0
     seated_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.2
     """Lateral offset at a pin hole that the seated deck may have."""
+    seated_gap_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.1
+    """Distance between deck and frame, in the middle of the face, that the cameras may see."""
+    seated_limit_deg: Annotated[float, Field(gt=0, le=5)] = 0.01
+    """Rotation about any axis of the frame that the seated deck may have."""
     pose_correction: PoseCorrection = PoseCorrection()
     mating: Mating
 

@@ -21,11 +21,19 @@ class ChiSquare:
     """Degrees of freedom: coordinates less the six of the pose."""
 
     @property
+    def limit(self) -> float:
+        """Greatest chi square that chance explains."""
+        return float(chdtri(self.freedom, _CHANCE))
+
+    @property
+    def explained(self) -> bool:
+        """True when the stated uncertainties explain the residuals."""
+        return self.chi2 <= self.limit
+
+    @property
     def growth(self) -> float:
         """Factor by which the variance of the pose must grow; 1 where chance explains it."""
-        if self.chi2 <= float(chdtri(self.freedom, _CHANCE)):
-            return 1.0
-        return self.chi2 / self.freedom
+        return 1.0 if self.explained else self.chi2 / self.freedom
 
 
 def chi_square(residuals_m: Array, covariance_m2: Array, design: Array, gain: Array) -> ChiSquare:

@@ -16,10 +16,12 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.entries import RunRecord, Verdict
+from cellctl.records.figures import Limit
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
 
+LIMIT_FORCE_N = 50.0
 GOOD_RUN = [
     State.RESETTING, State.IDLE, State.STARTING, State.EXECUTE, State.COMPLETING, State.COMPLETED,
 ]  # fmt: skip
@@ -60,6 +62,26 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     assert status.cycle_counter == 1
     assert status.step == 0
     assert not status.error
+
+
+async def test_a_figure_beyond_its_limit_is_no_good_part(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    judge = Limit.judge
+
+    def too_strict(limit: Limit, value: float | None) -> Verdict | None:
+        # The process itself goes on: it trusts its steps, of which one forgot to look.
+        return Verdict.FAIL if limit.upper == LIMIT_FORCE_N else judge(limit, value)
+
+    monkeypatch.setattr(Limit, "judge", too_strict)
+    seq = await rig.started(serial="SAT-7")
+    await rig.to(State.STOPPED)
+    record = await rig.record()
+    assert (record.head.result, record.head.fault_number) == ("bad", 811)
+    assert "peak force" in (record.head.fault or "")
+    assert rig.port.ended[seq] is not Result.GOOD
+    assert rig.shown().run_result is Result.BAD
+    assert rig.shown().cycle_counter == 0
 
 
 async def test_several_parts_in_a_row(rig: DaemonRig) -> None:

@@ -4,6 +4,7 @@
 hardware seed, so every result can be held against the devices as they really are.
 """
 
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +27,7 @@ from tests.unit.fakes.world.driving import to_taught
 
 CONFIG = Path(__file__).parents[3] / "config"
 SIGMAS = 5.0
+IN_MANY_YEARS = datetime(2040, 1, 1, tzinfo=UTC)
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +47,11 @@ def world() -> DeckOnFrame:
     for robot, pose in (("aux_1", "measure"), ("aux_2", "measure"), ("main", "clear")):
         to_taught(world, robot, pose)
     return world
+
+
+def test_fake_devices_do_not_age_so_their_calibrations_never_expire() -> None:
+    store = CalibrationStore(CONFIG / "demo-calibration", CALIBRATIONS, lambda: IN_MANY_YEARS)
+    assert store.fault(CALIBRATIONS, timedelta(hours=1), newest=IN_MANY_YEARS) is None
 
 
 @pytest.mark.parametrize("index", [0, 1])

@@ -1,12 +1,17 @@
 """A mating as plain data for the record: mm, mm/s, N, N·m."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingResult
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
+from cellctl.processes.deck_to_frame.record.keys import PEAK_FORCE
+from cellctl.records.figures import Limit
 
 
 def plan_record(plan: MatingPlan) -> dict[str, Any]:
@@ -47,6 +52,7 @@ def result_record(result: MatingResult) -> dict[str, Any]:
         "creep_steps": len(result.creep),
         "stiffness_n_per_mm": result.stiffness.stiffness_n_m * MM if result.stiffness else None,
         "hold_force_n": result.hold.force_n,
+        "hold_lateral_n": verdict.lateral_n,
         "hold_wrench": result.hold.wrench.tolist(),
         "seat_gap_mm": verdict.gap_m / MM,
         "released_force_n": result.released.force_n if result.released else None,
@@ -58,6 +64,25 @@ def result_record(result: MatingResult) -> dict[str, Any]:
         "peak_moment_n_m": statistics.peak_moment_n_m,
         "duration_s": result.duration_s,
         **_compliance_record(result),
+    }
+
+
+def result_limits(settings: MatingSettings) -> Mapping[str, Limit]:
+    """Limits of the figures of ``result_record``, by their keys.
+
+    Peaks of single samples are judged by the guard's limits for single samples: those of the
+    recipe are for filtered values, and noise alone may exceed them.
+    """
+    raw, seat = contact_limits(settings).raw, settings.seat
+    return {
+        "hold_force": Limit(seat.force_low_n, seat.force_high_n),
+        "hold_lateral": Limit(upper=seat.lateral_n),
+        "seat_gap": Limit(-seat.depth_m / MM, seat.depth_m / MM),
+        "released_force": Limit(settings.release_low_n, settings.release_high_n),
+        PEAK_FORCE: Limit(upper=settings.limit_force_n),
+        "peak_filtered_force": Limit(upper=settings.limit_force_n),
+        "peak_lateral": Limit(upper=raw[0]),
+        "peak_moment": Limit(upper=raw[3]),
     }
 
 

@@ -1,6 +1,6 @@
 """Measurements and passes of the loop as entries of the record, in mm, µm and degrees."""
 
-from dataclasses import asdict
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,14 +9,22 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
 from cellctl.processes.deck_to_frame.poses.pose_correction import Judgement, Thresholds
+from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.keys import (
     ANGLE_ERROR,
     COMPONENTS,
+    GAP_BY_VISION,
     LOOP,
+    PIN_OFFSETS,
     POSITION_ERROR,
+    SEAT_ROTATION,
+    WORST_RESIDUAL,
 )
 from cellctl.records.entries import Figure, LoopPass, PassComponent
 from cellctl.records.figures import Limit, figure
+from cellctl.vision.registration.chi_square import ChiSquare
+from cellctl.vision.registration.part_pose import RESIDUAL_LIMIT_M
 
 
 def loop_pass(
@@ -89,5 +97,54 @@ def measurement_detail(measured: PartMeasurement) -> dict[str, Any]:
             for name, residual in zip(measured.pose.names, measured.pose.residuals_m, strict=True)
         },
         "outliers": list(measured.pose.outliers),
-        "misfit": asdict(measured.pose.misfit),
+        "fit": fit_verdict(measured.pose.misfit),
+    }
+
+
+def fit_verdict(misfit: ChiSquare) -> dict[str, Any]:
+    """Whether the stated uncertainties explain the residuals, and what follows where they do not.
+
+    A part that is a few micrometres off its drawing fails this test of uncertainties: it is not a
+    bad part for that, its residuals have a limit of their own. But the standard deviations of its
+    pose grow by ``sigma_factor``.
+    """
+    verdict = "explained" if misfit.explained else "not explained"
+    return {
+        "verdict": f"{verdict} by the stated uncertainties",
+        "chi2": misfit.chi2,
+        "chi2_limit": misfit.limit,
+        "freedom": misfit.freedom,
+        "sigma_factor": float(np.sqrt(misfit.growth)),
+    }
+
+
+def residual_figure(kind: str, measured: PartMeasurement) -> Figure:
+    """The hole that lies farthest from its registered place, of those that were registered."""
+    distances_m = np.linalg.norm(measured.pose.residuals_m, axis=1)
+    used = [name not in measured.pose.outliers for name in measured.pose.names]
+    return figure(
+        f"{WORST_RESIDUAL}.{kind}",
+        float(distances_m[used].max()) / MM * 1e3,
+        "µm",
+        limit=Limit(upper=RESIDUAL_LIMIT_M / MM * 1e3),
+    )
+
+
+def seat_record(seat: SeatError) -> dict[str, Any]:
+    """The seated deck as plain data, in mm and degrees."""
+    return {
+        "seated_error_mm_deg": in_mm_deg(seat.error).tolist(),
+        f"{PIN_OFFSETS}_mm": dict(seat.offsets_mm),
+        f"{GAP_BY_VISION}_mm": seat.gap_mm,
+        f"{SEAT_ROTATION}_deg": seat.rotation_deg,
+    }
+
+
+def seat_limits_of(seat: SeatError, recipe: DeckRecipe) -> Mapping[str, Limit]:
+    """Limits of the figures of ``seat_record``."""
+    offset, gap_mm = Limit(upper=recipe.seated_limit_mm), recipe.seated_gap_limit_mm
+    return {
+        **{f"{PIN_OFFSETS}.{name}": offset for name in seat.offsets_mm},
+        GAP_BY_VISION: Limit(-gap_mm, gap_mm),
+        SEAT_ROTATION: Limit(upper=recipe.seated_limit_deg),
     }

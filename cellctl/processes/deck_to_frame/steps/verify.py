@@ -1,4 +1,6 @@
-"""Step 60: measure the seated deck against the frame (below 0.2 mm at the pin holes)."""
+"""Step 60: measure the seated deck against the frame: offset at the pin holes, gap, rotation."""
+
+from collections.abc import Iterator
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -6,13 +8,17 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.vision import SeatedOffPosition
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error, deck_in_frame
+from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.state import Seated, Verified
 
 
 async def verify(seat: Seated) -> Verified:
-    """Measure the deck where it sits; raises ``SeatedOffPosition`` beyond the recipe's limit.
+    """Measure the deck where it sits; raises ``SeatedOffPosition`` beyond the recipe's limits.
 
-    Judged at the pin holes, at every hole of a part that has none.
+    The lateral offset is judged at the pin holes, at every hole of a part that has none; the gap
+    between deck and frame in the middle of the face. The mating has judged the gap by the travel of
+    the arm; the cameras do not depend on that.
     """
     run = seat.run
     flange = run.cell.main.state().base_T_flange
@@ -27,13 +33,11 @@ async def verify(seat: Seated) -> Verified:
         hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
         for hole in judged
     }
-    limit_mm = run.recipe.seated_limit_mm
-    error = assembly_error(seated, M_T_D)
-    await run.journal.verification(error, offsets_mm, limit_mm, measurement)
-    off = {name: value for name, value in offsets_mm.items() if value > limit_mm}
-    if off:
-        text = ", ".join(f"{name} {value:.3f} mm" for name, value in off.items())
-        raise SeatedOffPosition(f"{text}; allowed {limit_mm:g} mm")
+    found = SeatError(assembly_error(seated, M_T_D), offsets_mm)
+    await run.journal.verification(found, run.recipe, measurement)
+    beyond = list(_beyond(found, run.recipe))
+    if beyond:
+        raise SeatedOffPosition("; ".join(beyond))
     return Verified(
         run,
         seat.c1_T_M,
@@ -43,3 +47,15 @@ async def verify(seat: Seated) -> Verified:
         seat.M_T_D,
         seat.measured_at,
     )
+
+
+def _beyond(found: SeatError, recipe: DeckRecipe) -> Iterator[str]:
+    """What is not within its limit, in words; a value that is not a number is beyond."""
+    limit_mm = recipe.seated_limit_mm
+    for name, value in found.offsets_mm.items():
+        if not value <= limit_mm:
+            yield f"{name} {value:.3f} mm, allowed {limit_mm:g} mm"
+    if not abs(found.gap_mm) <= recipe.seated_gap_limit_mm:
+        yield f"gap {found.gap_mm:+.3f} mm, allowed {recipe.seated_gap_limit_mm:g} mm"
+    if not found.rotation_deg <= recipe.seated_limit_deg:
+        yield f"turned by {found.rotation_deg:.4f}°, allowed {recipe.seated_limit_deg:g}°"

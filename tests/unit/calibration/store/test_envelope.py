@@ -1,6 +1,8 @@
 """One file of the folder: what is written is what is read, and nothing that was changed."""
 
+import hashlib
 import json
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -14,11 +16,13 @@ from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.calibration.store.old_form import seal_old_files
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.errors.calibration import (
     CalibrationExpired,
     CalibrationMissing,
+    CalibrationOfOldForm,
     CalibrationRecordInvalid,
 )
 from cellctl.processes.deck_to_frame.calibrations import (
@@ -32,6 +36,7 @@ from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from tests.unit.calibration.solvers.base_frame import test_base_frame
 from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
 from tests.unit.calibration.solvers.transfer import test_board_transfer
+from tests.unit.calibration.store.shipped import spoil
 
 MADE = datetime(2026, 11, 21, 8, tzinfo=UTC)
 UNTIL = MADE + timedelta(days=180)
@@ -96,7 +101,71 @@ def test_envelope(folder: Path) -> None:
 
 
 def test_same_result_has_the_same_identity(folder: Path) -> None:
-    assert read_calibration(folder, "head_1").id == read_calibration(folder, "head_2").id
+    one = read_calibration(folder, "head_1")
+    other = read_calibration(folder, "head_2")
+    assert one.id == replace(other, kind="head_1", serial_number="SN-head_1").id
+    assert one.id != other.id, "another instrument"
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("valid_until", "2099-01-01T00:00:00+00:00"),
+        ("made", "2026-11-21T09:00:00+00:00"),
+        ("serial_number", "SN-of-another"),
+        ("software", "cellctl 9"),
+        ("kind", "head_2"),
+        ("format", 3),
+    ],
+)
+def test_no_field_can_be_edited(folder: Path, key: str, value: object) -> None:
+    spoil(folder / "head_1.json", **{key: value})
+    with pytest.raises(CalibrationRecordInvalid, match="head_1"):
+        read_all(folder)
+
+
+def test_a_field_that_nobody_knows_is_refused(folder: Path) -> None:
+    spoil(folder / "head_1.json", certificate="none")
+    with pytest.raises(CalibrationRecordInvalid, match="does not match its id"):
+        read_all(folder)
+
+
+def written_by_an_earlier_version(folder: Path, name: str) -> Path:
+    """Its id was that of the record alone."""
+    path = folder / f"{name}.json"
+    data = json.loads(path.read_text())
+    data.pop("format")
+    canonical = json.dumps(data["record"], sort_keys=True, separators=(",", ":"))
+    path.write_text(json.dumps(data | {"id": hashlib.sha256(canonical.encode()).hexdigest()}))
+    return path
+
+
+def test_a_file_of_an_earlier_version_is_refused_with_what_to_do(folder: Path) -> None:
+    written_by_an_earlier_version(folder, "head_1")
+    with pytest.raises(CalibrationOfOldForm, match="head_1") as refused:
+        read_all(folder)
+    assert "calibrate seal" in refused.value.remedy
+
+
+def test_an_earlier_file_is_sealed_as_it_is(folder: Path, head: StereoResult) -> None:
+    written_by_an_earlier_version(folder, "head_1")
+    assert [one.kind for one in seal_old_files(folder)] == ["head_1"]
+    stored = read_calibration(folder, "head_1")
+    assert (stored.made, stored.valid_until) == (MADE, UNTIL)
+    assert stored.serial_number == "SN-head_1"
+    assert stored.record == json.loads(json.dumps(head.to_record()))
+    assert seal_old_files(folder) == []
+
+
+def test_an_earlier_file_that_was_changed_is_not_sealed(folder: Path) -> None:
+    path = written_by_an_earlier_version(folder, "head_1")
+    before = path.read_text()
+    spoil(path, record={"verdict": "pass"})
+    changed = path.read_text()
+    assert changed != before
+    with pytest.raises(CalibrationRecordInvalid, match="does not match its id"):
+        seal_old_files(folder)
+    assert path.read_text() == changed
 
 
 def test_changed_file_is_refused(folder: Path) -> None:

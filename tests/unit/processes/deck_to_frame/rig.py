@@ -83,6 +83,7 @@ def curve(samples: int = 50, force_n: float = 36.0) -> ForceCurve:
 
 def seated(plan: MatingPlan) -> MatingResult:
     reading = Reading(1.0, 0.01, np.array([1.0, 0, 36.0, 0, 0, 0]), np.full(6, 0.3))
+    released = Reading(2.0, 0.0098, np.array([0.5, 0, 15.0, 0, 0, 0]), np.full(6, 0.3))
     felt = curve()
     return MatingResult(
         outcome=MatingOutcome.SEATED,
@@ -96,7 +97,7 @@ def seated(plan: MatingPlan) -> MatingResult:
         stiffness=None,
         hold=reading,
         verdict=SeatVerdict(36.0, 1e-5, 1.0, 0.5, ()),
-        relaxing=(),
+        relaxing=(released,),
         gave_way=(),
         curve=felt,
         statistics=curve_statistics(felt.time_s, felt.wrench),

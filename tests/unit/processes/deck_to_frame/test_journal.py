@@ -10,7 +10,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.journal import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.record.entries import rms_um
-from cellctl.records.entries import PoseOrigin
+from cellctl.records.entries import PoseOrigin, Verdict
 from cellctl.records.recording import read_recording
 from cellctl.vision.measurement import PairMeasurement
 from tests.unit.cell.bench import SIGMA, measurement
@@ -52,6 +52,22 @@ async def test_residuals_are_summed_up(rig: RunRig) -> None:
     found.pose.residuals_m[:, 0] = 3e-6
     found.pose.residuals_m[:, 2] = 4e-6
     assert rms_um(found) == pytest.approx(5.0)
+
+
+async def test_the_fit_of_a_measurement_has_its_verdict(rig: RunRig) -> None:
+    found = measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA)
+    found.pose.residuals_m[0] = (0.0, 0.15e-3, 0.0)
+    await rig.journal.measurement("deck", found)
+    found.pose.residuals_m[0] = (0.0, 0.25e-3, 0.0)
+    await rig.journal.measurement("seated", found)
+    record = await rig.record()
+    figures = record.newest_figures
+    assert figures["worst_residual.deck"].value == pytest.approx(150.0)
+    assert figures["worst_residual.deck"].verdict is Verdict.PASS
+    assert figures["worst_residual.seated"].verdict is Verdict.FAIL
+    fit = record.measurements[0].detail["fit"]
+    assert set(fit) == {"verdict", "chi2", "chi2_limit", "freedom", "sigma_factor"}
+    assert fit["verdict"] == "explained by the stated uncertainties"
 
 
 async def test_the_grip_is_recorded(rig: RunRig) -> None:

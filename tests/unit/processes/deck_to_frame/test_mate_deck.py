@@ -68,6 +68,15 @@ async def test_a_mating_with_its_record(rig: RunRig, monkeypatch: pytest.MonkeyP
     assert (record.value("approach.speed") or 0.0) > 0
     peak = record.newest_figures["peak_force"]
     assert (peak.verdict, peak.upper) == (Verdict.PASS, rig.bench.recipe.mating.limit_force_n)
+    judged = {key: entry.verdict for key, entry in record.newest_figures.items() if entry.verdict}
+    assert {
+        "peak_force", "peak_filtered_force", "peak_lateral", "peak_moment", "hold_force",
+        "hold_lateral", "seat_gap",
+    } <= set(judged)  # fmt: skip
+    assert set(judged.values()) == {Verdict.PASS}
+    hold, gap = record.newest_figures["hold_force"], record.newest_figures["seat_gap"]
+    assert (hold.lower, hold.upper) == (rig.bench.recipe.mating.target_force_n, 45.0)
+    assert (gap.lower, gap.upper) == pytest.approx((-0.1, 0.1))
     assert [a.name for a in record.artefacts if "force" in a.name] == ["force-1.mcap"]
     assert rig.board.current.force_peaks[2] == pytest.approx(36.0)
     assert rig.board.current.force_limit_n == rig.bench.recipe.mating.limit_force_n

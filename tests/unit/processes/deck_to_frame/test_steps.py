@@ -265,6 +265,36 @@ async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:
     assert (await rig.record()).newest_figures["pin_offsets.P1"].verdict is Verdict.FAIL
 
 
+@pytest.mark.parametrize(
+    ("offset_mm_deg", "figure"),
+    [
+        ([0, 0, 3.0, 0, 0, 0], "seat_gap_by_vision"),
+        ([0, 0, 0.15, 0, 0, 0], "seat_gap_by_vision"),
+        ([0, 0, -0.15, 0, 0, 0], "seat_gap_by_vision"),
+        ([0, 0, 0, -0.02, 0, 0], "seat_rotation"),
+        ([0, 0, 0, 0, 0, 0.03], "seat_rotation"),
+    ],
+)
+async def test_a_deck_that_stands_off_or_is_tilted_is_no_good_part(
+    rig: RunRig, offset_mm_deg: list[float], figure: str
+) -> None:
+    stand_off = await at_the_stand_off(rig)
+    with pytest.raises(SeatedOffPosition, match=r"gap|turned"):
+        await seat(stand_off, rig, offset_mm_deg)
+    found = (await rig.record()).newest_figures
+    failed = {key for key, entry in found.items() if entry.verdict is Verdict.FAIL}
+    assert failed == {figure}
+
+
+async def test_a_seat_is_judged_by_gap_and_rotation_too(rig: RunRig) -> None:
+    await seat(await at_the_stand_off(rig), rig, [0.03, 0, 0.02, 0.002, 0, 0])
+    figures = (await rig.record()).newest_figures
+    gap, rotation = figures["seat_gap_by_vision"], figures["seat_rotation"]
+    assert (gap.lower, gap.upper, gap.verdict) == (-0.1, 0.1, Verdict.PASS)
+    assert gap.value == pytest.approx(0.02, abs=1e-4)
+    assert (rotation.upper, rotation.verdict) == (0.01, Verdict.PASS)
+
+
 async def test_a_part_without_pins_is_verified_at_every_hole(rig: RunRig) -> None:
     _, deck = rig.bench.features()
     holes = tuple(replace(hole, kind="countersink") for hole in deck.holes)
