@@ -9,8 +9,8 @@ from cellctl.errors.records import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.recorder import RunRecorder
-from cellctl.runtime.interruption import Interruption
 from cellctl.records.store import RunStore
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord
 from cellctl.runtime.process import Process, RunContext

@@ -44,12 +44,12 @@ def test_pose_error_is_in_the_parent_axes() -> None:
 
 def perturbed(pose: RigidTransform, delta: np.ndarray) -> RigidTransform:
     return RigidTransform.from_components(
-        pose.translation + delta[:3], Rotation.from_rotvec(delta[3:]) * pose.rotation
+        pose.translation + delta[..., :3], Rotation.from_rotvec(delta[..., 3:]) * pose.rotation
     )
 
 
-def scatter(nominal: RigidTransform, drawn: list[RigidTransform]) -> np.ndarray:
-    return np.cov(np.array([np.concatenate(pose_error(nominal, pose)) for pose in drawn]).T)
+def scatter(nominal: RigidTransform, drawn: RigidTransform) -> np.ndarray:
+    return np.cov(np.hstack(pose_error(nominal, drawn)).T)
 
 
 def test_covariances_of_products_and_inverses_match_the_scatter() -> None:
@@ -61,8 +61,8 @@ def test_covariances_of_products_and_inverses_match_the_scatter() -> None:
     chain = UncertainPose(first, covariance) * UncertainPose(second, covariance)
     inverse = UncertainPose(first, covariance).inv()
     deltas = rng.normal(size=(4000, 2, 6)) * sigma
-    products = [perturbed(first, a) * perturbed(second, b) for a, b in deltas]
-    inverses = [perturbed(first, a).inv() for a, _ in deltas]
+    products = perturbed(first, deltas[:, 0]) * perturbed(second, deltas[:, 1])
+    inverses = perturbed(first, deltas[:, 0]).inv()
     for expected, nominal, drawn in (
         (chain.covariance, chain.pose, products),
         (inverse.covariance, inverse.pose, inverses),

@@ -181,8 +181,8 @@ def _mesh(name: str, points: np.ndarray) -> str:
 @pytest.mark.parametrize(
     ("offset_mm", "findings"),
     [
-        (0.03, ()),
-        (0.08, (SeatFinding.LATERAL,)),
+        pytest.param(0.03, (), marks=pytest.mark.long),
+        pytest.param(0.08, (SeatFinding.LATERAL,), marks=pytest.mark.long),
         (0.12, (SeatFinding.HIGH, SeatFinding.LATERAL)),
     ],
 )

@@ -23,6 +23,7 @@ from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory, deck_recipes
+from cellctl.runtime.interruption import Interruption
 from tests.unit.cell.bench import CELL_FILE
 
 LATENCY_S = 0.05
@@ -45,7 +46,7 @@ def run_on(world: MatingCell) -> AssemblyRun:
     values = dict.fromkeys(RunFacts.__dataclass_fields__, nothing)
     payload = SimpleNamespace(mass_kg=200.0)
     facts = RunFacts(**values | {"cell": cell, "recipe": cell.recipes[0], "payload": payload})
-    return AssemblyRun(OpenRun(facts, nothing, nothing, nothing), nothing)
+    return AssemblyRun(OpenRun(facts, nothing, nothing, nothing, Interruption()), nothing)
 
 
 def raised(world: MatingCell, height_m: float) -> RigidTransform:

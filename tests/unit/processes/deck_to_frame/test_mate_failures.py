@@ -16,9 +16,20 @@ TRIED_HERE = (
     "contact 0.25 mm early",
 )
 """The rest runs in `make campaign-mating`."""
+QUICK = (
+    "sensor frozen, guarded travel",
+    "sensor at half its rate",
+    "sensor saturated",
+    "NaN-like bytes",
+    "stop request ignored once",
+)
+"""Of these, what a standard run of the tests has the time for."""
 
 
-@pytest.mark.parametrize("name", TRIED_HERE)
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if name in QUICK else pytest.mark.long) for name in TRIED_HERE],
+)
 def test_failure(name: str) -> None:
     index = next(i for i, failure in enumerate(FAILURES) if failure.name == name)
     failure = FAILURES[index]

@@ -75,6 +75,7 @@ def rms(results: list[StereoResult]) -> Array:
     return np.asarray(np.sqrt(np.mean(squares, axis=0)))
 
 
+@pytest.mark.long
 def test_bow_costs_nothing_when_the_board_is_released(
     flat: list[StereoResult], bowed: list[StereoResult]
 ) -> None:
