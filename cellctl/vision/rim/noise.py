@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from scipy.sparse import csr_array, vstack
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
@@ -54,15 +55,16 @@ class PixelNoise:
 
     weights: Array
     """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
-    strokes: Array
-    """What each stroke adds to each pixel at one standard deviation, shape (k, n)."""
+    strokes: csr_array
+    """What each stroke adds to each pixel at one standard deviation, shape (k, n). Sparse, because
+    no more than two strokes reach a pixel: dense rows take most of the time of a fit."""
     posterior: Array
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
 
     @classmethod
-    def of(cls, weights: Array, strokes: Array) -> "PixelNoise":
+    def of(cls, weights: Array, strokes: csr_array) -> "PixelNoise":
         """With the strokes' heights still unknown."""
-        normal = (strokes * weights) @ strokes.T + np.eye(len(strokes))
+        normal = (csr_array(strokes * weights) @ strokes.T).toarray() + np.eye(strokes.shape[0])
         return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
 
     def weigh(self, rows: Array) -> Array:
@@ -72,7 +74,7 @@ class PixelNoise:
         needs only the small matrix ``posterior``.
         """
         weighted = rows * self.weights
-        if len(self.strokes) == 0:
+        if self.strokes.shape[0] == 0:
             return np.asarray(weighted)
         heights = (weighted @ self.strokes.T) @ self.posterior
         return np.asarray(weighted - (heights @ self.strokes) * self.weights)
@@ -83,7 +85,7 @@ class PixelNoise:
         return np.asarray(residuals - heights @ self.strokes)
 
 
-def noise_of(residuals: Array, outside: Array, strokes: Array) -> PixelNoise:
+def noise_of(residuals: Array, outside: Array, strokes: csr_array) -> PixelNoise:
     """The noise that the residuals (n,) show; ``strokes`` (k, n) of unit height, k may be 0.
 
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
@@ -91,30 +93,30 @@ def noise_of(residuals: Array, outside: Array, strokes: Array) -> PixelNoise:
     """
     bright, dark = outside > _BRIGHT, _sigma_grey(residuals[outside < _DARK])
     own, height = _sigma_grey(residuals[bright]), 0.0
-    if len(strokes):
+    if strokes.shape[0]:
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
     sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
-    seen = strokes * height if height > _LEAST_STROKE_GREY else strokes[:0]
+    seen = csr_array(strokes * height) if height > _LEAST_STROKE_GREY else strokes[:0]
     noise = PixelNoise.of(sigma**-2.0, seen)
     scaled = np.abs(noise.own(residuals)) / sigma
     return PixelNoise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
 
 
-def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
+def _own_and_strokes(residuals: Array, strokes: csr_array) -> tuple[float, float]:
     """Standard deviations of the pixels' own errors and of the strokes' heights.
 
     One-way analysis of variance: each pixel belongs to the stroke nearest to it.
     """
     limit = _CLIP_SIGMAS * _sigma_grey(residuals)
     clipped = np.clip(residuals, -limit, limit)
-    level = strokes[: len(strokes) // 2]
     # The first half of the rows are the levels of the strokes, the second their slopes along the
     # lay.
-    nearest = np.argmax(level, axis=0)
-    count = np.bincount(nearest, minlength=len(level))
-    mean = np.bincount(nearest, clipped, minlength=len(level)) / np.maximum(count, 1)
+    strokes_seen = strokes.shape[0] // 2
+    nearest = _largest_in_columns(strokes[:strokes_seen])
+    count = np.bincount(nearest, minlength=strokes_seen)
+    mean = np.bincount(nearest, clipped, minlength=strokes_seen) / np.maximum(count, 1)
     within = clipped - mean[nearest]
-    freedom = max(len(clipped) - np.count_nonzero(count), 1)
+    freedom = max(len(clipped) - int(np.count_nonzero(count)), 1)
     own = max(float(np.sqrt(within @ within / freedom)), _LEAST_GREY)
     full = count >= _FEWEST_IN_STROKE
     if np.count_nonzero(full) < _FEWEST_STROKES:
@@ -123,6 +125,20 @@ def _own_and_strokes(residuals: Array, strokes: Array) -> tuple[float, float]:
     # strokes'.
     between = float(np.mean(mean[full] ** 2 - own**2 / count[full]))
     return own, float(np.sqrt(max(between, 0.0)))
+
+
+def _largest_in_columns(matrix: csr_array) -> "np.ndarray[tuple[int], np.dtype[np.intp]]":
+    """Row of the largest entry of each column, shape (n,); 0 for a column without entries.
+
+    The method ``argmax`` of a sparse array visits one column at a time and is far slower.
+    """
+    entries = matrix.tocoo()
+    row, column = entries.coords
+    order = np.argsort(entries.data)
+    largest = np.zeros(matrix.shape[1], dtype=np.intp)
+    # Of several values that are assigned to one place the last one stays.
+    largest[column[order]] = row[order]
+    return largest
 
 
 def _sigma_grey(residuals: Array) -> float:
@@ -161,13 +177,29 @@ def surface_lay(image: Image, patch: PlanePatch, middle_px: Array, clear_px: flo
     return np.asarray(vectors[:, 1])
 
 
-def stroke_pattern(offsets_px: Array, across: Array, radius_px: float) -> Array:
+def no_strokes(pixels: int) -> csr_array:
+    """The pattern of a face without a lay, shape (0, n)."""
+    return csr_array((0, pixels))
+
+
+def stroke_pattern(offsets_px: Array, across: Array, radius_px: float) -> csr_array:
     """Strokes a pixel wide that change slowly along the lay, shape (2 k, n).
 
     ``offsets_px`` (2, n) lie in the plane, from the centre of the rim.
     """
     position = across @ offsets_px
     along = np.array([-across[1], across[0]]) @ offsets_px / radius_px
-    knots = np.arange(np.floor(position.min()), np.ceil(position.max()) + 1.0)
-    heights = np.maximum(1.0 - np.abs(position - knots[:, None]), 0.0)
-    return np.concatenate([heights, _ALONG * along * heights])
+    first = np.floor(position.min())
+    knots = max(int(np.ceil(position.max()) - first), 1) + 1
+    # A pixel lies between two knots and is reached by these two strokes, in proportion.
+    below = np.minimum((position - first).astype(int), knots - 2)
+    share = position - first - below
+    pixels = np.arange(len(position))
+    level = csr_array(
+        (
+            np.concatenate([1.0 - share, share]),
+            (np.concatenate([below, below + 1]), np.concatenate([pixels, pixels])),
+        ),
+        shape=(knots, len(position)),
+    )
+    return csr_array(vstack([level, level * (_ALONG * along)]))

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.light import LightModel, Surface, surfaces
-from cellctl.vision.rim.noise import PixelNoise, noise_of, stroke_pattern
+from cellctl.vision.rim.noise import PixelNoise, no_strokes, noise_of, stroke_pattern
 from cellctl.vision.rim.shape import Border, RimPixels, RimShape, borders
 
 _BLUR_LIMITS_PX = (0.35, 4.0)
@@ -146,7 +147,7 @@ class RimSolution:
 def initial_solution(problem: RimProblem, vector: Array) -> RimSolution:
     """Solution at the start, where the noise is not known yet: equal weights."""
     count = sum(len(view.pixels.grey) for view in problem.views)
-    noise = PixelNoise.of(np.full(count, _FLAT_WEIGHT), np.empty((0, count)))
+    noise = PixelNoise.of(np.full(count, _FLAT_WEIGHT), no_strokes(count))
     return solve_light(problem, vector, noise)
 
 
@@ -158,10 +159,10 @@ def relinearised(problem: RimProblem, solution: RimSolution, *, weigh: bool = Tr
     return solve_light(problem, solution.vector, noise)
 
 
-def _strokes(problem: RimProblem, solution: RimSolution) -> Array:
+def _strokes(problem: RimProblem, solution: RimSolution) -> csr_array:
     """Strokes of unit height, shape (k, n): all views see the same ones."""
     if problem.across_lay is None:
-        return np.empty((0, len(solution.residuals)))
+        return no_strokes(len(solution.residuals))
     offsets, gains = [], []
     for view in problem.views:
         centre = view.shape(solution.vector).centre
@@ -169,7 +170,7 @@ def _strokes(problem: RimProblem, solution: RimSolution) -> Array:
         gains.append(np.full(len(view.pixels.grey), view.gain))
     radius_px = problem.views[0].shape(solution.vector).radius / problem.unit_px
     pattern = stroke_pattern(np.concatenate(offsets, axis=1), problem.across_lay, radius_px)
-    return np.asarray(pattern * (solution.face * np.concatenate(gains)))
+    return csr_array(pattern * (solution.face * np.concatenate(gains)))
 
 
 def solve_light(
