@@ -97,6 +97,7 @@ def test_port_of_a_robot_is_taken(visited: OwnCell, shipped: int) -> None:
         waits(visited.daemon(), "F206", str(port))
 
 
+@pytest.mark.long
 def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
     """Every device that is missing is named, for the line too; Clear finds them once they are."""
     own.change('robot_name = "SR500A"', 'robot_name = "SR500A"\nconnect_timeout_s = 2.0', count=1)
@@ -124,7 +125,7 @@ def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
     [
         ("force", "silent", ("F205", "force sensor", "no frame")),
         ("main", "wrong_version", ("F204", "SR500A", "SJL/2")),
-        ("tracker", "silent", ("F205", "tracker")),
+        pytest.param("tracker", "silent", ("F205", "tracker"), marks=pytest.mark.long),
     ],
 )
 def test_one_device_is_silent_or_strange(
@@ -194,6 +195,7 @@ def _expire(folder: Path, kind: str) -> None:
     write_stored(folder, expired)
 
 
+@pytest.mark.long
 def test_head_that_sees_no_hole(visited: OwnCell) -> None:
     with visited.control() as control:
         control.request("inject", device="head_1", name="no_hole")
@@ -211,6 +213,7 @@ def test_head_that_sees_no_hole(visited: OwnCell) -> None:
     assert "Traceback" not in daemon.stderr
 
 
+@pytest.mark.long
 def test_frame_server_that_never_answers(visited: OwnCell) -> None:
     visited.change("reply_timeout_s = 60.0", "reply_timeout_s = 3.0")
     daemon = visited.daemon()
@@ -225,6 +228,7 @@ def test_frame_server_that_never_answers(visited: OwnCell) -> None:
     assert "Traceback" not in daemon.stderr
 
 
+@pytest.mark.long
 def test_demonstration_tells_the_fault(own: OwnCell) -> None:
     """A fault that the user injects: exit code, words, and a record all the same."""
     out = own.folder / "run"

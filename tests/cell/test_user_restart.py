@@ -56,6 +56,7 @@ def test_killed_in_a_run_and_started_again(visited: OwnCell) -> None:
     _record_says_interrupted(visited)
 
 
+@pytest.mark.long
 def test_first_number_again_after_a_restart(visited: OwnCell) -> None:
     """1 says that the PLC begins anew, unless it is the very number of before."""
     for code in (0, 0x100):

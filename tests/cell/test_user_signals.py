@@ -148,7 +148,7 @@ def test_while_mating(visited: OwnCell) -> None:
     assert truth["peak_contact_force_n"] < 50.0
 
 
-@pytest.mark.parametrize("moment", ["starting", "measuring"])
+@pytest.mark.parametrize("moment", ["starting", pytest.param("measuring", marks=pytest.mark.long)])
 def test_demonstration(own: OwnCell, moment: str) -> None:
     out = own.folder / "run"
     demo = own.demo(out)

@@ -151,6 +151,7 @@ def test_a_part_is_weighed_over_modbus(
     assert done.returncode == 0, "a run of a process that is no longer installed"
 
 
+@pytest.mark.long
 def test_a_part_of_the_wrong_weight_is_bad(
     written: Path, installed: Path, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
