@@ -79,13 +79,6 @@ def read_stereo_head(path: Path) -> StereoHead:
         raise CalibrationFileInvalid(f"{path}: {reason}") from error
 
 
-def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:
-    """Write a calibration file; ``extra`` adds keys such as the residuals of each view."""
-    # The head comes last, so that no extra key can replace a part of the calibration.
-    data = {**(extra or {}), **stereo_head_to_json(head)}
-    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
-
-
 def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
     """The head as the plain data of its file: lengths in mm."""
     data: dict[str, Any] = {

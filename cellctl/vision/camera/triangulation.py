@@ -30,17 +30,6 @@ def essential_matrix(rotation: Array, translation: Array) -> Array:
     return skew(translation) @ rotation
 
 
-def fundamental_matrix(head: StereoHead) -> Array:
-    """F ∝ K_right⁻ᵀ E K_left⁻¹ for undistorted pixels, shape (3, 3), scaled to F[2, 2] = 1."""
-    essential = essential_matrix(head.rotation, head.translation_m)
-    fundamental = (
-        np.linalg.inv(head.right.camera_matrix).T
-        @ essential
-        @ np.linalg.inv(head.left.camera_matrix)
-    )
-    return np.asarray(fundamental / fundamental[2, 2])
-
-
 def epipolar_distances_px(head: StereoHead, left_px: Array, right_px: Array) -> Array:
     """Distance of each right point from the epipolar line of each left point, shape (n, m)."""
     left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
