@@ -172,8 +172,8 @@ def _stereo(head: StereoHead, hole: Hole, rims: RimPair) -> HoleMeasurement:
     epipolar_px = float(
         epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
     )
-    # Depth is computed along the epipolar line, so it cannot show an error across it. This is the
-    # only check that both images really show the same hole.
+    # Depth is computed along the epipolar line, so it cannot show an error across it, which is what
+    # two different holes or a worn calibration leave.
     if epipolar_px > _EPIPOLAR_PX:
         raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
     if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:
