@@ -29,7 +29,7 @@ SAME_DIRECTION_RAD = np.deg2rad(0.5)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
-    """How far gravity moves in sensor axes over a set of poses."""
+    """The range over which gravity moves in sensor axes over a set of poses."""
 
     distinct: int
     """Number of clearly different directions of gravity."""

@@ -16,7 +16,7 @@ class Ellipse:
     semi_axes_px: tuple[float, float]
     """Major, minor."""
     angle_rad: float
-    """Of the major axis from the columns' axis."""
+    """Angle of the major axis from the axis of the columns."""
 
     @property
     def area_px2(self) -> float:

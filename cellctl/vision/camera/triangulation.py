@@ -10,7 +10,7 @@ from cellctl.vision.camera.lens import distort_jacobian, project, undistort
 from cellctl.vision.camera.stereo_head import StereoHead
 
 _STEPS = 2
-"""From half-way between the rays, the first step leaves less than 1e-6 px."""
+"""Gauss-Newton steps. Started half-way between the rays, the first one leaves less than 1e-6 px."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class StereoPoint:
     covariance_m2: Array
     """Shape (3, 3)."""
     misfit_sigmas: float
-    """How far the two image points are from one ray pair, in standard deviations."""
+    """Distance of the two image points from one ray pair, in standard deviations."""
 
 
 def essential_matrix(rotation: Array, translation: Array) -> Array:

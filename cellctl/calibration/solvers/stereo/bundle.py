@@ -53,7 +53,7 @@ class BundleResult:
     sigma_px: float
     """Standard deviation of a pixel coordinate from the residuals."""
     covariance: Array
-    """Of the shared unknowns, shape (24 + shape, 24 + shape)."""
+    """Covariance of the shared unknowns, shape (24 + shape, 24 + shape)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
