@@ -73,7 +73,7 @@ def read_stereo_head(path: Path) -> StereoHead:
     except ValueError as error:
         raise CalibrationFileInvalid(f"{path} is not JSON: {error}") from error
     try:
-        return _head_from_json(data)
+        return stereo_head_from_json(data)
     except (KeyError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise CalibrationFileInvalid(f"{path}: {reason}") from error
@@ -104,7 +104,11 @@ def _camera_to_json(camera: CameraModel) -> dict[str, Any]:
     }
 
 
-def _head_from_json(data: Mapping[str, Any]) -> StereoHead:
+def stereo_head_from_json(data: Mapping[str, Any]) -> StereoHead:
+    """The inverse of ``stereo_head_to_json``.
+
+    Raises ``KeyError``, ``TypeError`` or ``ValueError``.
+    """
     width, height = (int(value) for value in data["image_size"])
     if width <= 0 or height <= 0:
         raise ValueError("image_size must be two positive numbers")
