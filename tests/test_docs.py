@@ -33,6 +33,7 @@ PAGES = sorted(
 _LINK = re.compile(r"(?<!!)\[[^\]]+\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
 _FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 _INLINE = re.compile(r"`([^`\n]+)`")
+_PATH = re.compile(r"(?:cellctl|drivers|fakes|benchmarks|tests|systemd)/[\w./-]+")
 _PROGRAMS = ("make ", "cellctl ", "python -m ", ".venv/bin/")
 _SETTING = re.compile(r"[A-Z]+=\S+")
 
@@ -190,3 +191,10 @@ def test_every_command_explains_itself(app: typer.Typer) -> None:
 
     runner = CliRunner()
     explain(typer.main.get_command(app), [])
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_every_file_that_is_named_exists(page: Path) -> None:
+    quoted = _INLINE.findall(_FENCE.sub("", page.read_text(encoding="utf-8")))
+    paths = [text for text in quoted if _PATH.fullmatch(text)]
+    assert [path for path in paths if not (ROOT / path).exists()] == []

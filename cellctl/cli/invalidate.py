@@ -1,5 +1,6 @@
 """`cellctl calibrate invalidate`: say that a calibration is worthless, whatever its date."""
 
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
@@ -62,10 +63,8 @@ def _record(
     except StoreUnavailable as error:
         typer.echo(f"not in the audit log: {error}", err=True)
         return
-    try:
+    with closing(store):
         for stored in found:
             store.invalidate_calibration(stored, reason)
         detail = {"items": [stored.kind for stored in found], "reason": reason}
         store.audit(by, "calibrations invalidated", detail)
-    finally:
-        store.close()

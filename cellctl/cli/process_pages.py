@@ -6,7 +6,7 @@ from cellctl.runtime.process import Process
 
 
 def pages_of(process: str) -> ReportBuilder:
-    """What makes the pages of a process; pages of any run alone when it is not installed.
+    """The builder of a process's pages; that of the general pages when it is not installed.
 
     Records outlive software: a run must be exported years after its process was last installed.
     Raises ``UnknownDriver`` when the process is installed and cannot be loaded.

@@ -1,4 +1,4 @@
-"""What every form of the command line has in common."""
+"""The root command: options and appearance that every form of the command line has."""
 
 from typing import Annotated
 

@@ -1,7 +1,7 @@
 """`cellctl runs`: look into the run store; enter what a person measured."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
@@ -25,14 +25,9 @@ DEFAULT = Path("runs")
 _COLOURS = {"good": "green", None: "yellow"}
 
 
-@contextmanager
-def _store(data_dir: Path) -> Iterator[RunStore]:
+def _store(data_dir: Path) -> closing[RunStore]:
     # A mistyped folder must be an error, not a new and empty store.
-    store = RunStore(data_dir, create=False)
-    try:
-        yield store
-    finally:
-        store.close()
+    return closing(RunStore(data_dir, create=False))
 
 
 @app.command("list")

@@ -1,5 +1,6 @@
 """`cellctl calibrate seal`: bring calibration files of an earlier version to the form of today."""
 
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
@@ -27,6 +28,7 @@ def seal(
     """
     config = load_cell(cell)
     folder = cell.parent / config.calibration_dir
+    # The files first: they must be sealed even where there is no run store to note it in.
     found = seal_old_files(folder)
     for stored in found:
         typer.echo(
@@ -41,7 +43,5 @@ def seal(
     except StoreUnavailable as error:
         typer.echo(f"not in the audit log: {error}", err=True)
         return
-    try:
+    with closing(store):
         store.audit(by, "calibrations sealed", {"ids": {one.kind: one.id for one in found}})
-    finally:
-        store.close()

@@ -1,4 +1,4 @@
-"""What all sections of the cell file share."""
+"""Base model and common types of all sections of the cell file."""
 
 from typing import Annotated
 

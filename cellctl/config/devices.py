@@ -29,7 +29,7 @@ class RobotConfig(DeviceConfig):
     poses_deg: dict[DeviceName, JointsDeg] = Field(default_factory=dict)
     """Taught joint positions by name, such as ``home``; a process says which ones it needs."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
-    """Of rated joint speed, for moves between taught poses."""
+    """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0
     linear_acceleration_mm_s2: Annotated[float, Field(ge=1, le=2000)] = 200.0
     d1_mm: Annotated[float, Field(ge=100, le=3000)] | None = None

@@ -1,4 +1,4 @@
-"""What a cell file needs to know of a process: the models of its keys, its roles, its checks."""
+"""The part of a process that a cell file needs: models of its keys, its roles, its checks."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
@@ -15,14 +15,14 @@ from cellctl.errors.config import UnknownDriver
 
 
 class NoSettings(Section):
-    """Of a process that has nothing to set for all of its recipes."""
+    """Settings of a process that has none."""
 
 
 class ProcessDefinition(ABC):
     """The static half of a process; ``cellctl.runtime.process.Process`` adds what it does."""
 
     name: ClassVar[str]
-    """As the cell file and the entry point have it, for example ``deck-to-frame``."""
+    """Name in the cell file and of the entry point, for example ``deck-to-frame``."""
     recipe_model: ClassVar[type[Recipe]]
     """Keys of its ``[[recipes]]``."""
     settings_model: ClassVar[type[Section]] = NoSettings
@@ -34,7 +34,7 @@ class ProcessDefinition(ABC):
     def check(
         cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
     ) -> Iterable[ConfigIssue]:
-        """Whatever else is wrong with a recipe in this cell; touches no hardware.
+        """Everything else that is wrong with a recipe in this cell; touches no hardware.
 
         Called when the cell has a device for every role and nothing is wrong with it. ``key`` is
         the recipe's place in the file, for example ``recipes.0``; ``folder`` is that of the cell

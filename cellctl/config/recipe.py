@@ -1,4 +1,4 @@
-"""What every recipe has, whatever its process makes with it."""
+"""The keys that the recipes of all processes have in common."""
 
 from collections.abc import Mapping
 from enum import StrEnum
@@ -11,7 +11,7 @@ from cellctl.config.devices import DeviceName
 
 
 class LineLostAction(StrEnum):
-    """What a step in contact does when the line PLC's heartbeat is lost."""
+    """The reaction of a step in contact when the line PLC's heartbeat is lost."""
 
     KEEP = "stop-and-keep"
     """All robots stop and latch at once; the arm stays where it is, under force if there is one."""

@@ -1,4 +1,4 @@
-"""What a process needs of a cell: devices in roles, by their interface."""
+"""Roles: the devices that a process needs of a cell, by their interface."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ SECTIONS: Mapping[type, str] = {
     Gripper: "grippers",
     DigitalIo: "digital_ios",
 }
-"""Where the cell file describes devices of an interface."""
+"""The section of the cell file that describes the devices of an interface."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,9 +36,9 @@ class Role:
     """A device that a process works with."""
 
     interface: type
-    """Of ``cellctl.interfaces``; a driver may offer more than the interface of its section."""
+    """One of ``cellctl.interfaces``; a driver may offer more than that of its section."""
     text: str
-    """What it does in the process, for messages and documents."""
+    """Its task in the process, for messages and documents."""
     poses: tuple[str, ...] = ()
     """Taught poses that the robot must have."""
     carried: bool = False
@@ -53,7 +53,7 @@ class Role:
 def lacking(
     cell: CellConfig, roles: Mapping[str, Role], recipe: Recipe, key: str
 ) -> Iterator[ConfigIssue]:
-    """Whatever a cell lacks for the roles of a recipe; ``key`` is the recipe's place in the file.
+    """Everything that a cell lacks for the roles of a recipe, whose place in the file is ``key``.
 
     Drivers that cannot be loaded are not judged here: they are reported as such.
     """
@@ -66,7 +66,7 @@ def lacking(
 
 
 def lacking_roles(cell: CellConfig, roles: Mapping[str, Role]) -> Iterator[ConfigIssue]:
-    """Whatever a cell lacks for a process that has no recipe in it."""
+    """Everything that a cell lacks for a process that has no recipe in it."""
     for name, role in roles.items():
         yield from _lacking_for(cell, role, name, name)
 

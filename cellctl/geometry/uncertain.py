@@ -7,7 +7,7 @@ small rotation vector, both in the axes of a: ``t = t0 + dt``, ``R = Exp(dr) R0`
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
 
@@ -53,7 +53,20 @@ class UncertainPose:
         return np.sqrt(np.diag(self.covariance))
 
 
+def perturbed(pose: RigidTransform, delta: Array) -> RigidTransform:
+    """A pose moved by six small numbers, shape (6,), in the convention of this module."""
+    rotation = Rotation.from_rotvec(delta[3:]) * pose.rotation
+    return RigidTransform.from_components(pose.translation + delta[:3], rotation)
+
+
 def skew(vector: Array) -> Array:
     """Matrix of the cross product, shape (3, 3): ``skew(a) @ b == a × b``."""
     x, y, z = vector
     return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def skews(vectors: Array) -> Array:
+    """``skew`` of n vectors, shape (n, 3); shape (n, 3, 3)."""
+    x, y, z = vectors.T
+    zero = np.zeros_like(x)
+    return np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)

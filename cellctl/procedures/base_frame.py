@@ -28,7 +28,7 @@ class AxisTurns:
     arc_deg: float
     stops: int
     speed_ratio: float
-    """Of rated joint speed."""
+    """Speed of the turns as a share of rated joint speed."""
     frames: int
     """Exposures averaged at each stop."""
     target_prefix: str = "F"

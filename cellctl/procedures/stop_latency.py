@@ -1,4 +1,4 @@
-"""How long a robot takes to stop at the speeds of mating."""
+"""Measures how long a robot takes to stop at the speeds of mating."""
 
 import asyncio
 from collections.abc import Awaitable, Callable

@@ -37,9 +37,9 @@ LAYOUT_TOLERANCE_M = 0.3e-3
 """Largest deviation of a measured hole from the drawing."""
 
 _COARSE_TOLERANCE_M = 2.5e-3
-"""The same for features as they are first found, to one or two pixels."""
+"""Largest deviation of features as they are first found, to one or two pixels."""
 _COARSE_M = 0.5e-3
-"""How far off holes located by their edges alone may be."""
+"""Additional deviation of holes that are located by their edges alone."""
 _EPIPOLAR_PX = 0.35
 """Largest distance of a measured centre from its epipolar line: measured centres are known to a
 tenth of it, so more means two different features or a worn calibration."""
@@ -172,8 +172,8 @@ def _stereo(head: StereoHead, hole: Hole, rims: RimPair) -> HoleMeasurement:
     epipolar_px = float(
         epipolar_distances_px(head, left.point_px[None], right.point_px[None])[0, 0]
     )
-    # Depth is computed along the epipolar line, so it cannot show an error across it. This is the
-    # only check that both images really show the same hole.
+    # Depth is computed along the epipolar line, so it cannot show an error across it, which is what
+    # two different holes or a worn calibration leave.
     if epipolar_px > _EPIPOLAR_PX:
         raise HoleMissing(f"{hole.name}: left and right rim disagree by {epipolar_px:.2f} px")
     if abs(left.size_ratio - right.size_ratio) > _SIZE_AGREEMENT:

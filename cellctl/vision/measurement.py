@@ -32,7 +32,7 @@ class HoleMeasurement:
     left_ellipse: Ellipse
     right_ellipse: Ellipse
     diameter_m: float
-    """As measured, mean of both cameras."""
+    """Measured diameter, mean of both cameras."""
     epipolar_px: float
     """Distance of the right point from the epipolar line of the left one."""
 

@@ -22,7 +22,7 @@ class RequestLink:
     """One exchange at a time, each with a time limit.
 
     Closes itself whenever an exchange does not end as it should, because what comes next would
-    belong to nobody. ``open`` again after that.
+    belong to nobody. Between ``take_up`` and ``give_up`` the next request connects again.
     """
 
     def __init__(
@@ -35,11 +35,33 @@ class RequestLink:
         # One request at a time: with two under way, each would read the other's reply.
         self._lock = asyncio.Lock()
         self._streams: tuple[asyncio.StreamReader, asyncio.StreamWriter] | None = None
+        self._wanted = False
 
-    @property
-    def connected(self) -> bool:
-        """A connection stands."""
-        return self._streams is not None
+    async def take_up(self, probe: Callable[[], Awaitable[object]]) -> None:
+        """Connect, and have ``probe`` see that a server answers; raises what either raises."""
+        await self.open()
+        self._wanted = True
+        try:
+            # A connection alone proves nothing: a port forwarder accepts it while no server is
+            # there.
+            await probe()
+        except BaseException:
+            await self.give_up()
+            raise
+
+    async def give_up(self) -> None:
+        """Drop the connection and do not make it again. Idempotent."""
+        self._wanted = False
+        await self.close()
+
+    async def restore(self) -> bool:
+        """Make a lost connection again; True when it had been lost. ``LinkLost`` if not wanted."""
+        if not self._wanted:
+            raise LinkLost(f"{self.peer} is not connected")
+        if self._streams is not None:
+            return False
+        await self.open()
+        return True
 
     async def open(self) -> None:
         """Connect; ``ConnectTimeout`` when nobody answers. Idempotent."""

@@ -19,7 +19,7 @@ SCENE_FAULTS: Final[dict[str, Callable[[CameraScene], CameraScene]]] = {
     ),
     "defocused": lambda scene: replace(scene, optics=_out_of_focus(scene.optics)),
 }
-"""What is rendered is another scene."""
+"""Faults that change the scene before it is rendered."""
 
 PICTURE_FAULTS: Final[dict[str, Callable[[Pictures], Pictures]]] = {
     "black": lambda pictures: tuple(0.01 * picture for picture in pictures),
@@ -28,7 +28,7 @@ PICTURE_FAULTS: Final[dict[str, Callable[[Pictures], Pictures]]] = {
     "upside_down": lambda pictures: (*pictures[:-1], _turned(pictures[-1])),
     "occluded": lambda pictures: (_occluded(pictures[0]), *pictures[1:]),
 }
-"""The picture of the true scene is spoilt."""
+"""Faults that spoil the picture of the true scene."""
 
 
 def _without_holes(body: Body) -> Body:

@@ -1,4 +1,4 @@
-"""How surfaces, light and sensor look; everything that is not geometry."""
+"""Appearance of surfaces, light and sensor: everything that is not geometry."""
 
 from dataclasses import dataclass, replace
 from typing import Any

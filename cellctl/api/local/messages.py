@@ -15,7 +15,7 @@ C = TypeVar("C", bound=BaseModel)
 FaultNumber = Annotated[int, Field(ge=1, le=9999)]
 """Below 1000: of cellctl; from 1000 on: of processes and drivers of other packages."""
 ProcedureNumber = Annotated[int, Field(ge=1, le=65535)]
-"""As in the line's register."""
+"""Number of a procedure, as in the line's register."""
 Serial = Annotated[str, Field(max_length=24)]
 
 
@@ -92,7 +92,7 @@ class Refused(Message):
 
     answer: Literal["refused"] = "refused"
     code: int
-    """As in the line's ``reject_code``."""
+    """Reject code, the same as the line's ``reject_code``."""
     text: str
     state: str
 
@@ -102,7 +102,7 @@ class Failed(Message):
 
     answer: Literal["failed"] = "failed"
     number: int
-    """Of the fault catalogue."""
+    """Number in the fault catalogue."""
     text: str
 
 

@@ -17,7 +17,7 @@ class FaultReport(Part):
 
     number: int
     text: str
-    """With the facts of this occurrence, where they are known."""
+    """Text of the fault, with the facts of this occurrence where they are known."""
     cause: str
     remedy: str
 
@@ -67,13 +67,13 @@ class StatusReport(Part):
     alarms: tuple[FaultReport, ...]
     """Not yet acknowledged, the oldest first."""
     guard_trip: str
-    """What it has latched; empty when it has not."""
+    """The trip that the guard has latched; empty when there is none."""
     links: dict[str, str]
     """Robots and guard by name; what is wrong with each, empty when it is well."""
     calibrations: tuple[CalibrationReport, ...]
     result: str
-    """Of the present or last job: ``none`` while it is open, else as the line's ``run_result``."""
+    """Result of the present or last job: ``none`` while it is open, else the ``run_result``."""
     last_run: RunReport | None
     good_parts: int
     records: str
-    """What is wrong with the run store; empty when it is well."""
+    """The fault of the run store; empty when it is well."""

@@ -32,7 +32,7 @@ class LocalLimits:
     clients: int = 16
     idle_s: float = 30.0
     request_s: float = 3.0
-    """From the first byte of a request to its last, and for an answer to be taken."""
+    """Time from the first byte of a request to its last, and for an answer to be taken."""
 
 
 class LocalServer:

@@ -69,7 +69,7 @@ class Corners:
 
 @dataclass(frozen=True, slots=True)
 class BoardView:
-    """What both cameras of a head see of the board in one exposure."""
+    """The board as both cameras of a head see it in one exposure."""
 
     name: str
     left: Corners
@@ -77,7 +77,7 @@ class BoardView:
 
 
 class BoardShape(Enum):
-    """What an adjustment may learn about the board. Its scale always stays the drawing's."""
+    """The freedom of the board's shape in an adjustment. Its scale always stays the drawing's."""
 
     RIGID = "rigid"
     """The drawing is exact. A bow of 0.1 mm ruins the result without showing in the residuals."""

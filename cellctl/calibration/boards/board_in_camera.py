@@ -7,7 +7,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.boards.projection import camera_vector, project
 from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import Array
-from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.uncertain import UncertainPose, perturbed, skews
 from cellctl.vision.camera.stereo_head import CameraModel
 
 _MIN_CORNERS = 6
@@ -26,22 +26,17 @@ def board_in_camera(
     is_found, turn, shift = cv2.solvePnP(board_m, pixels, camera.camera_matrix, camera.distortion)
     if not is_found:
         raise BoardPoseInvalid("the corners give no pose")
-    rotation = Rotation.from_rotvec(np.ravel(turn))
-    translation = np.ravel(shift).astype(float)
+    pose = RigidTransform.from_components(np.ravel(shift), Rotation.from_rotvec(np.ravel(turn)))
     # OpenCV's solution has no covariance: a few Gauss-Newton steps from it give both.
     vector = camera_vector(camera)
     for _ in range(10):
-        turned = rotation.apply(board_m)
-        projection = project(vector, turned + translation)
+        turned = pose.rotation.apply(board_m)
+        projection = project(vector, turned + pose.translation)
         residuals = (pixels - projection.pixels).ravel()
-        x, y, z = turned.T
-        zero = np.zeros_like(x)
-        skews = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
-        jacobian = np.concatenate([projection.by_point, -projection.by_point @ skews], axis=2)
-        jacobian = jacobian.reshape(-1, 6)
+        by_turn = -projection.by_point @ skews(turned)
+        jacobian = np.concatenate([projection.by_point, by_turn], axis=2).reshape(-1, 6)
         delta = np.linalg.lstsq(jacobian, residuals, rcond=None)[0]
-        translation = translation + delta[:3]
-        rotation = Rotation.from_rotvec(delta[3:]) * rotation
+        pose = perturbed(pose, delta)
         if np.abs(delta).max() < 1e-12:
             break
     squares = float(residuals @ residuals)
@@ -49,5 +44,4 @@ def board_in_camera(
         sigma_px = float(np.sqrt(squares / max(len(residuals) - 6, 1)))
     # The Jacobian of the last step: the pose moves by less than rounding after it.
     covariance = np.linalg.inv(jacobian.T @ jacobian) * sigma_px**2
-    pose = RigidTransform.from_components(translation, rotation)
     return UncertainPose(pose, covariance), float(np.sqrt(squares / len(board_m)))

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.linalg import block_diag
 
 from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import MM, Array
-from cellctl.geometry.uncertain import UncertainPose, skew
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.target_tracker import Target
+from cellctl.vision.registration.rigid_fit import register
 
 _MIN_DISCS = 4
 _MAX_RMS_M = 2e-3
@@ -112,26 +113,13 @@ def _fit(
         raise BoardPoseInvalid("the discs lie on a line")
     # The drawing is uncertain too: a printed disc is off its place by some micrometres.
     own = np.eye(3) * disc_sigma_m**2
-    weights = np.linalg.inv(np.stack([point.covariance_m2 + own for point in points]))
-    # Start: the unweighted closed form. Gauss-Newton on it brings in the covariances of the discs.
-    rotation, _ = Rotation.align_vectors(
-        measured - measured.mean(axis=0), on_board - on_board.mean(axis=0)
-    )
-    translation = measured.mean(axis=0) - rotation.apply(on_board.mean(axis=0))
-    for _ in range(5):
-        turned = rotation.apply(on_board)
-        jacobian = np.stack([np.hstack([np.eye(3), -skew(row[0])]) for row in turned[:, None]])
-        residuals = measured - turned - translation
-        normal = np.einsum("nki,nkl,nlj->ij", jacobian, weights, jacobian)
-        delta = np.linalg.solve(normal, np.einsum("nki,nkl,nl->i", jacobian, weights, residuals))
-        translation = translation + delta[:3]
-        rotation = Rotation.from_rotvec(delta[3:]) * rotation
-    residuals = measured - rotation.apply(on_board) - translation
-    squares = np.einsum("nk,nkl,nl->n", residuals, weights, residuals)
+    covariances_m2 = np.stack([point.covariance_m2 + own for point in points])
+    fit = register(on_board, measured, covariances_m2)
+    left_m = fit.residuals_m
+    squares = np.einsum("nk,nkl,nl->n", left_m, np.linalg.inv(covariances_m2), left_m)
     chi2_ratio = float(squares.sum() / (3 * len(points) - 6))
-    covariance = np.linalg.inv(normal) * max(1.0, chi2_ratio)
-    pose = UncertainPose(RigidTransform.from_components(translation, rotation), covariance)
-    return pose, residuals, squares, chi2_ratio
+    covariance = fit.gain @ block_diag(*covariances_m2) @ fit.gain.T * max(1.0, chi2_ratio)
+    return UncertainPose(fit.pose, covariance), left_m, squares, chi2_ratio
 
 
 def _typical(squares: Array) -> float:

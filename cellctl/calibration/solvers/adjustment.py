@@ -10,7 +10,7 @@ from cellctl.errors.calibration import IllConditioned, SolveFailed
 from cellctl.geometry.pose import Array
 
 _MAX_CONDITION = 1e12
-"""Of the scaled Jacobian; its inverse normal matrix would have no correct digits beyond."""
+"""Largest condition of the scaled Jacobian. Beyond it no digit of the covariance is right."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

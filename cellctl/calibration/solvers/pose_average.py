@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.geometry.pose import Array, pose_error
-from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.pose import pose_error
+from cellctl.geometry.uncertain import UncertainPose, perturbed
 
 
 def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
@@ -25,14 +24,9 @@ def average(poses: Sequence[UncertainPose]) -> tuple[UncertainPose, float]:
     for _ in range(5):
         deltas = [np.concatenate(pose_error(mean, pose.pose)) for pose in poses]
         pulls = np.sum([w @ d for w, d in zip(weights, deltas, strict=True)], axis=0)
-        mean = _moved(mean, covariance @ pulls)
+        mean = perturbed(mean, covariance @ pulls)
     deltas = [np.concatenate(pose_error(mean, pose.pose)) for pose in poses]
     squares = sum(float(d @ w @ d) for w, d in zip(weights, deltas, strict=True))
     # Six unknowns are spent on the mean.
     chi2_ratio = squares / (6 * (len(poses) - 1))
     return UncertainPose(mean, covariance * max(1.0, chi2_ratio)), chi2_ratio
-
-
-def _moved(pose: RigidTransform, delta: Array) -> RigidTransform:
-    rotation = Rotation.from_rotvec(delta[3:]) * pose.rotation
-    return RigidTransform.from_components(pose.translation + delta[:3], rotation)

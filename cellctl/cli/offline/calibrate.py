@@ -54,7 +54,7 @@ Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")
 
 
 class CalibrationResult(Protocol):
-    """What all calibrations return."""
+    """The members that the results of all calibrations have."""
 
     @property
     def checks(self) -> Checks:

@@ -30,9 +30,9 @@ from cellctl.errors.local import (
 )
 
 SERVICE = Path("/run/cellctl/cellctl.sock")
-"""Where the shipped systemd unit has it."""
+"""The socket of the shipped systemd unit."""
 HERE = Path("runs/cellctl.sock")
-"""Where a daemon has it that was started from this folder with the default data_dir."""
+"""The socket of a daemon that was started in this folder with the default data_dir."""
 ANSWER_S = 10.0
 SETTLE_S = 60.0
 _POLL_S = 0.2

@@ -19,10 +19,10 @@ from cellctl.force.contact.cusum import Cusum
 
 @dataclass(frozen=True, slots=True)
 class ApproachFigures:
-    """What the speed depends on: measured at commissioning, or stated by the recipe."""
+    """The figures that decide the speed: measured at commissioning, or stated by the recipe."""
 
     stop_latency_s: float
-    """From the stop request on the wire to standstill at low speed, upper bound."""
+    """Upper bound of the time from the stop request on the wire to standstill at low speed."""
     stiffness_n_m: float
     """Upper bound of arm and contact in series, along the approach: the force grows by this much
     for each metre that the arm moves on."""
@@ -35,7 +35,7 @@ class ApproachFigures:
     stale_s: float
     """Age of a sample at which the guard stops: the worst delay of a reading."""
     filter_delay_s: float
-    """By how much the detector's input lags behind the true force."""
+    """Lag of the detector's input behind the true force."""
     sample_period_s: float
     touch: Cusum
     tare_uncertainty_n: float
@@ -45,7 +45,7 @@ class ApproachFigures:
 
     @property
     def delay_s(self) -> float:
-        """From a force at the contact to standstill, without the detector's own delay."""
+        """Time from a force at the contact to standstill, without the detector's own delay."""
         return self.stop_latency_s + self.stale_s + self.filter_delay_s
 
 
@@ -146,7 +146,7 @@ def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class ContactWindow:
-    """Where contact is expected, as travel from the stand-off along the approach (m)."""
+    """The expected place of contact, as travel from the stand-off along the approach (m)."""
 
     expected_m: float
     earliest_m: float

@@ -50,14 +50,14 @@ class CreepLaw:
     step_sigma_m: float
     """Standard deviation of the length of a step: the arm's own error of every single move."""
     stiffening_ratio: float = 2.0
-    """How much stiffer the contact may be at the end of a step than the steps before have shown."""
+    """Largest ratio of the stiffness at the end of a step to that of the steps before."""
     stiffness_margin_ratio: float = 1.25
     """k_hat stays this much above the stiffness that the steps have shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class CreepState:
-    """What the creep knows after the steps so far."""
+    """The state of the creep after the steps so far."""
 
     stiffness_n_m: float
     """k_hat."""

@@ -12,7 +12,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 EDGE_MARGIN_N_M = 2.75, 1.5
-"""What tare, friction and the lever of the side force may add to the moments about x and y."""
+"""Allowance for tare, friction and the lever of the side force in the moments about x and y."""
 REST_RATIO = 0.8
 """A seated part may keep this share of the side load that is allowed on the way."""
 

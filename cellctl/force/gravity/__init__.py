@@ -1,4 +1,4 @@
-"""What hangs on a force sensor: identify it from still poses, and take its weight off a reading.
+"""The payload of a force sensor: its identification from still poses, and its weight.
 
 The walk: ``poses`` plans where to measure, ``pose_file`` holds what was measured, ``excitation``
 refuses poses that cannot tell the load, ``payload`` fits it, ``acceptance`` tests the fit, and

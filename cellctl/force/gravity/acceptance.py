@@ -18,7 +18,7 @@ class PayloadLimits:
     mass_ratio: float = 0.02
     inclination_rad: float = float(np.deg2rad(0.5))
     crosstalk_ratio: float = 0.06
-    """What the sensor's cross-talk may add to mass (ratio) and inclination (rad) in a narrow cone.
+    """Allowance for the sensor's cross-talk in mass (ratio) and inclination (rad).
 
     In a narrow cone the weight follows from small changes of the lateral force, and 1 % cross-talk
     between forces and torques at full scale moves it by 1.5 % and 1.3° (one sigma). It does no harm

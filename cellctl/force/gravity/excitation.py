@@ -29,7 +29,7 @@ SAME_DIRECTION_RAD = np.deg2rad(0.5)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Excitation:
-    """How far gravity moves in sensor axes over a set of poses."""
+    """The range over which gravity moves in sensor axes over a set of poses."""
 
     distinct: int
     """Number of clearly different directions of gravity."""
@@ -86,8 +86,8 @@ def require_excitation(base_R_sensor: Rotation, method: str) -> Excitation:
         raise TooFewPoses(
             f"{found.distinct} distinct directions of gravity, {method} needs {needed}"
         )
-    # The second direction decides. Tilts about one axis only leave the fit free across it: in
-    # simulation that cost 65 N, while the residuals of the fit looked good.
+    # The second direction decides. Tilts about one axis only leave the fit free across it; in
+    # simulation that cost 65 N.
     if found.tilt_rad[1] < MIN_TILT_RAD:
         _refuse_tilt(found)
     return found

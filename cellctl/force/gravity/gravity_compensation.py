@@ -34,7 +34,7 @@ class GravityCompensation:
     residual_n: float = 0.0
     """Root mean square over the force components of the residuals of the identification."""
     residual_n_m: float = 0.0
-    """The same for the torques."""
+    """Root mean square over the torque components of the residuals."""
     base_down: tuple[float, float, float] = BASE_DOWN
     """Unit vector of gravity in the robot base, as the fit assumed it."""
 

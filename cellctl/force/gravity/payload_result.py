@@ -30,7 +30,7 @@ class PayloadResult:
 
     @property
     def compensation(self) -> GravityCompensation:
-        """What the guard subtracts from its readings."""
+        """The gravity compensation that the guard subtracts from its readings."""
         return self.identification.affine.compensation
 
     @property

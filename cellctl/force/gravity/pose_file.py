@@ -1,4 +1,4 @@
-"""Still poses and their wrenches as the text of a CSV file, and back.
+"""Still poses and their wrenches, read from the text of a CSV file.
 
 Columns, in any order: ``qx,qy,qz,qw`` of base_T_sensor, ``fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm`` in
 sensor axes, and optionally ``role`` (``fit``, ``hold-out`` or ``repeat``; ``fit`` if absent).
@@ -58,17 +58,6 @@ def parse_pose_file(text: str) -> PoseRecord:
     _require_unit(quaternions, [number for number, _ in rows])
     roles = tuple(_role(row, number) for number, row in rows)
     return PoseRecord(Rotation.from_quat(quaternions), wrenches, roles)
-
-
-def format_pose_file(record: PoseRecord) -> str:
-    """The text that ``parse_pose_file`` reads back to the same record."""
-    lines = [",".join((*QUATERNION, *WRENCH, ROLE))]
-    for quaternion, wrench, role in zip(
-        record.base_R_sensor.as_quat(), record.wrenches, record.roles, strict=True
-    ):
-        numbers = [f"{value:.9f}" for value in quaternion] + [f"{value:.4f}" for value in wrench]
-        lines.append(",".join((*numbers, role.value)))
-    return "\n".join(lines) + "\n"
 
 
 def _require_columns(found: object) -> None:

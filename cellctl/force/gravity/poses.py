@@ -18,7 +18,7 @@ GOLDEN_ANGLE_RAD = np.pi * (3.0 - np.sqrt(5.0))
 
 
 class PoseRole(Enum):
-    """What a pose is recorded for."""
+    """The purpose for which a pose is recorded."""
 
     FIT = "fit"
     HOLD_OUT = "hold-out"

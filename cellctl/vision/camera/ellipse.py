@@ -1,4 +1,4 @@
-"""Ellipses: as a value, from points, and as the image of a circle."""
+"""Ellipses: as a value, and as the image of a circle."""
 
 from dataclasses import dataclass
 
@@ -16,7 +16,7 @@ class Ellipse:
     semi_axes_px: tuple[float, float]
     """Major, minor."""
     angle_rad: float
-    """Of the major axis from the columns' axis."""
+    """Angle of the major axis from the axis of the columns."""
 
     @property
     def area_px2(self) -> float:
@@ -47,20 +47,3 @@ def ellipse_of_circle(centre_px: Array, jacobian: Array) -> Ellipse:
     axes, sizes, _ = np.linalg.svd(jacobian)
     angle_rad = float(np.arctan2(axes[1, 0], axes[0, 0]))
     return Ellipse(centre_px, (float(sizes[0]), float(sizes[1])), angle_rad)
-
-
-def conic_of_circle(centre: Array, normal: Array, radius: float) -> Array:
-    """Image of a circle as a conic on normalised rays, shape (3, 3).
-
-    ``centre`` and unit ``normal`` in the camera's frame. With A = (n·C) I - C nᵀ a ray x lies on
-    the cone of the circle when |A x|² = R² (n·x)², hence Q = AᵀA - R² n nᵀ.
-    """
-    a = float(normal @ centre) * np.eye(3) - np.outer(centre, normal)
-    return np.asarray(a.T @ a - radius**2 * np.outer(normal, normal))
-
-
-def eccentricity(centre: Array, normal: Array, radius: float) -> Array:
-    """Centre of the image ellipse minus image of the circle's centre, normalised rays, (2,)."""
-    conic = conic_of_circle(centre, normal, radius)
-    ellipse_centre = -np.linalg.solve(conic[:2, :2], conic[:2, 2])
-    return np.asarray(ellipse_centre - centre[:2] / centre[2])

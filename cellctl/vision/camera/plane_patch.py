@@ -26,7 +26,7 @@ def _terms(u: Array, v: Array) -> Array:
 
 
 def _derivative(axis: int) -> Array:
-    """From the coefficients of a cubic to those of its derivative by u or v, shape (10, 6)."""
+    """Matrix from the coefficients of a cubic to those of its derivative by u or v, (10, 6)."""
     matrix = np.zeros((len(_POWERS), _QUADRATIC))
     for row, powers in enumerate(_POWERS):
         if powers[axis]:
@@ -59,7 +59,7 @@ class PlanePatch:
     half_px: float
     """The patch is the square of twice this side round ``middle_px``."""
     coefficients: Array
-    """Of the cubic polynomial from pixels to the plane, shape (10, 2)."""
+    """Coefficients of the cubic polynomial from pixels to the plane, shape (10, 2)."""
 
     unit_px: float
     """Plane units in a pixel, in the middle of the patch."""

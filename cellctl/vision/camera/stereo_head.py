@@ -73,17 +73,10 @@ def read_stereo_head(path: Path) -> StereoHead:
     except ValueError as error:
         raise CalibrationFileInvalid(f"{path} is not JSON: {error}") from error
     try:
-        return _head_from_json(data)
+        return stereo_head_from_json(data)
     except (KeyError, TypeError, ValueError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise CalibrationFileInvalid(f"{path}: {reason}") from error
-
-
-def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:
-    """Write a calibration file; ``extra`` adds keys such as the residuals of each view."""
-    # The head comes last, so that no extra key can replace a part of the calibration.
-    data = {**(extra or {}), **stereo_head_to_json(head)}
-    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
 
 
 def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
@@ -111,7 +104,11 @@ def _camera_to_json(camera: CameraModel) -> dict[str, Any]:
     }
 
 
-def _head_from_json(data: Mapping[str, Any]) -> StereoHead:
+def stereo_head_from_json(data: Mapping[str, Any]) -> StereoHead:
+    """The inverse of ``stereo_head_to_json``.
+
+    Raises ``KeyError``, ``TypeError`` or ``ValueError``.
+    """
     width, height = (int(value) for value in data["image_size"])
     if width <= 0 or height <= 0:
         raise ValueError("image_size must be two positive numbers")

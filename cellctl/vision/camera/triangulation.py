@@ -10,7 +10,7 @@ from cellctl.vision.camera.lens import distort_jacobian, project, undistort
 from cellctl.vision.camera.stereo_head import StereoHead
 
 _STEPS = 2
-"""From half-way between the rays, the first step leaves less than 1e-6 px."""
+"""Gauss-Newton steps. Started half-way between the rays, the first one leaves less than 1e-6 px."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,23 +22,12 @@ class StereoPoint:
     covariance_m2: Array
     """Shape (3, 3)."""
     misfit_sigmas: float
-    """How far the two image points are from one ray pair, in standard deviations."""
+    """Distance of the two image points from one ray pair, in standard deviations."""
 
 
 def essential_matrix(rotation: Array, translation: Array) -> Array:
     """E = [t]× R, with ``x_rightᵀ E x_left = 0`` for normalised rays (paper, table 1)."""
     return skew(translation) @ rotation
-
-
-def fundamental_matrix(head: StereoHead) -> Array:
-    """F ∝ K_right⁻ᵀ E K_left⁻¹ for undistorted pixels, shape (3, 3), scaled to F[2, 2] = 1."""
-    essential = essential_matrix(head.rotation, head.translation_m)
-    fundamental = (
-        np.linalg.inv(head.right.camera_matrix).T
-        @ essential
-        @ np.linalg.inv(head.left.camera_matrix)
-    )
-    return np.asarray(fundamental / fundamental[2, 2])
 
 
 def epipolar_distances_px(head: StereoHead, left_px: Array, right_px: Array) -> Array:

@@ -1,4 +1,4 @@
-"""What the drawing says: the named holes of a part, their kinds, and the file that lists them.
+"""The drawing of a part: its named holes, their kinds, and the file that lists them.
 
 A kind of hole is one file with one class (``pin``, ``thread``, ``countersink``, ``disc``). It
 states how such a hole looks; the search, the fit of the rim and the paper's method ask it instead

@@ -13,7 +13,7 @@ class Hole:
     kind: str
     """A key of ``cellctl.vision.features.kinds.KINDS``."""
     diameter_m: float
-    """Of the rim that carries the nominal centre."""
+    """Diameter of the rim that carries the nominal centre."""
     position_m: Array
     """Shape (3,)."""
     countersink_m: float | None = None

@@ -1,4 +1,4 @@
-"""What a kind of hole looks like, and what that asks of the search and of the fit of its rim."""
+"""The appearance of a kind of hole, and what it demands of the search and of the rim fit."""
 
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
@@ -8,7 +8,7 @@ from cellctl.vision.features.hole import Hole
 
 @dataclass(frozen=True, slots=True)
 class SecondEdge:
-    """What is known beforehand of a second edge round a rim, such as that of a chamfer."""
+    """Prior knowledge of a second edge round a rim, such as that of a chamfer."""
 
     width: float
     """Distance between both edges over the radius of the rim."""
@@ -17,7 +17,7 @@ class SecondEdge:
 
 
 class RimEvidence(Protocol):
-    """What both images show of a rim once it has been fitted with one edge."""
+    """The evidence of both images of a rim that has been fitted with one edge."""
 
     @property
     def hole(self) -> Hole:
@@ -50,7 +50,7 @@ class HoleKind:
     """
 
     name: ClassVar[str]
-    """As it is written in the feature file."""
+    """Name of the kind in the feature file."""
     bright: ClassVar[bool] = False
     """The feature is brighter than what surrounds it."""
     cone: ClassVar[bool] = False

@@ -23,12 +23,12 @@ may win over the one that is meant."""
 
 @dataclass(frozen=True, slots=True)
 class Expectation:
-    """Where a part should be."""
+    """The expected pose of a part."""
 
     camera_T_part: RigidTransform
     """In the left camera."""
     radius_m: float
-    """How far a hole may be from where this pose puts it."""
+    """Largest distance of a hole from where this pose puts it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

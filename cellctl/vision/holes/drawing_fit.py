@@ -1,4 +1,4 @@
-"""How well measured holes fit their drawing, and whether only one arrangement of them does."""
+"""Tests that measured holes fit their drawing, and that only one arrangement of them does."""
 
 from collections.abc import Sequence
 
@@ -39,7 +39,7 @@ def check_layout(holes: Sequence[Hole], positions_m: Array, tolerance_m: float) 
 
 
 def _off_drawing_m(holes: Sequence[Hole], positions_m: Array) -> Array:
-    """How far each hole is from where the others put it on the drawing, shape (n,)."""
+    """Distance of each hole from where the others put it on the drawing, shape (n,)."""
     nominal = np.array([hole.position_m for hole in holes])
     if on_a_line(nominal):
         wanted = np.linalg.norm(nominal - nominal[0], axis=1)

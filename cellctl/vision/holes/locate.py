@@ -18,7 +18,7 @@ from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.rim.roi import LocatedRim, RimRoi, locate_rim
 
 LOCATE_REACH_PX = 7.0
-"""How far from its coarse place a rim is found."""
+"""Largest distance of a rim from its coarse place."""
 _EPIPOLAR_PX = 2.5
 _MOST_PASSES, _SETTLED_M = 2, 1.5e-3
 
@@ -100,7 +100,7 @@ def _normal_by_rims(images: HeadImages, holes: Sequence[Hole], positions_m: Arra
 
 
 def _closest(normal: Array, normals: Sequence[Array]) -> Array:
-    """Of the possible normals the one that was meant; the same where none are known."""
+    """The possible normal nearest to ``normal``; ``normal`` itself where none are known."""
     return max(normals, key=lambda other: float(other @ normal), default=normal)
 
 
@@ -131,7 +131,7 @@ def _positions(
 def rim_rois(
     images: HeadImages, hole: Hole, position_m: Array, normal: Array
 ) -> tuple[RimRoi, RimRoi]:
-    """Where both cameras see a hole; position and normal in the left camera."""
+    """Regions of interest of a hole in both images; position and normal in the left camera."""
     head, turn = images.head, images.head.rotation
     in_right_m = turn @ position_m + head.translation_m
     return (

@@ -18,7 +18,7 @@ from cellctl.vision.rim.roi import RimRoi
 
 _REACH_PX = 8.0
 _SQUEEZE = 0.25
-"""How much smaller than its diameter a rim may look across its tilt."""
+"""Largest share of its diameter by which a tilted rim may look narrower."""
 _STARTS = ((0.0, 0.0), (0.35, 0.0), (-0.35, 0.0), (0.0, 0.35), (0.0, -0.35))
 """Slopes against the line of sight. An ellipse nearly fits two opposite tilts, so the fit starts on
 all sides and the best result counts."""
@@ -27,7 +27,7 @@ _SOFT_PX = 0.3
 _SIZE_SIGMA = 0.02
 _FEWEST_EDGES = 24
 _UNKNOWNS = 4
-"""Of each rim: a move in three directions and its growth, in radii."""
+"""Unknowns of each rim: a move in three directions and its growth, in radii."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -28,7 +28,7 @@ def average(measurements: Sequence[PairMeasurement]) -> PairMeasurement:
     if any(item.names != names or item.method != method for item in measurements):
         raise ValueError("measurements of different holes or methods cannot be averaged")
     frames = sum(item.frames for item in measurements)
-    # One frame keeps its covariance to the letter, whatever it is made of.
+    # A single measurement stays as it is, also when it is an average itself.
     if len(measurements) == 1:
         return measurements[0]
     columns = zip(*(item.holes for item in measurements), strict=True)

@@ -39,7 +39,7 @@ class PartPose:
     outliers: tuple[str, ...]
     """Holes that were left out of the registration."""
     misfit: ChiSquare
-    """Of the holes used."""
+    """Consistency of the holes that were used."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,12 +48,12 @@ class _Points:
     nominal_m: Array
     measured_m: Array
     covariances_m2: Array
-    """Of the measurement, in C1, shape (n, 3, 3)."""
+    """Covariances of the measured points in C1, shape (n, 3, 3)."""
     by_transfer: Array
     """Derivative of each point by the error of ``c1_T_c2``, shape (n, 3, 6)."""
 
     def joint_covariance(self, transfer_covariance: Array) -> Array:
-        """Of all coordinates, with what they share by ``c1_T_c2``, shape (3n, 3n)."""
+        """Covariance of all coordinates with the errors shared by ``c1_T_c2``, (3n, 3n)."""
         shared = self.by_transfer.reshape(-1, 6)
         return np.asarray(
             block_diag(*self.covariances_m2) + shared @ transfer_covariance @ shared.T

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
-from cellctl.geometry.uncertain import skew
+from cellctl.geometry.uncertain import perturbed, skews
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,9 +54,7 @@ def register(nominal_m: Array, measured_m: Array, covariances_m2: Array) -> Regi
         normal = np.einsum("nij,nik->jk", design, weighted)
         gain = np.linalg.solve(normal, np.concatenate(list(weighted)).T)
         step = gain @ residuals.ravel()
-        pose = RigidTransform.from_components(
-            pose.translation + step[:3], Rotation.from_rotvec(step[3:]) * pose.rotation
-        )
+        pose = perturbed(pose, step)
     residuals = measured_m - pose.apply(nominal_m)
     return Registration(pose, residuals, gain)
 
@@ -66,7 +64,8 @@ def by_pose(turned_m: Array) -> Array:
 
     ``turned_m`` (n, 3) are the nominal points in the axes of the camera.
     """
-    return np.stack([np.hstack([np.eye(3), -skew(point)]) for point in turned_m])
+    eye = np.broadcast_to(np.eye(3), (len(turned_m), 3, 3))
+    return np.concatenate([eye, -skews(turned_m)], axis=2)
 
 
 def on_a_line(points_m: Array) -> bool:

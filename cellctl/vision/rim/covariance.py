@@ -38,7 +38,7 @@ class RatedFit:
 
     fit: RimFit
     covariance: Array
-    """Of centre and radius, in plane units squared: (x, y) of every image, then the radius."""
+    """Covariance of (x, y) of every image, then of the radius, in plane units squared."""
     contrast_grey: float
     """Step from inside to outside."""
 
@@ -83,7 +83,7 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
 
 
 def _model_covariance(problem: RimProblem, grey: Array, outside: Array, contrast: float) -> Array:
-    """What a few smooth terms leave unexplained grows with how uneven the light at a rim is."""
+    """Covariance of the error of the light model, which grows with how uneven the light is."""
     sides = (grey[outside > _BRIGHT], grey[outside < _DARK])
     variances = [float(np.var(side)) if len(side) else 0.0 for side in sides]
     uneven = float(np.sqrt(sum(variances))) / max(abs(contrast), 1.0)

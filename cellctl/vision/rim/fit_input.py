@@ -1,4 +1,4 @@
-"""What the fit of a rim is given: the pixels round a located rim, in the coordinates of its plane.
+"""Input of the rim fit: the pixels round a located rim, in the coordinates of its plane.
 
 Pixels are used in a band along the rim. Outside it ends before the next edge begins: round a
 countersunk bore lies a cone, whose outer edge need not be in the drawing and, since it lies nearer
@@ -25,7 +25,7 @@ _CLEAR_PX = 3.0
 """The face is judged only from this far outside the rim on, beyond its blur."""
 _MARGIN_PX = 1.0
 _LOOK_PX = 9.0
-"""How far outside a bore the outer edge of its cone is looked for."""
+"""Distance outside a bore up to which the outer edge of its cone is looked for."""
 _EDGE_PX, _LEAST_OUTSIDE_PX = 2.5, 1.0
 """Distance kept from that edge, but for the least that a rim needs."""
 
@@ -45,7 +45,7 @@ class RimFitInput:
     patch: PlanePatch
     pixels: RimPixels
     middle_px: Array
-    """Where the rim was located, shape (2,)."""
+    """Raw pixel of the located centre, shape (2,)."""
     centre: Array
     """Start of the fit in plane units, shape (2,)."""
     radius: float
@@ -69,7 +69,7 @@ class _Band:
     dense: float
     """All of them up to here, one in three beyond, where only levels are needed."""
     beyond: Array
-    """How far outside, at even azimuths."""
+    """Width of the band outside the rim, at evenly spaced azimuths."""
 
 
 def fit_input(roi: RimRoi, located: LocatedRim, ring_px: float | None = None) -> RimFitInput:
@@ -119,7 +119,7 @@ def clearance_px(image: Image, patch: PlanePatch, centre: Array, radius: float) 
 
 
 def _first_edges(steepness: Array, widths_px: Array, limit: float) -> Array:
-    """Where the steepness (k, n) first rises to a peak above the limit, shape (k,).
+    """Places of the first peaks of the steepness (k, n) above the limit, shape (k,).
 
     The flank of the rim's own edge reaches into the profile: a peak counts only after a valley.
     """

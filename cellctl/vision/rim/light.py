@@ -1,4 +1,4 @@
-"""How grey values vary over the surfaces at a rim: a few smooth terms for each surface.
+"""The light model: a few smooth terms for the grey values of each surface at a rim.
 
 Terms that the grey values of one hole hardly determine carry a prior: a standard deviation of
 their amplitude about zero. What is not known thus widens the covariance of the centre instead of
@@ -17,7 +17,7 @@ _LEAST_SHARE = 1e-5
 _FADE = 0.4
 """Light in a bore falls to 1/e at about 1.25 diameters."""
 _WALL_GREY = 40.0
-"""How much the light of a wall may differ from an even fade at that rate."""
+"""Standard deviation of the light of a wall about an even fade at that rate."""
 _THREAD_BAND = 0.15
 """Radial extent, in radii, over which the flanks of a thread change by about their contrast."""
 

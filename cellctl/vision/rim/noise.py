@@ -1,4 +1,4 @@
-"""How noisy the pixels at a rim are: their own noise, and the lay of the face that they share.
+"""Noise of the pixels at a rim: their own, and the lay of the face that they share.
 
 The lay is the direction of the strokes that a tool leaves on a machined face (ISO 21920-1). A
 stroke along the rim shifts its edge and leaves no residual there. It does not end at the rim,
@@ -30,7 +30,7 @@ _LEAST_STROKE_GREY = 0.3
 _FEWEST_IN_STROKE, _FEWEST_STROKES = 4, 8
 
 _LAY_REACH_PX = 14.0
-"""How far beyond the rim the face is looked at."""
+"""Distance beyond the rim up to which the lay of the face is looked for."""
 _ANISOTROPY = 0.2
 """From this share of directed gradients on there is a lay; noise alone stays below a tenth."""
 _GRADIENT_CLIP = 3.0
@@ -56,14 +56,14 @@ class PixelNoise:
     weights: Array
     """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
     strokes: csr_array
-    """What each stroke adds to each pixel at one standard deviation, shape (k, n). Sparse, because
+    """Grey that each stroke adds to each pixel at one standard deviation, shape (k, n). Sparse, because
     no more than two strokes reach a pixel: dense rows take most of the time of a fit."""
     posterior: Array
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
 
     @classmethod
     def of(cls, weights: Array, strokes: csr_array) -> "PixelNoise":
-        """With the strokes' heights still unknown."""
+        """Noise from its parts, with the posterior of the strokes' heights computed."""
         normal = (csr_array(strokes * weights) @ strokes.T).toarray() + np.eye(strokes.shape[0])
         return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
 

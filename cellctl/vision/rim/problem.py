@@ -84,9 +84,9 @@ class RimProblem:
     across_lay: Array | None = None
     """Unit vector in the plane across the lay of the face, if it has one."""
     ring_level_grey: float = 3.0
-    """How much the ring's mean grey may differ between cameras, standard deviation."""
+    """Standard deviation of the difference of the ring's mean grey between the cameras."""
     ring_variation_grey: float = 0.6
-    """The same for each term of its variation with the azimuth: one lamp lights it for both."""
+    """The same for each term of the variation with azimuth; it is small, as both see one lamp."""
 
     @property
     def unit_px(self) -> float:
@@ -106,7 +106,7 @@ class RimSolution:
     design: Array
     """Derivatives of all pixels by the light, then by the joint parameters: (lights + m, n)."""
     precision: Array
-    """Of the priors, shape (lights + m,)."""
+    """Precisions of the priors, shape (lights + m,)."""
     pull: Array
     """Prior mean minus present value, shape (lights + m,)."""
     outside: Array
@@ -125,7 +125,7 @@ class RimSolution:
         return self.cost_under(self.noise)
 
     def cost_under(self, noise: PixelNoise) -> float:
-        """The same under another noise, to compare models of the same pixels."""
+        """The cost under another noise, to compare models of the same pixels."""
         squares = self.residuals @ noise.weigh(self.residuals)
         return float(squares + self.precision @ self.pull**2)
 

@@ -1,4 +1,4 @@
-"""Where the rim of a hole is looked for in one image, and finding it there by its edges."""
+"""Region of interest of a rim in one image, and finding the rim in it by its edges."""
 
 from dataclasses import dataclass
 
@@ -19,8 +19,8 @@ from cellctl.vision.rim.edges import edge_circle
 RADIUS_TOLERANCE = 0.07
 """Largest relative difference of a rim from its nominal size."""
 BAND_OUTSIDE_PX = 5.5
-"""How far outside the rim its pixels are used: far enough to see the level of the face behind the
-blur of the edge, near enough to stay clear of most neighbours."""
+"""Width of the band of pixels used outside the rim: wide enough to see the level of the face behind
+the blur of the edge, narrow enough to stay clear of most neighbours."""
 
 _MIN_SUPPORT = 0.55
 """Share of the circumference that must show an edge. A scratch or a reflex may hide nearly half of
@@ -51,12 +51,12 @@ class RimRoi:
 
     @property
     def distance_m(self) -> float:
-        """From the camera to the rim's plane, along its normal."""
+        """Distance from the camera to the rim's plane, along its normal."""
         return float(self.normal @ self.centre_m)
 
     @property
     def nominal_radius(self) -> float:
-        """Of the rim, in plane units: those of ``PlanePatch``."""
+        """Radius of the rim in the plane units of ``PlanePatch``."""
         return self.hole.diameter_m / 2.0 / self.distance_m
 
     def refusal(self, reason: str) -> HoleMissing:
@@ -79,7 +79,7 @@ class RimRoi:
         return plane_patch(self.camera, self.normal, basis, middle, half)
 
     def patch_or_refuse(self, reach_px: float) -> PlanePatch:
-        """The same; raises ``HoleMissing`` when it is cut off."""
+        """``patch``, but raises ``HoleMissing`` when the border cuts it off."""
         patch = self.patch(reach_px)
         if patch is None:
             raise self.refusal("lies outside the image")

@@ -34,7 +34,7 @@ _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 
 _START_BLUR_PX = 1.0
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
-"""From a start above the true depth a fit converges; from far below it may not."""
+"""Depths at which a fit may start: it converges from above the true one, not always from below."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
 _BORE_ODDS, _CONE_ODDS = 12.0, -15.0
@@ -48,9 +48,9 @@ _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
 _WALL_M, _WALL_SIGMAS = 2e-3, 4.0
 """Depth of a wall that may be all that there is, and its standard deviation over it."""
 _TURNS_GREY = 15.0
-"""How uneven the turns of a thread are expected to be, standard deviation of each term."""
+"""Expected unevenness of the turns of a thread: standard deviation of each term."""
 _PIXELS_ALIKE = 10.0
-"""What a model leaves unexplained is alike in about so many pixels: evidence counts that less."""
+"""Number of neighbouring pixels whose model errors are alike: evidence is divided by it."""
 
 
 class ScoreTests:
@@ -83,7 +83,7 @@ class ScoreTests:
         return self._gain((1.0 - self._solution.outside) * rows) > _SIGNIFICANT_GAIN
 
     def ring_gain(self) -> float:
-        """What a narrow ring of another grey round the rim would explain at most."""
+        """Largest fall of chi square that a narrow ring of another grey would bring."""
         around = np.stack([np.ones_like(self._cos), self._cos, self._sin])
         radii = self._shape.radius + np.array(_RING_WIDTHS_PX) * self._unit_px
         beyond = outside_circles(self._pixels, self._shape, radii)
@@ -102,7 +102,7 @@ class ScoreTests:
         return float(score @ np.linalg.solve(size, score))
 
     def _gain_of_each(self, rows: Array) -> Array:
-        """The same for each of ``rows`` (k, n) alone, shape (k,)."""
+        """Fall of chi square for each of ``rows`` (k, n) alone, shape (k,)."""
         solution = self._solution
         weighted = solution.noise.weigh(rows)
         shared = weighted @ solution.design.T
@@ -152,7 +152,7 @@ def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
 
 
 class StereoEvidence:
-    """What fits with one edge say about a rim: see ``RimEvidence``."""
+    """The evidence of fits with one edge, as ``RimEvidence`` describes it."""
 
     def __init__(
         self, given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]

@@ -53,7 +53,7 @@ class RimPair:
     left: Rim
     right: Rim
     covariance_px2: Array
-    """Of both points, left first, shape (4, 4)."""
+    """Joint covariance of both points, left first, shape (4, 4)."""
 
 
 def measure_rims(
@@ -124,7 +124,7 @@ def _from_joint_fit(given: tuple[RimFitInput, RimFitInput], chosen: SelectedFit)
 
 
 def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float) -> Rim:
-    """What a fit says about the rim in one image, in raw pixels; ``index`` of its view."""
+    """The rim in one image, in raw pixels, from a fit; ``index`` is that of its view."""
     shape, part = rated.shapes[index], slice(2 * index, 2 * index + 2)
     _refuse_no_rim(given, rated, shape, size_tolerance)
     jacobian = given.patch.px_by_point(shape.centre)

@@ -5,7 +5,7 @@ import logging
 from dataclasses import dataclass
 
 from cellctl.clock import now_s
-from cellctl.errors.link import LinkLost, ProtocolViolation
+from cellctl.errors.link import ProtocolViolation
 from drivers.camera.frame_server import faults, protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.protocol import Command, Header, Status
@@ -38,25 +38,15 @@ class FrameServerConnection:
         self._name = name
         self._reply_timeout_s = config.reply_timeout_s
         self._request_id = 0
-        self._wanted = False
         self._last: Header | None = None
 
     async def connect(self) -> None:
         """Connect and see that a server answers."""
-        await self.link.open()
-        self._wanted = True
-        try:
-            # A connection alone proves nothing: a port forwarder accepts it while no server is
-            # there.
-            await self.serial_number()
-        except BaseException:
-            await self.disconnect()
-            raise
+        await self.link.take_up(self.serial_number)
 
     async def disconnect(self) -> None:
         """Drop the connection."""
-        self._wanted = False
-        await self.link.close()
+        await self.link.give_up()
 
     async def serial_number(self) -> str:
         """Serial number of the camera or head."""
@@ -82,12 +72,9 @@ class FrameServerConnection:
         return Exposure(header, payload, time_s)
 
     async def _ready(self) -> None:
-        if not self._wanted:
-            raise LinkLost(f"{self._name} is not connected")
-        if not self.link.connected:
+        if await self.link.restore():
             # A server that was started again counts its frames from the beginning.
             self._last = None
-            await self.link.open()
 
     async def _exchange(self, command: Command) -> tuple[Header, bytes]:
         """Send a request and return its checked reply; ``DeviceFault`` for a refusal."""

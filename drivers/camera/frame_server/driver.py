@@ -3,6 +3,7 @@
 """
 
 from cellctl.interfaces.camera import Camera, CameraImage
+from cellctl.interfaces.device import Device
 from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
 from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
@@ -10,8 +11,8 @@ from drivers.camera.frame_server.connection import FrameServerConnection
 from drivers.camera.frame_server.protocol import Command
 
 
-class FrameServerHead(StereoCamera):
-    """Two cameras that expose together; how the link behaves is said by its connection."""
+class FrameServerDevice(Device):
+    """What head and camera share; how the link behaves is said by its connection."""
 
     Config = FrameServerConfig
 
@@ -20,7 +21,7 @@ class FrameServerHead(StereoCamera):
         self._connection = FrameServerConnection(name, config)
 
     async def connect(self) -> None:
-        """Connect and see that a head answers."""
+        """Connect and see that a device answers."""
         await self._connection.connect()
 
     async def disconnect(self) -> None:
@@ -28,38 +29,24 @@ class FrameServerHead(StereoCamera):
         await self._connection.disconnect()
 
     async def serial_number(self) -> str:
-        """Serial number of the head."""
+        """Serial number of the head or camera."""
         return await self._connection.serial_number()
+
+
+class FrameServerHead(FrameServerDevice, StereoCamera):
+    """Two cameras that expose together."""
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""
-        # One request for both cameras: the server triggers them together, two requests would be two
+        # One request for both: the server triggers them together, two requests would be two
         # moments.
         exposure = await self._connection.expose(Command.GRAB_PAIR)
         left, right = protocol.split_images(exposure.header, exposure.payload)
         return StereoPair(left, right, exposure.time_s, exposure.header.frame_id)
 
 
-class FrameServerCamera(Camera):
+class FrameServerCamera(FrameServerDevice, Camera):
     """One camera, grey or colour, as its server sends it."""
-
-    Config = FrameServerConfig
-
-    def __init__(self, name: str, config: FrameServerConfig) -> None:
-        self.name = name
-        self._connection = FrameServerConnection(name, config)
-
-    async def connect(self) -> None:
-        """Connect and see that a camera answers."""
-        await self._connection.connect()
-
-    async def disconnect(self) -> None:
-        """Drop the connection."""
-        await self._connection.disconnect()
-
-    async def serial_number(self) -> str:
-        """Serial number of the camera."""
-        return await self._connection.serial_number()
 
     async def grab(self) -> CameraImage:
         """Expose now. The server of a stereo head refuses this with ``DeviceFault``."""

@@ -1,6 +1,5 @@
 """A large-field head behind a target server that speaks TGT/1 (docs/protocols/target-server.md)."""
 
-from cellctl.errors.link import LinkLost
 from cellctl.interfaces.target_tracker import Target, TargetTracker
 from drivers.camera.target_server import protocol
 from drivers.camera.target_server.config import TargetServerConfig
@@ -18,26 +17,18 @@ class TargetServerTracker(TargetTracker):
         self.name = name
         self._config = config
         self._connection = TargetServerConnection(name, config)
-        self._wanted = False
 
     async def connect(self) -> None:
         """Connect and see that a head answers."""
-        await self._connection.link.open()
-        self._wanted = True
-        try:
-            await self.serial_number()
-        except BaseException:
-            await self.disconnect()
-            raise
+        await self._connection.link.take_up(self.serial_number)
 
     async def disconnect(self) -> None:
         """Drop the connection."""
-        self._wanted = False
-        await self._connection.link.close()
+        await self._connection.link.give_up()
 
     async def serial_number(self) -> str:
         """Serial number of the head."""
-        await self._ready()
+        await self._connection.link.restore()
         _, serial, _ = await self._connection.exchange(
             protocol.identify, protocol.parse_identity, self._config.reply_timeout_s
         )
@@ -47,7 +38,7 @@ class TargetServerTracker(TargetTracker):
         """Visible targets, averaged over 1 to 200 frames; ``ValueError`` for another number."""
         if not 1 <= frames <= protocol.MAX_FRAMES:
             raise ValueError(f"frames must be 1 to {protocol.MAX_FRAMES}, got {frames}")
-        await self._ready()
+        await self._connection.link.restore()
         return await self._connection.exchange(
             lambda request_id: protocol.measure(request_id, frames),
             protocol.parse_targets,
@@ -55,9 +46,3 @@ class TargetServerTracker(TargetTracker):
             # longest one.
             self._config.reply_timeout_s + frames * self._config.frame_timeout_s,
         )
-
-    async def _ready(self) -> None:
-        if not self._wanted:
-            raise LinkLost(f"{self.name} is not connected")
-        if not self._connection.link.connected:
-            await self._connection.link.open()

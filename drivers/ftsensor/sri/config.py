@@ -22,7 +22,7 @@ class SriConfig(BaseModel):
 
     transport: Literal["tcp", "serial", "can"]
     serial_number: str = ""
-    """From the sensor's type plate; the box cannot be asked for it."""
+    """Serial number on the sensor's type plate; the box cannot be asked for it."""
 
     host: str = "192.168.0.108"
     port: Annotated[int, Field(ge=1, le=65535)] = 4008
@@ -44,7 +44,7 @@ class SriConfig(BaseModel):
     rate_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
     """Relative deviation of the measured rate beyond which a window is counted."""
     unit: Unit = "E"
-    """What the box sends: E newtons, C converter counts, M bridge signals."""
+    """Unit of the samples: E newtons, C converter counts, M bridge signals."""
     points: Annotated[int, Field(ge=1, le=80)] = 1
     """Samples in a frame."""
     filter_weights: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=16)] = (1,)

@@ -96,7 +96,7 @@ class SriSensor(FtSensor):
         return f"{self._config.serial_number or 'no serial number'} ({self._firmware})"
 
     def _pump(self) -> list[WrenchSample]:
-        """Whatever can be done now; a broken link is taken up again after a pause."""
+        """Do all that can be done without waiting; reconnect a broken link after a pause."""
         time_s = now_s()
         if self._session is None and time_s < self._retry_s:
             return []

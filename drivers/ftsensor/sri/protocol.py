@@ -117,7 +117,7 @@ class StreamDecoder:
         return found
 
     def _item(self, at: int, size: int) -> tuple[Reply | Frame | None, int]:
-        """What begins at a position and where it ends; the same position to wait for more."""
+        """The item that begins at a position and its end; the same position to wait for more."""
         buffer = self._buffer
         if buffer.startswith(self._prefix, at):
             end = at + self._total
@@ -191,7 +191,7 @@ class DataFormat(NamedTuple):
 
 
 def parse_format(text: str) -> DataFormat:
-    """From the value part of SGDM; ``ValueError`` when it is none."""
+    """The format from the value part of SGDM; ``ValueError`` when it is none."""
     channels, unit, points, weights = text.strip().split(";", 3)
     kind, _, numbers = weights.strip("()").partition(":")
     if kind != "WMA":
@@ -203,13 +203,13 @@ def parse_format(text: str) -> DataFormat:
 
 
 def parse_six(text: str) -> Six:
-    """From ``v1;…;v6``; ``ValueError`` when it is not six numbers."""
+    """Six numbers from ``v1;…;v6``; ``ValueError`` when they are not."""
     a, b, c, d, e, f = (float(value) for value in text.split(";"))
     return a, b, c, d, e, f
 
 
 def parse_matrix(text: str) -> tuple[Six, ...]:
-    """From ``(…);(…);…``, six rows of six; ``ValueError`` when it is not."""
+    """Six rows of six numbers from ``(…);(…);…``; ``ValueError`` when they are not."""
     rows = tuple(parse_six(row.replace(",", ";")) for row in _GROUP.findall(text))
     if len(rows) != CHANNELS:
         raise ValueError(f"{len(rows)} rows in a matrix")

@@ -1,1 +1,1 @@
-"""How plates with holes, boards and prints look."""
+"""Appearance of plates with holes, of boards and of prints."""

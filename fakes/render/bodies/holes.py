@@ -25,7 +25,7 @@ THREAD_PITCH_M: Final = 0.8e-3
 _CREST: Final = 0.84
 """Diameter over the thread's crests, of the bore."""
 _TURNS: Final = 7
-"""More are too deep to be seen."""
+"""Turns that are drawn; deeper ones cannot be seen."""
 _WALL_FADE_M: Final = 7e-3
 _THREAD_FADE_M: Final = 3e-3
 

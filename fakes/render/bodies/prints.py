@@ -108,7 +108,7 @@ class _Line:
 
     index: NDArray[np.intp]
     distance: Array
-    """Of the pixel's middle beyond the line, px."""
+    """Distance of the pixel's middle beyond the line, px."""
     normal_x: Array
     normal_y: Array
 
@@ -127,7 +127,7 @@ class _Line:
 
 
 def _crossing(first: _Line, second: _Line, blur_px: float) -> Array:
-    """What the share beyond both lines exceeds the product of their shares by (Mehler's series)."""
+    """Share beyond both lines less the product of their single shares (Mehler's series)."""
     if blur_px <= 0:
         return np.zeros_like(first.distance)
     sigma = np.sqrt(blur_px**2 + _PIXEL_VARIANCE)

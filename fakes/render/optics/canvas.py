@@ -13,13 +13,13 @@ __all__ = ["Image", "Patch", "margin_px"]
 
 
 def margin_px(blur_px: float) -> int:
-    """How far a blurred object reaches beyond its outline."""
+    """Distance that a blurred object reaches beyond its outline."""
     return 3 + int(np.ceil(REACH * blur_px))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patch:
-    """What a small object does to the picture below it: ``below * through + grey``."""
+    """The effect of a small object on the picture below it: ``below * through + grey``."""
 
     window: Window
     through: Array | Image
@@ -29,7 +29,7 @@ class Patch:
 
     @classmethod
     def from_cells(cls, window: Window, through: Array, grey: Array, blur_px: float) -> Self:
-        """From values of the window's cells, through blur and pixel box."""
+        """Patch from values of the window's cells, through blur and pixel box."""
         # Blurred in cells and averaged to pixels afterwards: the other way round the sampled kernel
         # would depend on where in a pixel an edge lies.
         sigma = blur_px * window.sub

@@ -1,4 +1,4 @@
-"""How much of a cell lies beyond an edge: exact for a straight edge in any direction.
+"""Area coverage: the share of a cell beyond an edge, exact for a straight edge.
 
 A curved edge of radius r is off by at most 1 / (24 r n²) px with n cells a pixel side: 1e-4 px for
 a 6 mm hole (r = 21 px) and n = 4.

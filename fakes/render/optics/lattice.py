@@ -19,7 +19,7 @@ from fakes.render.optics.lens import Array, View
 NODES_FULL: Final = 20
 NODES_WINDOW: Final = 8
 NODES_LIGHT: Final = 28
-"""Light has ripples."""
+"""More nodes than for surfaces, because the light has ripples."""
 
 Picture = NDArray[np.float32]
 

@@ -28,7 +28,7 @@ def blurred(image: Image, sigma_px: float) -> Image:
 
 
 def blurred_cells(cells: Array, sigma_cells: float) -> Array:
-    """The same on an array of cells, in double precision."""
+    """``blurred`` for an array of cells, in double precision."""
     if sigma_cells <= 0:
         return cells
     return np.asarray(_convolved(cells, sigma_cells, cv2.CV_64F), dtype=np.float64)

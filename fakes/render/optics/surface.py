@@ -1,4 +1,4 @@
-"""Where the ray of every (sub-)pixel meets a surface, and where a point of it is seen."""
+"""Maps between pixels and surfaces: where a ray meets a surface, where a point is seen."""
 
 from collections.abc import Callable
 from typing import Final

@@ -1,6 +1,10 @@
 """Small analytic test images: a plate with holes, ray by ray, independent of the fake cell."""
 
+import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -9,7 +13,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.lens import project, undistort
-from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
+from cellctl.vision.camera.stereo_head import CameraModel, StereoHead, stereo_head_to_json
 from cellctl.vision.features.hole import Hole
 
 SUB = 8
@@ -38,6 +42,12 @@ def table_1_head() -> StereoHead:
         np.asarray(right_T_left.translation),
         0.1,
     )
+
+
+def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:
+    """A calibration file; ``extra`` adds keys such as the residuals of each view."""
+    data = {**(extra or {}), **stereo_head_to_json(head)}
+    path.write_text(json.dumps(data, indent=2) + "\n", encoding="utf-8")
 
 
 def plate_facing(x_mm: float = 0.0, y_mm: float = 0.0, tilt_deg: float = 0.0) -> RigidTransform:

@@ -9,8 +9,14 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.cli.offline.measure import measure
-from cellctl.vision.camera.stereo_head import write_stereo_head
-from tests.unit.vision.plates import Light, holes_triangle, plate_facing, render_pair, table_1_head
+from tests.unit.vision.plates import (
+    Light,
+    holes_triangle,
+    plate_facing,
+    render_pair,
+    table_1_head,
+    write_stereo_head,
+)
 
 HEAD, POSE = table_1_head(), plate_facing(3.0, -2.0, 2.0)
 HOLES = holes_triangle(("pin", "pin", "countersink"))

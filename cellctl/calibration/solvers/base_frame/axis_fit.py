@@ -37,7 +37,7 @@ class AxisStop:
 
 @dataclass(frozen=True, slots=True)
 class ArmNoise:
-    """What disturbs a stop besides the noise of the target measurement."""
+    """The errors of a stop besides the noise of the target measurement."""
 
     repeatability_m: float = 2e-5
     """Standard deviation of a coordinate of the arm's position at a stop."""

@@ -168,7 +168,7 @@ def _base(lines: Array, d1_m: float, a1_angle_rad: float) -> RigidTransform:
 def _covariance(
     lines: Array, fits: tuple[AxisFit, AxisFit], d1_m: float, a1_angle_rad: float
 ) -> Array:
-    """Of C_T_B, by central differences over the two lines."""
+    """Covariance of C_T_B, by central differences over the two lines."""
     jacobian = np.zeros((6, 12))
     step = 1e-6  # m or rad: far above rounding, far below any curvature
     for index in range(12):

@@ -32,7 +32,7 @@ class StopEntry(InputFile):
     targets: tuple[TargetEntry, ...]
 
     def stop(self) -> AxisStop:
-        """What the solver takes."""
+        """The stop as the solver takes it."""
         targets = (
             Target(target.name, target.position_mm, target.sigma_mm * MM) for target in self.targets
         )

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.calibration.solvers.adjustment import Adjustment, weighted_least_squares
@@ -23,7 +23,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
 from cellctl.calibration.solvers.hand_eye.hand_eye_start import MIN_POSES, closed_form
 from cellctl.errors.calibration import RobotCameraMismatch
 from cellctl.geometry.pose import MM, Array
-from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.uncertain import UncertainPose, perturbed
 
 _OUTLIER_CHI2 = 40.0
 """Squared normalised residual (6 coordinates) of a pose with a gross error: p below 1e-6."""
@@ -120,12 +120,12 @@ def _maximum_likelihood(
         x_0, z_0 = x, z
 
         def residuals(delta: Array) -> Array:
-            x_1, z_1 = _moved(x_0, delta[:6]), _moved(z_0, delta[6:])  # noqa: B023
+            x_1, z_1 = perturbed(x_0, delta[:6]), perturbed(z_0, delta[6:])  # noqa: B023
             raw = _compare(back_turns, measured, x_1, z_1)
             return np.asarray(np.einsum("nij,nj->ni", whitening, raw).ravel())  # noqa: B023
 
         solution = weighted_least_squares(residuals, np.zeros(12))
-        x, z = _moved(x, solution.parameters[:6]), _moved(z, solution.parameters[6:])
+        x, z = perturbed(x, solution.parameters[:6]), perturbed(z, solution.parameters[6:])
     return solution, x, z
 
 
@@ -187,11 +187,6 @@ def _pose_squares(
 
 def _turn(base_T_flange: RigidTransform, setup: Setup) -> RigidTransform:
     return base_T_flange if setup is Setup.EYE_IN_HAND else base_T_flange.inv()
-
-
-def _moved(pose: RigidTransform, delta: Array) -> RigidTransform:
-    rotation = Rotation.from_rotvec(delta[3:]) * pose.rotation
-    return RigidTransform.from_components(pose.translation + delta[:3], rotation)
 
 
 def _distance(

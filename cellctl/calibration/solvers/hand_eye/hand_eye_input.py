@@ -65,13 +65,13 @@ class HandEyeFile(InputFile):
     robot_sigma_mm: float = 0.05
     robot_sigma_deg: float = 0.005
     camera_sigma_mm: float = 0.02
-    """For poses of the board without a covariance."""
+    """Standard deviation of poses of the board that have no covariance."""
     camera_sigma_deg: float = 0.005
     camera_sigma_px: float | None = None
-    """For corners; without it the noise that their residuals show."""
+    """Noise of corners; without it the noise that their residuals show."""
     camera: HandEyeCamera | None = None
     board_points_mm: InputPoints | None = None
-    """For entries without points of their own."""
+    """Points of the board for entries that have none of their own."""
 
     @model_validator(mode="after")
     def _corners_have_camera_and_board(self) -> "HandEyeFile":
@@ -85,11 +85,11 @@ class HandEyeFile(InputFile):
         return self
 
     def robot_noise(self) -> RobotNoise:
-        """Of the reported flange poses."""
+        """Noise of the reported flange poses."""
         return RobotNoise(self.robot_sigma_mm * MM, float(np.radians(self.robot_sigma_deg)))
 
     def stops(self) -> tuple[HandEyePose, ...]:
-        """What the solver takes; raises ``BoardPoseInvalid`` when corners give no pose."""
+        """Input of the solver; raises ``BoardPoseInvalid`` when corners give no pose."""
         return tuple(
             HandEyePose(entry.name or f"pose {number}", entry.base_T_flange, self._board(entry))
             for number, entry in enumerate(self.poses, start=1)

@@ -20,7 +20,7 @@ from cellctl.geometry.uncertain import UncertainPose
 
 
 class Setup(Enum):
-    """Where the camera is."""
+    """Where the camera is mounted."""
 
     EYE_IN_HAND = "eye-in-hand"
     EYE_TO_HAND = "eye-to-hand"
@@ -33,7 +33,7 @@ class Setup(Enum):
 
 @dataclass(frozen=True, slots=True)
 class HandEyePose:
-    """What robot and camera say at one stop."""
+    """The readings of robot and camera at one stop."""
 
     name: str
     base_T_flange: RigidTransform

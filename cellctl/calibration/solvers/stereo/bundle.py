@@ -16,6 +16,7 @@ from cellctl.calibration.boards.board import BoardView, Corners, ShapeModes
 from cellctl.calibration.boards.projection import project
 from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skews
 
 _HEAD = 24
 _MAX_STEPS = 60
@@ -52,7 +53,7 @@ class BundleResult:
     sigma_px: float
     """Standard deviation of a pixel coordinate from the residuals."""
     covariance: Array
-    """Of the shared unknowns, shape (24 + shape, 24 + shape)."""
+    """Covariance of the shared unknowns, shape (24 + shape, 24 + shape)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -179,14 +180,14 @@ def _linearise(
         projection = project(state.right, moved + state.translation_m)
         by_left = projection.by_point @ state.rotation
         by_shared[:, :, 9:18] = projection.by_camera
-        by_shared[:, :, 18:21] = -projection.by_point @ _skews(moved)
+        by_shared[:, :, 18:21] = -projection.by_point @ skews(moved)
         by_shared[:, :, 21:24] = projection.by_point
     else:
         projection = project(state.left, in_left)
         by_left = projection.by_point
         by_shared[:, :, :9] = projection.by_camera
     by_shared[:, :, _HEAD:] = by_left @ rotation @ shape
-    by_view = np.concatenate([by_left, -by_left @ _skews(turned)], axis=2)
+    by_view = np.concatenate([by_left, -by_left @ skews(turned)], axis=2)
     return _Linear(corners.pixels - projection.pixels, by_shared, by_view)
 
 
@@ -265,11 +266,3 @@ def _all_residuals(
         right = _linearise(view.right, flat_m, modes, state, index, is_right=True)
         pairs.append((left.residuals, right.residuals))
     return tuple(pairs)
-
-
-def _skews(vectors: Array) -> Array:
-    """Cross-product matrices of vectors of shape (n, 3)."""
-    x, y, z = vectors.T
-    zero = np.zeros_like(x)
-    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
-    return np.stack([np.stack(row, axis=1) for row in rows], axis=1)

@@ -1,4 +1,4 @@
-"""What the views of a stereo calibration cover, judged before anything is solved."""
+"""Coverage of the views of a stereo calibration, judged before anything is solved."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class Coverage:
 
 @dataclass(frozen=True, slots=True)
 class CoverageLimits:
-    """What is refused before solving."""
+    """Least coverage below which nothing is solved."""
 
     views: int = 8
     filled_ratio: float = 0.4

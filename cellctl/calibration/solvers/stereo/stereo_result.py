@@ -16,7 +16,11 @@ from cellctl.calibration.checks import (
 from cellctl.calibration.solvers.stereo.stereo_coverage import Coverage
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation
 from cellctl.geometry.pose import MM, Array
-from cellctl.vision.camera.stereo_head import CameraModel, StereoHead, stereo_head_to_json
+from cellctl.vision.camera.stereo_head import (
+    StereoHead,
+    stereo_head_from_json,
+    stereo_head_to_json,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +90,7 @@ class StereoResult:
         """The inverse of ``to_record``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
         left, right = (_coverage_from_record(side) for side in record["coverage"])
         return cls(
-            head=_head_from_record(record),
+            head=stereo_head_from_json(record),
             method=str(record["method"]),
             board=_board_from_record(record["board"]),
             views=tuple(ViewResidual(**view) for view in record["views"]),
@@ -97,26 +101,6 @@ class StereoResult:
             warnings=tuple(record["warnings"]),
             sigma_px=float(record["sigma_px"]),
         )
-
-
-def _head_from_record(record: Mapping[str, Any]) -> StereoHead:
-    width, height = record["image_size"]
-    # The record is in mm; only the translation, the last three numbers, has a length.
-    units = np.array([1.0] * 21 + [MM] * 3)
-    return StereoHead(
-        image_size=(int(width), int(height)),
-        left=_camera_from_record(record["left"]),
-        right=_camera_from_record(record["right"]),
-        rotation=np.asarray(record["rotation"], dtype=float),
-        translation_m=np.asarray(record["translation_mm"], dtype=float) * MM,
-        rms_px=float(record["rms_px"]),
-        covariance=np.asarray(record["covariance"], dtype=float) * np.outer(units, units),
-    )
-
-
-def _camera_from_record(record: Mapping[str, Any]) -> CameraModel:
-    matrix, distortion = record["camera_matrix"], record["distortion"]
-    return CameraModel(np.asarray(matrix, dtype=float), np.asarray(distortion, dtype=float))
 
 
 def _view_to_record(view: ViewResidual) -> dict[str, Any]:

@@ -87,22 +87,6 @@ class TransferResult:
         )
 
 
-def head_1_in_base(
-    c_T_base: UncertainPose, c_T_board: UncertainPose, c1_T_board: UncertainPose
-) -> UncertainPose:
-    """Equation 1: B_T_C1 = (C_T_B)^-1 · C_T_P · (C1_T_P)^-1."""
-    # The board is the link: both heads measure it at the same place, and it drops out of the
-    # product.
-    return c_T_base.inv() * (c_T_board * c1_T_board.inv())
-
-
-def head_2_in_base(
-    c_T_base: UncertainPose, c_T_board: UncertainPose, c2_T_board: UncertainPose
-) -> UncertainPose:
-    """Equation 2: B_T_C2 = (C_T_B)^-1 · C_T_P · (C2_T_P)^-1, the board now before head II."""
-    return c_T_base.inv() * (c_T_board * c2_T_board.inv())
-
-
 def head_2_in_head_1(base_T_c1: UncertainPose, base_T_c2: UncertainPose) -> UncertainPose:
     """Equation 3: C1_T_C2 = (B_T_C1)^-1 · B_T_C2.
 
@@ -129,6 +113,8 @@ def calibrate_board_transfer(
             raise BoardPoseInvalid(f"no placement of the board before head {name}")
     c_T_c1, agreement_1 = _head_in_large_field(before_head_1)
     c_T_c2, agreement_2 = _head_in_large_field(before_head_2)
+    # Equations 1 and 2: B_T_Ci = (C_T_B)^-1 · C_T_P · (Ci_T_P)^-1. The board is the link: both
+    # heads measure it in the same place, and it drops out of the product.
     base_T_c1 = c_T_base.inv() * c_T_c1
     base_T_c2 = c_T_base.inv() * c_T_c2
     # The pose by equation 3; the covariance without C_T_B, which is in both factors.

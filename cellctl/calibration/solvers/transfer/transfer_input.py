@@ -39,7 +39,7 @@ class DiscEntry(InputFile):
         return self
 
     def point(self) -> BoardPoint:
-        """What the registration takes."""
+        """The disc as the registration takes it."""
         covariance = self.covariance_mm2
         if covariance is None:
             covariance = np.eye(3) * ((self.sigma_mm or 0.0) * MM) ** 2

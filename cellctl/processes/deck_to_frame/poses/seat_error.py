@@ -8,7 +8,7 @@ import numpy as np
 from cellctl.geometry.pose import MM, Array
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SeatError:
     """A seated deck as the cameras saw it."""
 

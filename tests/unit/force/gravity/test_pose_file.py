@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 
 from cellctl.errors.force import PayloadFileInvalid
-from cellctl.force.gravity.pose_file import format_pose_file, parse_pose_file
+from cellctl.force.gravity.pose_file import parse_pose_file
 from cellctl.force.gravity.poses import PoseRole
-from tests.unit.force.gravity.world import LoadedSensor, record
+from tests.unit.force.gravity.world import LoadedSensor, format_pose_file, record
 
 HEADER = "qx,qy,qz,qw,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm"
 GOOD = "0,0,0,1,1,2,3,4,5,6"

@@ -7,7 +7,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.force.gravity.payload import Rigid12
-from cellctl.force.gravity.pose_file import PoseRecord
+from cellctl.force.gravity.pose_file import QUATERNION, ROLE, WRENCH, PoseRecord
 from cellctl.force.gravity.poses import IdentificationPose, plan_identification
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
@@ -84,3 +84,14 @@ def compensation_of(rigid: Rigid12) -> GravityCompensation:
         "rigid12",
         base_down=rigid.base_down,
     )
+
+
+def format_pose_file(data: PoseRecord) -> str:
+    """The text that ``parse_pose_file`` reads back to the same record."""
+    lines = [",".join((*QUATERNION, *WRENCH, ROLE))]
+    for quaternion, wrench, role in zip(
+        data.base_R_sensor.as_quat(), data.wrenches, data.roles, strict=True
+    ):
+        numbers = [f"{value:.9f}" for value in quaternion] + [f"{value:.4f}" for value in wrench]
+        lines.append(",".join((*numbers, role.value)))
+    return "\n".join(lines) + "\n"

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from cellctl.errors.vision import CalibrationFileInvalid
-from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head, write_stereo_head
-from tests.unit.vision.plates import table_1_head
+from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
+from tests.unit.vision.plates import table_1_head, write_stereo_head
 
 
 def test_a_head_survives_its_file(tmp_path: Path) -> None:

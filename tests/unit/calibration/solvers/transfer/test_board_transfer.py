@@ -7,6 +7,7 @@ from scipy.stats import chi2
 
 from cellctl.calibration.boards.board_pose import (
     BoardPoint,
+    BoardPose,
     fit_board,
     points_from_targets,
     target_board_discs,
@@ -16,8 +17,6 @@ from cellctl.calibration.solvers.transfer.board_transfer import (
     BoardPlacement,
     TransferResult,
     calibrate_board_transfer,
-    head_1_in_base,
-    head_2_in_base,
     head_2_in_head_1,
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
@@ -74,13 +73,19 @@ def nees(truth: RigidTransform, measured: UncertainPose) -> float:
 
 
 def test_equations_1_to_3() -> None:
-    exact = UncertainPose.exact
-    one = head_1_in_base(
-        exact(C_T_BASE), exact(C_T_BASE * BASE_T_C1 * C1_T_BOARD), exact(C1_T_BOARD)
+    def seen(pose: RigidTransform) -> BoardPose:
+        covariance_m2 = np.eye(3) * 1e-12
+        exact = [
+            BoardPoint(name, pose.apply(place), covariance_m2) for name, place in DISCS.items()
+        ]
+        return fit_board(DISCS, exact, disc_sigma_m=0)
+
+    result = calibrate_board_transfer(
+        UncertainPose.exact(C_T_BASE),
+        [BoardPlacement(seen(C_T_BASE * BASE_T_C1 * C1_T_BOARD), seen(C1_T_BOARD))],
+        [BoardPlacement(seen(C_T_BASE * BASE_T_C2 * C2_T_BOARD), seen(C2_T_BOARD))],
     )
-    two = head_2_in_base(
-        exact(C_T_BASE), exact(C_T_BASE * BASE_T_C2 * C2_T_BOARD), exact(C2_T_BOARD)
-    )
+    one, two = result.base_T_c1, result.base_T_c2
     np.testing.assert_allclose(one.pose.as_matrix(), BASE_T_C1.as_matrix(), atol=1e-12)
     np.testing.assert_allclose(two.pose.as_matrix(), BASE_T_C2.as_matrix(), atol=1e-12)
     both = head_2_in_head_1(one, two).pose
