@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.world.frames import Array
-from fakes.world.suspension import Contacts, Rows
+from fakes.world.suspension import Contacts, Flags, Rows
 
 OUT_OF_REACH_M = 1.0
 
@@ -23,8 +23,10 @@ class ContactPoints:
     """Farther aside than this, the body is not over the other one."""
     wedges: Rows
     """Shape (m, 3): rows that together bound one convex obstacle, its top last."""
-    ahead: "np.ndarray[tuple[int], np.dtype[np.bool_]]"
+    ahead: Flags
     """Shape (n,): rows that are met along the approach. Beside a pin its wall is always near."""
+    holding: Flags
+    """Shape (n,): rows that pull as well, once they were closed."""
 
     def gaps(self, other_T_body: Array) -> Array:
         """Distance of each point to what it can touch, shape (n,); ``other_T_body`` is 4x4."""
@@ -49,7 +51,7 @@ class ContactPoints:
         carrying[self.wedges] = False
         together[carrying] = stiffness[carrying].sum()
         damping = 2 * damping_ratio * np.sqrt(mass / together) * stiffness
-        return Contacts(jacobian, stiffness, damping, self.wedges)
+        return Contacts(jacobian, stiffness, damping, self.wedges, self.holding)
 
 
 @dataclass(frozen=True, slots=True)

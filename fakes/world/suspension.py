@@ -2,8 +2,9 @@
 
 State: deflection of the centre of mass from where the flange would carry it, and its rate, each
 x, y, z (m) and rotation vector (rad) in tool axes. Contacts are one-sided springs with dampers in
-given directions. With the set of closed contacts constant over a substep the motion is linear, so
-each set has its own exact propagator: stable at any stiffness, and no energy is made.
+given directions, unless they hold. With the set of closed contacts constant over a substep the
+motion is linear, so each set has its own exact propagator: stable at any stiffness, and no energy
+is made.
 """
 
 from dataclasses import dataclass, field
@@ -15,6 +16,7 @@ from fakes.sections import Springs
 from fakes.world.frames import Array
 
 Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]
+Flags = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,6 +28,8 @@ class Contacts:
     damping_n_s_m: Array
     wedges: Rows = field(default_factory=lambda: np.zeros((0, 3), dtype=np.intp))
     """Shape (m, 3): rows that bound one convex obstacle; inside, only the nearest face pushes."""
+    holding: Flags | None = None
+    """Shape (n,): rows that pull as well once they were closed, until nothing is in reach."""
 
     @classmethod
     def none(cls) -> "Contacts":
@@ -45,6 +49,8 @@ class Suspension:
         self.contacts = contacts
         self.state = np.zeros(12)
         self.normal_forces = np.zeros(len(contacts.stiffness_n_m))
+        """Of every row (N), negative where it pulls."""
+        self._held = np.zeros(len(contacts.stiffness_n_m), dtype=bool)
         self._propagators: dict[tuple[bytes, float], tuple[Array, Array]] = {}
 
     @property
@@ -74,14 +80,15 @@ class Suspension:
         return float(0.5 * (elastic + self.mass @ self.rate**2))
 
     def free(self, step_s: float, wrench: Array) -> None:
-        """Advance with nothing in reach."""
+        """Advance with nothing in reach; what was held is free again."""
+        self._held[:] = False
         transition, response = self._propagator(None, step_s)
         self.state = transition @ self.state + response @ wrench
 
     def touch(self, step_s: float, gaps: Array, gap_rates: Array, wrench: Array) -> None:
         """Advance with contacts in reach; ``gaps`` at the start, without deflection."""
         contacts = self.contacts
-        closed = self._forces(gaps, gap_rates) > 0
+        closed = self._forces(gaps, gap_rates) != 0
         if closed.any():
             rows, stiffness = contacts.jacobian[closed], contacts.stiffness_n_m[closed]
             middle = gaps[closed] + 0.5 * step_s * gap_rates[closed]
@@ -92,12 +99,14 @@ class Suspension:
         self.normal_forces = self._forces(gaps + step_s * gap_rates, gap_rates)
 
     def _forces(self, gaps: Array, gap_rates: Array) -> Array:
-        """Normal forces: closed contacts push, and never pull."""
+        """Normal forces: closed contacts push, and pull only where they hold."""
         contacts = self.contacts
         depth = self._depths(gaps)
         approach = -(gap_rates + contacts.jacobian @ self.rate)
         force = contacts.stiffness_n_m * depth + contacts.damping_n_s_m * approach
-        return np.where(depth > 0, np.maximum(force, 0.0), 0.0)
+        if contacts.holding is not None:
+            self._held |= contacts.holding & (depth > 0)
+        return np.where(self._held, force, np.where(depth > 0, np.maximum(force, 0.0), 0.0))
 
     def _depths(self, gaps: Array) -> Array:
         """How deep each row is closed; negative for an open one."""
@@ -113,9 +122,7 @@ class Suspension:
         depths[nearest] = closed
         return np.asarray(depths)
 
-    def _propagator(
-        self, closed: "np.ndarray[tuple[int], np.dtype[np.bool_]] | None", step_s: float
-    ) -> tuple[Array, Array]:
+    def _propagator(self, closed: Flags | None, step_s: float) -> tuple[Array, Array]:
         key = (b"" if closed is None or not closed.any() else closed.tobytes(), step_s)
         if key not in self._propagators:
             stiffness, damping = np.diag(self.stiffness), np.diag(self.damping)

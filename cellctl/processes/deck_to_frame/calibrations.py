@@ -13,7 +13,6 @@ from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.force import (
     ForceLimitExceeded,
-    LiftOffHeld,
     MatingOverforce,
     SensorSaturated,
 )
@@ -92,7 +91,6 @@ PAYLOAD = CalibrationKind(
             ControllerFault,
             # Gripper, deck and sensor were loaded beyond what the plan allows.
             SensorSaturated,
-            LiftOffHeld,
             ForceLimitExceeded,
             # The figures with which the mating was planned were wrong.
             MatingOverforce,

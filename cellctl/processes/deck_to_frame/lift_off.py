@@ -1,11 +1,14 @@
 """Off the station on a straight way, whatever a run has left there."""
 
+from functools import partial
+
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
+from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
@@ -15,8 +18,6 @@ from cellctl.processes.deck_to_frame.stations import DeckCell
 
 _log = log.get(__name__)
 
-FIRST_LIFT_M = 4e-4
-"""A deck that is held is noticed within it, unless arm and grip are softer than 125 N/mm."""
 LIFT_M = 0.06
 SLOW_LIFT_M = 0.015
 SLOW_SPEED_M_S = 2e-3
@@ -47,8 +48,15 @@ async def lift_off(cell: DeckCell) -> None:
     tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
     away = _frame_of(cell, recipe).rotation.apply([0.0, 0.0, 1.0])
     flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
+    watched = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck, tolerance)
     try:
-        async with guarded_moves(cell.cell, cell.arm, flange_T_deck, tolerance) as move:
+        async with watched() as move:
+            first_m_s = first_lift_speed_m_s(mating, cell.force_config)
+            above = _above(base_T_flange, FIRST_LIFT_M * away)
+            await move(cell.main.step(above, speed_m_s=first_m_s))
+        # From a new zero: the first one was taken while the deck was pressed on the frame, so that
+        # what is felt of a free deck is that force, and acceleration would come on top of it.
+        async with watched() as move:
             await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
@@ -57,30 +65,26 @@ async def lift_off(cell: DeckCell) -> None:
 async def _rise(
     cell: DeckCell, mating: Mating, base_T_flange: RigidTransform, away: Array, move: GuardedMove
 ) -> None:
-    def above(height_m: float) -> RigidTransform:
-        return RigidTransform.from_translation(height_m * away) * base_T_flange
-
-    first_m_s = first_lift_speed_m_s(mating, cell.force_config)
-    await move(cell.main.step(above(FIRST_LIFT_M), speed_m_s=first_m_s))
     fast_m_s = cell.main_config.linear_speed_mm_s * MM
     for height_m, speed_m_s in ((SLOW_LIFT_M, SLOW_SPEED_M_S), (LIFT_M, fast_m_s)):
         await move(
             cell.main.move_linear(
-                above(height_m),
+                _above(base_T_flange, height_m * away),
                 speed_m_s=speed_m_s,
                 acceleration_m_s2=mating.acceleration_mm_s2 * MM,
             )
         )
 
 
-def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
-    """So slow that a deck that is held is pulled by no more than twice the limit.
+def _above(base_T_flange: RigidTransform, way_m: Array) -> RigidTransform:
+    return RigidTransform.from_translation(way_m) * base_T_flange
 
-    The guard stops at the limit; until the arm stands the pull grows by no more than that again.
-    """
+
+def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
+    """Of the first stretch, from the recipe's bounds."""
     delay_s = (mating.stop_latency_ms + force.stale_ms) / 1e3 + DEFAULT_FILTER_S
-    growth_n_s = mating.limit_force_n / delay_s
-    return min(growth_n_s / (mating.stiffness_n_per_mm / MM), SLOW_SPEED_M_S)
+    stiffness_n_m = mating.stiffness_n_per_mm / MM
+    return leaving_speed_m_s(mating.limit_force_n, stiffness_n_m, delay_s, SLOW_SPEED_M_S)
 
 
 def _recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:

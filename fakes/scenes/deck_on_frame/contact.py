@@ -10,6 +10,8 @@ from fakes.world.contact import ContactPoints
 from fakes.world.frames import MM, Array
 from fakes.world.suspension import Contacts
 
+_DOWEL_N_M = 1e6
+"""A steel dowel jammed in its hole; the arm behind it is no stiffer."""
 _BODY_SHARE = 0.5
 """Stiffness of a foreign body or a chamfer relative to all pads together."""
 
@@ -34,6 +36,14 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
         directions = np.vstack([directions, [np.sin(slope), 0.0, np.cos(slope)]])
         anchors = np.vstack([anchors, [x, y, height]])
         stiffness = np.append(stiffness, _BODY_SHARE * parts.contact_stiffness_n_m)
+    holding = np.zeros(len(points), dtype=bool)
+    if dowel := faults.active("held_dowel"):
+        place = [dowel.number("x_mm", 0.0) * MM, dowel.number("y_mm", 0.0) * MM]
+        points = np.vstack([points, [*place, -parts.deck_thickness_m]])
+        directions = np.vstack([directions, [0.0, 0.0, 1.0]])
+        anchors = np.vstack([anchors, [*place, dowel.number("height_mm", 0.0) * MM]])
+        stiffness = np.append(stiffness, dowel.number("stiffness_n_m", _DOWEL_N_M))
+        holding = np.append(holding, True)
     wedges = Contacts.none().wedges
     if scenario.contact.pins is not None:
         faces = pin_faces(scenario.contact.pins, parts)
@@ -46,7 +56,8 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
     half_size = np.array(scenario.parts.size_mm) / 2 * MM
     ahead = np.ones(len(points), dtype=bool)
     ahead[wedges[:, :2]] = False
-    return ContactPoints(points, directions, anchors, stiffness, half_size, wedges, ahead)
+    holding = np.append(holding, np.zeros(len(points) - len(holding), dtype=bool))
+    return ContactPoints(points, directions, anchors, stiffness, half_size, wedges, ahead, holding)
 
 
 def _pads(scenario: DeckScenario) -> Array:

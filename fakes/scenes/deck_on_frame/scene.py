@@ -32,6 +32,8 @@ from fakes.world.world import Command, World
 FAULTS = {
     "foreign_body": "a body of `height_mm` lies on the frame at `x_mm`, `y_mm`",
     "pin_catch": "a chamfer of `slope_deg` at `x_mm`, `y_mm` catches `height_mm` above the frame",
+    "held_dowel": "a dowel at `x_mm`, `y_mm` jams `height_mm` above the seat and holds the deck "
+    "with `stiffness_n_m` until it is 2 mm away",
     "no_frame": "there is no frame under the deck",
 }
 

@@ -62,7 +62,7 @@ class TinyGuard:
     def samples(self, since_s: float) -> GuardSamples:
         count = len(self.raw)
         return GuardSamples(
-            np.full(count, now_s()), self.raw, self.raw, np.zeros(count), overrun=False
+            np.linspace(since_s, now_s(), count), self.raw, self.raw, np.zeros(count), overrun=False
         )
 
     def newest(self) -> GuardSample | None:

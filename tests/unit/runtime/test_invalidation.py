@@ -30,7 +30,6 @@ AGREED: dict[type[CellError], set[str]] = {
     ControllerFault: {"board_transfer", "payload"},
     CorrectionDiverging: {"board_transfer"},
     SensorSaturated: {"payload"},
-    LiftOffHeld: {"payload"},
     ForceLimitExceeded: {"board_transfer", "payload"},
     MatingOverforce: {"payload", "stop_latency", "contact_stiffness"},
 }
@@ -66,7 +65,9 @@ async def test_after_these_production_is_refused_with_the_reason(
     assert [(row.actor, row.action) for row in audit] == [("cell", "calibrations invalidated")]
 
 
-@pytest.mark.parametrize("fault", [SensorSilent, MotionAborted, HeadMoved, ResidualsTooLarge])
+@pytest.mark.parametrize(
+    "fault", [SensorSilent, LiftOffHeld, MotionAborted, HeadMoved, ResidualsTooLarge]
+)
 async def test_other_faults_cost_nothing(
     bench: Bench, tmp_path: Path, fault: type[CellError]
 ) -> None:

@@ -42,5 +42,5 @@ async def test_after_clear_and_reset_it_goes_on_from_a_new_zero(rig: DaemonRig) 
     main, guard = rig.bench.cell.main, rig.bench.cell.guard
     main.road_is_free = None
     await rig.idle()
-    assert guard.asked.count("tare") == 2
+    assert guard.asked.count("tare") == 3, "pressed, and after the new start pressed and free"
     assert len(main.moves) == 4

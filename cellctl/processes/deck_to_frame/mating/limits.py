@@ -1,8 +1,11 @@
 """What the guard watches in each phase, and which fault a trip is."""
 
+import numpy as np
+
 from cellctl.cell.guard_limits import Sensing, guard_limits
 from cellctl.errors.base import CellError
 from cellctl.errors.force import LateralLoad, MatingOverforce
+from cellctl.geometry.pose import Array
 from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
@@ -27,6 +30,22 @@ def contact_limits(settings: MatingSettings) -> GuardLimits:
     return _limits(settings, settings.abort_force_n, settings.max_lateral_n)
 
 
+def leaving_limits(settings: MatingSettings, wrench: Array) -> GuardLimits:
+    """Backing off: what presses, shape (6,), may go but not grow, and nothing may pull.
+
+    The wrench counts from the stand-off. ``fast_limit_n`` is what inertia and friction may make.
+    """
+    growth = np.repeat([settings.fast_limit_n, settings.max_moment_n_m], 3)
+    fx, fy, fz, mx, my, mz = (float(value) for value in np.abs(wrench) + growth)
+    pull = CusumTouch(settings.fast_limit_n, settings.touch.threshold_n, axis=_ALONG, sign=-1.0)
+    return guard_limits(
+        (fx, fy, fz, mx, my, mz),
+        _sensing(settings),
+        touch=pull,
+        filter_s=settings.filter_delay_s,
+    )
+
+
 def fault_of(trip: GuardTrip, settings: MatingSettings) -> CellError:
     """The fault of a trip that ends an attempt."""
     if trip.force and trip.component == _ALONG:
@@ -42,7 +61,11 @@ def _limits(
     moment_n_m = settings.max_moment_n_m
     return guard_limits(
         (across_n, across_n, along_n, moment_n_m, moment_n_m, moment_n_m),
-        Sensing(1.0 / settings.sample_period_s, settings.stale_s, settings.flange_age_s),
+        _sensing(settings),
         touch=touch,
         filter_s=settings.filter_delay_s,
     )
+
+
+def _sensing(settings: MatingSettings) -> Sensing:
+    return Sensing(1.0 / settings.sample_period_s, settings.stale_s, settings.flange_age_s)

@@ -11,6 +11,7 @@ from cellctl.force.contact.curve import curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report, loop_time_s
+from cellctl.processes.deck_to_frame.mating.back_off import back_off
 from cellctl.processes.deck_to_frame.mating.phases import (
     require_stand_off,
     settle_and_tare,
@@ -28,7 +29,7 @@ from cellctl.processes.deck_to_frame.mating.result import (
     Reading,
 )
 from cellctl.processes.deck_to_frame.mating.retreat import retreat
-from cellctl.processes.deck_to_frame.mating.seating import back_off, creep_to, hold, stiffness_of
+from cellctl.processes.deck_to_frame.mating.seating import creep_to, hold, stiffness_of
 from cellctl.runtime.interruption import Interruption
 
 _log = log.get(__name__)

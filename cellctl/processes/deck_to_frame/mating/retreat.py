@@ -20,7 +20,7 @@ from cellctl.errors.force import (
 )
 from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
-from cellctl.processes.deck_to_frame.mating.seating import back_off
+from cellctl.processes.deck_to_frame.mating.back_off import back_off
 
 _log = log.get(__name__)
 

@@ -3,7 +3,6 @@
 import numpy as np
 
 from cellctl.errors.force import CommissioningFailed, CreepNotConverged, LateralLoad
-from cellctl.force.contact.approach import advance
 from cellctl.force.contact.commissioning import StiffnessEstimate, estimate_stiffness
 from cellctl.force.contact.creep import CreepLaw, after_step, begin, done, next_step
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat
@@ -79,28 +78,6 @@ async def hold(attempt: Attempt, readings: tuple[Reading, ...]) -> tuple[Reading
             return reading, verdict
         await creep_to(attempt, attempt.plan.creep, MatingPhase.CREEP, reading)
     raise CreepNotConverged(f"force does not hold: {verdict.force_n:.1f} N after the hold")
-
-
-async def back_off(attempt: Attempt) -> None:
-    """Away from the frame along +Z_D from wherever the arm stands, at most to the stand-off.
-
-    The guard is disarmed: this is the direction without contact, and a guard that has just tripped
-    on a dead sensor could not watch it anyway. Releases no latch; raises the fault of a latched
-    trip and the robot's fault when it cannot move.
-    """
-    plan, settings = attempt.plan, attempt.plan.settings
-    attempt.raise_trip()
-    await attempt.guard.disarm()
-    here = attempt.robot.state().base_T_flange
-    back_m = min(settings.back_off_m, plan.travel_of(here))
-    if back_m <= settings.smallest_step_m:
-        return
-    attempt.tell(MatingPhase.BACK_OFF)
-    await attempt.robot.move_linear(
-        advance(here, plan.flange_T_deck, -back_m),
-        speed_m_s=settings.back_off_speed_m_s,
-        acceleration_m_s2=settings.acceleration_m_s2,
-    )
 
 
 def stiffness_of(readings: tuple[Reading, ...]) -> StiffnessEstimate | None:
