@@ -1,7 +1,6 @@
 """Vision worker processes: long solves and image work stay away from the event loop."""
 
 import asyncio
-import multiprocessing
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -9,9 +8,12 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from functools import partial
-from typing import ParamSpec, TypeVar
+from multiprocessing import connection
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any, ParamSpec, TypeVar
 
-from cellctl.errors.internal import WorkerDied
+from cellctl.clock import now_s
+from cellctl.errors.internal import WorkerDied, WorkerSilent
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -27,49 +29,125 @@ would let any other program on the PC double the cycle time.
 """
 
 
+PATIENCE_S = 120.0
+"""Nothing that a run waits for takes more than a few seconds on a PC that does nothing else."""
+CHECK_S = 20.0
+SOLVE_S = 900.0
+"""For the long solves of calibrations."""
+CLOSE_S = 5.0
+"""At the end of the daemon, for work that has begun."""
+
+
 class VisionWorkers:
     """A small pool of spawned processes of lower priority, with one OpenCV thread each.
 
-    They ignore Ctrl-C: the daemon ends them in its own order. The death of one makes all of them
-    useless until ``revive``.
+    They ignore Ctrl-C: the daemon ends them in its own order. The death or the silence of one makes
+    all of them useless until ``revive``.
     """
 
     def __init__(self, count: int = 2) -> None:
         # Read by the workers' numpy: threads of its own cost the small fits seven times the time.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
         self._count = count
-        self._pool = _pool(count)
+        self._pool = _Pool(count)
         self._broken = False
 
     async def check(self) -> None:
-        """Have a worker answer; raises ``WorkerDied``."""
-        await self.run(os.getpid)
+        """Have a worker answer; raises ``WorkerDied`` or ``WorkerSilent``."""
+        await self.run_within(CHECK_S, os.getpid)
 
     def revive(self) -> None:
-        """New workers in the place of those that a death has made useless; else nothing."""
+        """New workers in the place of those that are useless; else nothing."""
         # A pool whose worker was killed takes no work ever again; the standard library offers no
         # other remedy.
         if self._broken:
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            self._pool, self._broken = _pool(self._count), False
+            self._pool.kill()
+            self._pool, self._broken = _Pool(self._count), False
 
     async def run(self, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """Run a pure function in a worker; its exceptions come back unchanged.
 
-        Raises ``WorkerDied`` when a worker has died meanwhile or before.
+        Raises ``WorkerDied`` when a worker has died meanwhile or before, ``WorkerSilent`` when the
+        result has not come within ``PATIENCE_S``.
         """
+        return await self.run_within(PATIENCE_S, function, *args, **kwargs)
+
+    async def run_within(
+        self, patience_s: float, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs
+    ) -> R:
+        """The same with another patience, in which waiting for a free worker counts."""
         loop = asyncio.get_running_loop()
         try:
             with _deaf_children():
-                done = loop.run_in_executor(self._pool, partial(function, *args, **kwargs))
-            return await done
+                done = loop.run_in_executor(self._pool.executor, partial(function, *args, **kwargs))
+            if await _comes(done, patience_s):
+                return done.result()
         except BrokenProcessPool as error:
             self._broken = True
             raise WorkerDied("a vision worker ended unexpectedly") from error
+        # A process that is suspended or hangs in native code listens to nothing but this.
+        self._broken = True
+        self._pool.kill()
+        raise WorkerSilent(f"no result of {function.__name__} within {patience_s:g} s")
 
     def close(self) -> None:
-        """End the workers; work that has not begun is dropped."""
-        self._pool.shutdown(wait=True, cancel_futures=True)
+        """End the workers; work that has not begun is dropped, that which hangs is ended."""
+        self._pool.close()
+
+
+class _Pool:
+    """An executor and its processes, which it does not show itself."""
+
+    def __init__(self, count: int) -> None:
+        # Spawned: ``fork`` would copy the daemon with its locks, sockets and event loop.
+        context = _NotingContext()
+        self._processes = context.processes
+        self.executor = ProcessPoolExecutor(
+            max_workers=count, mp_context=context, initializer=_initialise
+        )
+
+    def kill(self) -> None:
+        """End the processes, whatever they do; who waits for them gets ``BrokenProcessPool``."""
+        self.executor.shutdown(wait=False, cancel_futures=True)
+        for process in self._processes:
+            process.kill()
+        for process in self._processes:
+            process.join()  # a killed process lasts for moments, a suspended one too
+
+    def close(self) -> None:
+        """Let them end what they have begun, for ``CLOSE_S`` altogether."""
+        self.executor.shutdown(wait=False, cancel_futures=True)
+        give_up_s = now_s() + CLOSE_S
+        running = [process.sentinel for process in self._processes]
+        while running and now_s() < give_up_s:
+            ended = connection.wait(running, give_up_s - now_s())
+            running = [sentinel for sentinel in running if sentinel not in ended]
+        self.kill()
+
+
+class _NotingContext(SpawnContext):
+    """Starts processes as usual and remembers them."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.processes: list[SpawnProcess] = []
+
+    def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override]
+        process = SpawnProcess(*args, **kwargs)
+        self.processes.append(process)
+        return process
+
+
+async def _comes(done: asyncio.Future[R], patience_s: float) -> bool:
+    """Wait for a result; one that does not come, or that nobody waits for any more, is dropped."""
+    try:
+        finished, _ = await asyncio.wait({done}, timeout=patience_s)
+    except asyncio.CancelledError:
+        done.cancel()
+        raise
+    if not finished:
+        done.cancel()
+    return bool(finished)
 
 
 @contextmanager
@@ -85,15 +163,6 @@ def _deaf_children() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _pool(count: int) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(
-        max_workers=count,
-        # ``fork`` would copy the daemon with its locks, sockets and event loop into every worker.
-        mp_context=multiprocessing.get_context("spawn"),
-        initializer=_initialise,
-    )
 
 
 def _initialise() -> None:

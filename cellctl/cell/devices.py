@@ -14,7 +14,7 @@ from cellctl.cell.stereo_station import StereoStation
 from cellctl.config import CellConfig
 from cellctl.config.devices import GROUPS, DeviceConfig, ForceSensorConfig
 from cellctl.errors import CellError
-from cellctl.errors.link import ConnectTimeout
+from cellctl.errors.link import ConnectTimeout, ReplyTimeout
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
@@ -24,6 +24,8 @@ from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
 
+ASK_TIMEOUT_S = 60.0
+"""Drivers have time-outs of their own; this one is for a driver that hangs."""
 LINK_AGE_S = 1.0
 """A robot silent for this long is reported even while nothing moves."""
 
@@ -113,7 +115,8 @@ class Cell:
         }
         questions |= {name: gripper.state() for name, gripper in self.grippers.items()}
         questions |= {name: io.read() for name, io in self.digital_ios.items()}
-        answers = await asyncio.gather(*questions.values(), return_exceptions=True)
+        asked = (_in_time(question) for question in questions.values())
+        answers = await asyncio.gather(*asked, return_exceptions=True)
         self.unanswered = {}
         for name, answer in zip(questions, answers, strict=True):
             if isinstance(answer, CellError):
@@ -234,6 +237,14 @@ def _guard(sensor: ForceSensorConfig) -> GuardClient:
         sensor.stop_channel.settings,
         GuardSettings(flange_T_sensor=pose_from_xyzabc(sensor.flange_T_sensor), cpu=sensor.cpu),
     )
+
+
+async def _in_time(question: Awaitable[object]) -> object:
+    try:
+        async with asyncio.timeout(ASK_TIMEOUT_S):
+            return await question
+    except TimeoutError:
+        raise ReplyTimeout(f"its driver has not come back in {ASK_TIMEOUT_S:g} s") from None
 
 
 async def _all(attempts: Mapping[str, Awaitable[None]]) -> None:

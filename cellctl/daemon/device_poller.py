@@ -1,7 +1,7 @@
 """Polls cameras, trackers and vision workers while no run is active: they report nothing."""
 
 from cellctl.cell.devices import Cell
-from cellctl.errors.internal import WorkerDied
+from cellctl.errors.internal import WorkerDied, WorkerSilent
 from cellctl.errors.link import DeviceAway
 from cellctl.runtime.unit import AT_REST, UnitController
 
@@ -16,7 +16,7 @@ class DevicePoller:
         self._worker_died = False
 
     async def ask(self) -> None:
-        """One round; a head that is away refuses Start, a dead worker aborts."""
+        """One round; a head that is away refuses Start, a dead or silent worker aborts."""
         if not (self._unit.live and self._unit.machine.state in AT_REST):
             return
         await self._ask_workers()
@@ -31,7 +31,7 @@ class DevicePoller:
         known = self._worker_died
         try:
             await self._cell.workers.check()
-        except WorkerDied as fault:
+        except (WorkerDied, WorkerSilent) as fault:
             self._worker_died = True
             if not known:
                 await self._unit.machine.fail(fault)

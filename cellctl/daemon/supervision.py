@@ -9,6 +9,7 @@ from cellctl.cell.devices import Cell
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.notify import Watchdog
 from cellctl.errors import CellError
+from cellctl.errors.force import GuardNotRealTime
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.runtime.unit import UnitController
 
@@ -64,6 +65,7 @@ class LinkMonitor:
         self._unit = unit
         self._broken: set[str] = set()
         self._trips: dict[str, GuardTrip | None] = {}
+        self._degraded: dict[str, tuple[str, ...]] = {}
 
     async def look(self) -> None:
         """Look at every device once; its fault goes to the machine.
@@ -84,6 +86,7 @@ class LinkMonitor:
                 self._broken.discard(name)
         for name, guard in self._cell.guards.items():
             await self._look_at_trip(name, guard.trip)
+            await self._look_at_real_time(name, guard.health().degraded)
 
     async def _look_at_trip(self, name: str, trip: GuardTrip | None) -> None:
         """A trip that no step waits for is a fault; the guard's death is one of the above."""
@@ -92,3 +95,12 @@ class LinkMonitor:
             return
         if not self._unit.awaits_trips(name):
             await self._unit.machine.fail(trip.fault())
+
+    async def _look_at_real_time(self, name: str, degraded: tuple[str, ...]) -> None:
+        """A guard that may be late is an alarm, and no reason to stop.
+
+        Not in a simulated cell: it is at home on PCs without these rights, and protects nothing.
+        """
+        known, self._degraded[name] = self._degraded.get(name, ()), degraded
+        if degraded and degraded != known and not self._cell.config.simulated:
+            await self._unit.machine.fail(GuardNotRealTime(f"{name}: {'; '.join(degraded)}"))

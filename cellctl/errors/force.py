@@ -103,6 +103,18 @@ class FlangePoseStale(ForceError):
     remedy = "Check the background job on the robot; then Clear and Reset."
 
 
+class GuardNotRealTime(ForceError):
+    """The PC refused the guard a measure against being late."""
+
+    number = 514
+    text = "The force guard runs without real-time measures"
+    cause = "Missing rights (CAP_SYS_NICE, CAP_IPC_LOCK, limits), a container, or a control group."
+    remedy = (
+        "Start the daemon as the shipped systemd unit does; docs/guard.md names what each needs."
+    )
+    reaction = Reaction.WARN
+
+
 class MatingFault(ForceError):
     """A fault that the mating step itself raises."""
 

@@ -32,3 +32,12 @@ class StateDidNotEnd(InternalError):
     text = "A cancelled sequence did not end in time"
     cause = "A device call hangs while it is being stopped, or a defect."
     remedy = "Use the emergency stop if anything moves; restart the daemon and keep the log."
+
+
+class WorkerSilent(InternalError):
+    """A vision worker process did not answer in time; all of them were ended."""
+
+    number = 905
+    text = "A vision worker process does not answer"
+    cause = "The process hangs or was suspended, or the PC is overloaded."
+    remedy = "Clear starts new workers. Keep the log; look for what else runs on the PC."

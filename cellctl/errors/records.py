@@ -104,6 +104,15 @@ class FigureBeyondLimit(RecordsError):
     reaction = Reaction.STOP
 
 
+class RecordSilent(RecordsError):
+    """The disk did not open or close the record of a run in time."""
+
+    number = 820
+    text = "The record of a run could not be opened or closed in time"
+    cause = "Disk overloaded or failing, or a file system that hangs."
+    remedy = "Check the disk. The record is completed when the disk answers; see cellctl runs show."
+
+
 class DiskSilent(RecordsError):
     """The disk did not take or give what a command waits for."""
 

@@ -16,7 +16,7 @@ from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
-from cellctl.workers import VisionWorkers
+from cellctl.workers import SOLVE_S, VisionWorkers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,7 +57,7 @@ async def calibrate_base(
     a2_stops = await motions.turn(1)
     await motions.move(turns.start_rad)
     await go_home()
-    result = await workers.run(calibrate_base_frame, a1_stops, a2_stops, arm)
+    result = await workers.run_within(SOLVE_S, calibrate_base_frame, a1_stops, a2_stops, arm)
     return ProcedureOutcome(
         kind=kind,
         record=result.to_record(),

@@ -14,7 +14,7 @@ from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM
 from cellctl.procedures.calibration_poses import stereo_views
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
-from cellctl.workers import VisionWorkers
+from cellctl.workers import SOLVE_S, VisionWorkers
 
 WORKING_DISTANCE_M = 0.5
 
@@ -53,7 +53,7 @@ async def calibrate_head(
     await _move(station, poses[0])
     if not views:
         raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
-    result = await workers.run(calibrate_stereo, views, board, image_size)
+    result = await workers.run_within(SOLVE_S, calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
         kind=kind,
         record=result.to_record(),

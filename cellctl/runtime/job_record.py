@@ -8,6 +8,7 @@ from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.cell.devices import Cell
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
+from cellctl.errors.records import RecordSilent
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunResult
@@ -16,6 +17,9 @@ from cellctl.runtime.provenance import provenance
 from cellctl.version import software
 
 _log = log.get(__name__)
+
+OPEN_TIMEOUT_S = 30.0
+"""For the disk to take the row and the files of a run; nothing has moved yet."""
 
 
 class JobRecord:
@@ -42,7 +46,10 @@ class JobRecord:
         """
         if self._opening is None:
             self._opening = asyncio.create_task(self._write(recipe, mode, stored))
-        await asyncio.shield(self._opening)
+        await asyncio.wait({self._opening}, timeout=OPEN_TIMEOUT_S)
+        if not self._opening.done():
+            raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
+        self._opening.result()
         return self.number
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 from cellctl import log
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
+from cellctl.errors.records import RecordSilent
 from cellctl.packml.result import Result
 from cellctl.records.entries import RunResult
 from cellctl.runtime.job import Job
@@ -15,6 +16,8 @@ _log = log.get(__name__)
 
 LEAVE_TIMEOUT_S = 8.0
 """For a cancelled job to stop its robots and write down what it has; the machine waits longer."""
+CLOSE_TIMEOUT_S = 15.0
+"""For the disk to take the end of a run."""
 
 _TO_THE_LINE = {
     RunResult.GOOD: Result.GOOD,
@@ -33,7 +36,7 @@ class JobRunner:
         self._closing: asyncio.Task[None] | None = None
         self._resting = asyncio.Event()
         self._resting.set()
-        self._finished = False
+        self._finished = self._given_up = False
         self.result = Result.NONE
         """Of the run that is shown; NONE while it is open."""
 
@@ -69,7 +72,7 @@ class JobRunner:
     async def start(self, job: Job) -> None:
         """Starting."""
         self._job = self._shown = job
-        self._finished, self.result = False, Result.NONE
+        self._finished, self._given_up, self.result = False, False, Result.NONE
         with self._at_work():
             await job.start()
 
@@ -94,13 +97,20 @@ class JobRunner:
             return
         if self._closing is None:
             self._closing = asyncio.create_task(self._close(self._job, outcome, fault))
-        await asyncio.shield(self._closing)
+        closing = self._closing  # it drops itself when it ends
+        await asyncio.wait({closing}, timeout=CLOSE_TIMEOUT_S)
+        if not closing.done():
+            self._given_up = True
+            self.result = Result.ABORTED
+            raise RecordSilent(f"not closed within {CLOSE_TIMEOUT_S:g} s")
+        closing.result()
 
     async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:
         try:
             with log.bound(run=job.run_number):
                 outcome = await job.close(outcome, fault)
-            self.result = _TO_THE_LINE[outcome]
+            # What the line was told when the disk did not answer stays, whatever it says later.
+            self.result = Result.ABORTED if self._given_up else _TO_THE_LINE[outcome]
         except CellError:
             self.result = Result.ABORTED  # a part without a record is not a good one
             raise

@@ -10,6 +10,7 @@ from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import StateDidNotEnd
 from cellctl.errors.line import LineLost, LineLostInContact
+from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
@@ -29,6 +30,8 @@ from cellctl.runtime.status_view import StatusView
 _log = log.get(__name__)
 
 ABORT_TIMEOUT_S = 20.0
+STOP_TIMEOUT_S = 8.0
+"""For the stops of all robots; drivers have shorter ones of their own."""
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
 _AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
@@ -190,12 +193,22 @@ class UnitController:
 
     async def _halt(self, outcome: RunResult) -> None:
         """Stop everything that moves, then write down how the run ended, in this order."""
-        stopping = self._cell.stop_motion()
-        [error] = await asyncio.gather(stopping, return_exceptions=True)
+        error = await self._stop_motion()
         await self._jobs.left()
         await self._jobs.close(outcome, self.machine.fault)
         if error is not None:
             raise error
+
+    async def _stop_motion(self) -> BaseException | None:
+        """What went wrong; a driver that never comes back must not keep the run from its end."""
+        stopping = asyncio.create_task(self._cell.stop_motion())
+        try:
+            done, _ = await asyncio.wait({stopping}, timeout=STOP_TIMEOUT_S)
+        finally:
+            stopping.cancel()
+        if not done:
+            return StopFailed(f"a driver has not come back from its stop in {STOP_TIMEOUT_S:g} s")
+        return stopping.exception()
 
     async def _safe_point(self, *, hold: bool = False) -> bool:
         if hold:

@@ -1,11 +1,13 @@
 """The pool of vision workers outlives the death of one of them, and gives way to the daemon."""
 
+import asyncio
 import os
 import signal
 
 import pytest
 
-from cellctl.errors.internal import WorkerDied
+import cellctl.workers as workers_module
+from cellctl.errors.internal import WorkerDied, WorkerSilent
 from cellctl.workers import NICE, VisionWorkers
 
 
@@ -29,6 +31,36 @@ async def test_a_death_is_noticed_and_new_workers_take_over() -> None:
         assert await workers.run(os.getpid) != pid
     finally:
         workers.close()
+
+
+async def test_a_worker_that_hangs_is_noticed_ended_and_replaced() -> None:
+    workers = VisionWorkers(count=1)
+    try:
+        pid = await workers.run(os.getpid)
+        os.kill(pid, signal.SIGSTOP)
+        with pytest.raises(WorkerSilent, match="getpid"):
+            async with asyncio.timeout(10):
+                await workers.run_within(0.2, os.getpid)
+        with pytest.raises((WorkerDied, WorkerSilent)):
+            await workers.run_within(0.2, os.getpid)
+        workers.revive()
+        assert await workers.run(os.getpid) != pid
+        with pytest.raises(ProcessLookupError):
+            os.kill(pid, 0)
+    finally:
+        workers.close()
+
+
+async def test_an_ending_daemon_does_not_wait_for_a_worker_that_hangs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(workers_module, "CLOSE_S", 0.2)
+    workers = VisionWorkers(count=1)
+    pid = await workers.run(os.getpid)
+    os.kill(pid, signal.SIGSTOP)
+    await asyncio.wait_for(asyncio.to_thread(workers.close), 10)
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
 
 
 async def test_workers_give_way_to_the_daemon() -> None:

@@ -1,6 +1,7 @@
 """What line PLCs, port scanners and broken clients do to the server."""
 
 import asyncio
+import socket
 import struct
 from collections.abc import AsyncIterator
 
@@ -8,7 +9,7 @@ import pytest
 
 from cellctl.api.modbus.pdu import Responder
 from cellctl.api.modbus.registers import RegisterFile
-from cellctl.api.modbus.server import ModbusServer, ServerLimits
+from cellctl.api.modbus.server import ModbusServer, ServerLimits, tune
 from cellctl.errors.line import CannotListen
 from cellctl.errors.link import PortInUse
 
@@ -55,16 +56,23 @@ class Rig:
         self.clients: list[Client] = []
 
     async def server(
-        self, limits: ServerLimits | None = None, allowed: tuple[str, ...] = ()
+        self,
+        limits: ServerLimits | None = None,
+        allowed: tuple[str, ...] = (),
+        line: str = "",
     ) -> ModbusServer:
         responder = Responder(self.registers, ("V", "P", "1"))
-        server = ModbusServer(responder, allowed_clients=allowed, limits=limits)
+        server = ModbusServer(
+            responder, allowed_clients=allowed, limits=limits, is_line=line.__eq__
+        )
         await server.start("127.0.0.1", 0)
         self.servers.append(server)
         return server
 
-    async def client(self, server: ModbusServer) -> Client:
-        client = Client(*await asyncio.open_connection("127.0.0.1", server.port))
+    async def client(self, server: ModbusServer, address: str = "127.0.0.1") -> Client:
+        """``address`` is the client's own; every one in 127.0.0.0/8 is this machine."""
+        source = (address, 0)
+        client = Client(*await asyncio.open_connection("127.0.0.1", server.port, local_addr=source))
         self.clients.append(client)
         return client
 
@@ -189,6 +197,46 @@ async def test_more_clients_than_allowed_are_turned_away(rig: Rig) -> None:
     assert await third.closed()
     first.send(frame(2, READ_TWO))
     assert (await first.answer())[0] == 2
+
+
+async def test_connections_that_have_fallen_silent_make_room(rig: Rig) -> None:
+    server = await rig.server(ServerLimits(clients=2, quiet_s=0.0))
+    half_open, busy = await rig.client(server), await rig.client(server)
+    busy.send(frame(1, READ_TWO))
+    await busy.answer()
+    plc = await rig.client(server)
+    plc.send(frame(7, READ_TWO))
+    assert (await plc.answer())[0] == 7
+    assert await half_open.closed()
+    busy.send(frame(2, READ_TWO))
+    assert (await busy.answer())[0] == 2
+    assert server.counters["made room"] == 1
+
+
+async def test_the_line_finds_a_place_among_clients_that_are_all_busy(rig: Rig) -> None:
+    server = await rig.server(ServerLimits(clients=2), line="127.0.0.2")
+    first, second = await rig.client(server), await rig.client(server)
+    for client in (first, second):
+        client.send(frame(1, READ_TWO))
+        await client.answer()
+    plc = await rig.client(server, "127.0.0.2")
+    plc.send(frame(7, READ_TWO))
+    assert (await plc.answer())[0] == 7
+    assert await first.closed()
+    second.send(frame(2, READ_TWO))
+    assert (await second.answer())[0] == 2
+
+
+def test_a_peer_without_power_is_found_by_the_kernel() -> None:
+    with socket.socket() as connection:
+        tune(connection)
+        tcp = socket.IPPROTO_TCP
+        assert connection.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE)
+        idle_s = connection.getsockopt(tcp, socket.TCP_KEEPIDLE)
+        probes = connection.getsockopt(tcp, socket.TCP_KEEPCNT)
+        found_s = idle_s + probes * connection.getsockopt(tcp, socket.TCP_KEEPINTVL)
+        assert found_s <= 15
+        assert connection.getsockopt(tcp, socket.TCP_USER_TIMEOUT) <= 15_000
 
 
 async def test_only_listed_addresses_may_connect(rig: Rig) -> None:

@@ -97,6 +97,10 @@ class LineHeartbeat:
         watch = self._watches.get(self._in_command)
         return watch is not None and watch.lost
 
+    def in_command(self, client: str) -> bool:
+        """True for the address of the client in command, also while its line is lost."""
+        return client == self._in_command
+
     def alive_of(self, client: str) -> bool:
         """True while this client beats, in command or not."""
         watch = self._watches.get(client)

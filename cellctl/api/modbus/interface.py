@@ -62,6 +62,7 @@ class PlcInterface:
             Responder(self._registers, _IDENTITY),
             allowed_clients=config.allowed_clients,
             limits=limits,
+            is_line=heartbeat.in_command,
         )
         self._queue: CommandQueue[LineSubmission] = CommandQueue(_QUEUE_LIMIT)
         self._worker: asyncio.Task[None] | None = None

@@ -10,10 +10,12 @@ import ipaddress
 import socket
 import struct
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cellctl import log
 from cellctl.api.modbus.pdu import Responder
+from cellctl.clock import now_s
 from cellctl.errors.line import CannotListen
 from cellctl.errors.link import PortInUse
 
@@ -33,6 +35,8 @@ class ServerLimits:
     clients: int = 8
     idle_s: float = 60.0
     """A PLC writes its heartbeat at least twice a second; one that is silent so long is gone."""
+    quiet_s: float = 3.0
+    """On a full server, one that has been silent so long makes room for a new one."""
     frame_s: float = 3.0
     """From the first byte of a request to its last, and for an answer to be taken."""
 
@@ -46,13 +50,19 @@ class ModbusServer:
         *,
         allowed_clients: tuple[str, ...] = (),
         limits: ServerLimits | None = None,
+        is_line: Callable[[str], bool] = lambda _address: False,
     ) -> None:
-        """``allowed_clients`` are addresses or networks; empty allows every address."""
+        """``allowed_clients`` are addresses or networks; empty allows every address.
+
+        ``is_line`` tells the address of the line PLC, which finds a place on a full server, too.
+        """
         self._responder = responder
         self._allowed = [ipaddress.ip_network(text, strict=False) for text in allowed_clients]
         self._limits = limits or ServerLimits()
         self._server: asyncio.Server | None = None
-        self._clients: set[asyncio.Task[None]] = set()
+        self._is_line = is_line
+        self._clients: dict[asyncio.Task[None], float] = {}
+        """When each connection was last heard of, in the order of connecting."""
         self.counters: Counter[str] = Counter()
         """Connections and why they ended, requests, exceptions answered."""
 
@@ -92,28 +102,43 @@ class ModbusServer:
         peer = _address(writer)
         self.counters["connections"] += 1
         reason = "refused"
-        self._clients.add(task)
+        self._clients[task] = now_s()
         try:
-            if self._admits(peer):
-                _tune(writer)
+            if self._admits(peer) and self._has_room(task, str(peer)):
+                writer.transport.set_write_buffer_limits(0)  # drain waits until all is handed over
+                tune(writer.get_extra_info("socket"))
                 _log.info("line connected", peer=str(peer))
                 reason = await self._serve(reader, writer, str(peer))
         except TimeoutError:
             reason = "too slow"
         except OSError as error:
             reason = f"connection broke ({error.strerror})"
-        except asyncio.CancelledError:
-            reason = "server stopped"
+        except asyncio.CancelledError as cancelled:
+            reason = str(cancelled.args[0]) if cancelled.args else "server stopped"
         finally:
-            self._clients.discard(task)
+            self._clients.pop(task, None)
             self.counters[reason] += 1
             _log.info("line disconnected", peer=str(peer), reason=reason)
             writer.transport.abort()  # answers are out; close() would wait for a dead client
 
     def _admits(self, peer: _Address) -> bool:
-        if len(self._clients) > self._limits.clients:
-            return False
         return not self._allowed or any(peer in network for network in self._allowed)
+
+    def _has_room(self, task: asyncio.Task[None], peer: str) -> bool:
+        """Whether a new connection may stay; on a full server the most silent one makes room.
+
+        A PLC that lost its power leaves connections half open. They must not lock it out when it
+        comes back.
+        """
+        if len(self._clients) <= self._limits.clients:
+            return True
+        others = {other: heard_s for other, heard_s in self._clients.items() if other is not task}
+        silent = min(others, key=others.__getitem__)
+        if now_s() - others[silent] < self._limits.quiet_s and not self._is_line(peer):
+            return False
+        del self._clients[silent]
+        silent.cancel("made room")
+        return True
 
     async def _serve(
         self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter, peer: str
@@ -135,6 +160,9 @@ class ModbusServer:
                     pdu = await reader.readexactly(length - 1)
             except asyncio.IncompleteReadError:
                 return "closed within a request"
+            task = asyncio.current_task()
+            if task in self._clients:
+                self._clients[task] = now_s()
             answer = self._responder.answer(pdu, peer)
             self.counters["requests"] += 1
             self.counters["exceptions"] += answer[0] >= 0x80
@@ -151,8 +179,12 @@ def _address(writer: asyncio.StreamWriter) -> _Address:
     return mapped or address
 
 
-def _tune(writer: asyncio.StreamWriter) -> None:
-    writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
-    sock = writer.get_extra_info("socket")
-    sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-    sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+def tune(connection: socket.socket) -> None:
+    """Answers leave at once, and a peer that is gone without a word is found within 15 s."""
+    tcp = socket.IPPROTO_TCP
+    connection.setsockopt(tcp, socket.TCP_NODELAY, 1)
+    connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    connection.setsockopt(tcp, socket.TCP_KEEPIDLE, 5)
+    connection.setsockopt(tcp, socket.TCP_KEEPINTVL, 3)
+    connection.setsockopt(tcp, socket.TCP_KEEPCNT, 3)
+    connection.setsockopt(tcp, socket.TCP_USER_TIMEOUT, 15_000)

@@ -69,6 +69,11 @@ class InlineWorkers:
         self.ran.append(function.__name__)
         return self.answers.get(function.__name__, function)(*args, **kwargs)
 
+    async def run_within(
+        self, _patience_s: float, function: Callable[..., Any], *args: Any, **kwargs: Any
+    ) -> Any:
+        return await self.run(function, *args, **kwargs)
+
     async def check(self) -> None:
         if self.died:
             raise WorkerDied("killed")

@@ -24,6 +24,8 @@ class TinyGuard:
     """Of every arming."""
     asked: list[str] = field(default_factory=list)
     faults: dict[str, CellError] = field(default_factory=dict)
+    degraded: tuple[str, ...] = ()
+    """Real-time measures that were refused."""
     raw: np.ndarray = field(
         default_factory=lambda: np.random.default_rng(1).normal(0.0, 0.2, (200, 6))
     )
@@ -81,7 +83,7 @@ class TinyGuard:
             raise self.faults["check"]
 
     def health(self) -> GuardHealth:
-        return GuardHealth(alive=True, sensor_serial=self.serial)
+        return GuardHealth(alive=True, sensor_serial=self.serial, degraded=self.degraded)
 
     def _do(self, what: str) -> None:
         self.asked.append(what)

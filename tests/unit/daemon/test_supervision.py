@@ -6,6 +6,7 @@ from typing import cast
 import pytest
 
 from cellctl.api.modbus.interface import PlcInterface
+from cellctl.config import CellConfig
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkMonitor, supervise
 from cellctl.errors.force import GuardDied
@@ -45,6 +46,37 @@ async def test_a_broken_link_is_reported_once_until_it_is_whole_again(rig: Daemo
     rig.bench.cell.aux_1.faults["state"] = StaleData("2 s")
     await links.look()
     assert await alarms(rig) == [207, 207]
+
+
+REFUSED = "no SCHED_FIFO: Operation not permitted"
+
+
+async def test_a_guard_without_real_time_scheduling_is_an_alarm_of_a_real_cell(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(CellConfig, "simulated", False)
+    await rig.idle()
+    guard = rig.bench.cell.guard
+    guard.degraded = (REFUSED,)
+    links = watch(rig)
+    await links.look()
+    await links.look()
+    assert await alarms(rig) == [514], "once"
+    status = rig.shown()
+    assert (status.state, status.warning, status.error) == (State.IDLE, True, False)
+    assert status.ready, "a late guard protects more than none"
+    guard.degraded = ()
+    await links.look()
+    guard.degraded = (REFUSED,)
+    await links.look()
+    assert await alarms(rig) == [514, 514], "granted in between, then refused again"
+
+
+async def test_a_simulated_cell_does_not_warn_of_real_time(rig: DaemonRig) -> None:
+    await rig.idle()
+    rig.bench.cell.guard.degraded = (REFUSED,)
+    await watch(rig).look()
+    assert await alarms(rig) == []
 
 
 async def test_the_death_of_the_guard_aborts_a_run(rig: DaemonRig) -> None:

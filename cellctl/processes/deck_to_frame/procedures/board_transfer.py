@@ -21,6 +21,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.workers import SOLVE_S
 
 _CAMERAS = {HEAD_1: STEREO_HEAD_1, HEAD_2: STEREO_HEAD_2}
 """The calibration of the cameras of each head, by its role."""
@@ -94,8 +95,8 @@ async def measure_board(
         return None
     first, second = both
     c_T_base = calibrations.read(BASE_FRAME).c_T_base
-    result = await cell.workers.run(
-        calibrate_board_transfer, c_T_base, [first.board], [second.board]
+    result = await cell.workers.run_within(
+        SOLVE_S, calibrate_board_transfer, c_T_base, [first.board], [second.board]
     )
     joints_deg = {HEAD_1: first.joints_deg, HEAD_2: second.joints_deg}
     return ProcedureOutcome(

@@ -19,6 +19,7 @@ from cellctl.processes.deck_to_frame.steps import MATE
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.mate_deck import mate_deck
 from cellctl.records.entries import Verdict
+from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.processes.deck_to_frame.rig import RunRig, curve, seated
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off
@@ -37,7 +38,14 @@ class Mating:
         self._attempts, self._fault = attempts, fault
 
     async def __call__(
-        self, robot: object, guard: object, measured_plan: Plan, report: Report, max_tries: int
+        self,
+        robot: object,
+        guard: object,
+        measured_plan: Plan,
+        report: Report,
+        *,
+        max_tries: int,
+        interruption: Interruption,
     ) -> MatingResult:
         for number in range(1, self._attempts + 1):
             self.plans.append(await measured_plan(number))

@@ -1,0 +1,92 @@
+"""What never answers leads to a fault and to a state in which nothing moves: no unit waits on."""
+
+import asyncio
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from cellctl.cell import devices
+from cellctl.daemon.device_poller import DevicePoller
+from cellctl.errors.link import DeviceAway
+from cellctl.errors.records import RecordSilent
+from cellctl.errors.robot import StopFailed
+from cellctl.packml.command import Command
+from cellctl.packml.result import Result
+from cellctl.packml.state import State
+from cellctl.records.store import RunStore
+from cellctl.runtime import job_record, job_runner, unit
+from tests.unit.daemon_rig import DaemonRig
+
+SHORT_S = 0.05
+
+
+async def hang() -> None:
+    await asyncio.Event().wait()
+
+
+@pytest.fixture
+def disk() -> Iterator[threading.Event]:
+    """A disk that does not answer until it is set."""
+    disk = threading.Event()
+    yield disk
+    disk.set()
+
+
+async def test_a_driver_that_hangs_in_its_stop(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(unit, "STOP_TIMEOUT_S", SHORT_S)
+    rig.contact.may_end.clear()
+    await rig.started()
+    await rig.contact.reached.wait()
+    rig.bench.cell.aux_1.stop = hang  # type: ignore[method-assign]
+    await rig.take(Command.STOP)
+    await rig.to(State.ABORTED)
+    assert StopFailed.number in rig.shown().alarms
+    assert rig.bench.cell.main.latched, "the others were stopped"
+    assert (await rig.record()).head.result == "stopped"
+
+
+async def test_a_disk_that_hangs_when_the_run_is_closed(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
+) -> None:
+    monkeypatch.setattr(job_runner, "CLOSE_TIMEOUT_S", SHORT_S)
+    closes = RunStore.close_run
+
+    def slow(store: RunStore, *args: object, **fields: object) -> None:
+        disk.wait(10)
+        closes(store, *args, **fields)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(RunStore, "close_run", slow)
+    seq = await rig.started()
+    await rig.to(State.ABORTED)
+    assert rig.shown().first_out_alarm == RecordSilent.number
+    assert rig.port.ended[seq] is not Result.GOOD
+    disk.set()
+    assert (await rig.record()).head.result == "good", "the part itself was"
+    assert rig.shown().run_result is Result.ABORTED, "what the line was told stays"
+
+
+async def test_a_disk_that_hangs_when_the_run_is_opened(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
+) -> None:
+    monkeypatch.setattr(job_record, "OPEN_TIMEOUT_S", SHORT_S)
+    monkeypatch.setattr(job_runner, "CLOSE_TIMEOUT_S", SHORT_S)
+    await rig.idle()
+    monkeypatch.setattr(RunStore, "start_run", lambda *_, **__: disk.wait(10))
+    await rig.take(Command.START)
+    await rig.to(State.ABORTED)
+    assert rig.shown().first_out_alarm == RecordSilent.number
+    assert not any(robot.moves for robot in rig.bench.cell.robots.values())
+
+
+async def test_a_device_that_hangs_when_it_is_asked(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(devices, "ASK_TIMEOUT_S", SHORT_S)
+    await rig.idle()
+    rig.bench.cell.head_2.camera.serial_number = hang  # type: ignore[assignment, method-assign]
+    await DevicePoller(rig.bench.as_cell, rig.unit).ask()
+    assert rig.shown().alarms == (DeviceAway.number,)
+    assert not rig.shown().ready
