@@ -10,10 +10,12 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.cli.process_pages import pages_of
-from cellctl.errors import CellError
-from cellctl.records.entries import Figure, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.figures import NO_LIMIT
+from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.report.export import export_run
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+from cellctl.records.seals import LedgerHead
 from cellctl.records.store import RunStore
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
@@ -22,6 +24,7 @@ DataDir = Annotated[Path, typer.Option("--data-dir", help="Folder of the run sto
 Run = Annotated[int, typer.Argument(help="Number of the run.", min=1)]
 DEFAULT = Path("runs")
 
+HASH_DIGITS = 64
 _COLOURS = {"good": "green", None: "yellow"}
 
 
@@ -54,14 +57,15 @@ def show(run: Run, data_dir: DataDir = DEFAULT) -> None:
     console.print(_table([record.head]))
     if record.head.fault:
         console.print(record.head.fault, style="red", markup=False)
-    # ``dict.fromkeys`` keeps the order of the run, which a set would lose.
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
     if judged:
         console.print(_figures(judged))
-    for gauge in record.gauges:
-        console.print(f"pin hole {gauge.hole}: gauge {gauge.diameter_mm:.2f} mm ({gauge.source})")
+    for gauge in record.gauge_history:
+        console.print(_gauge_line(record, gauge), markup=False)
+    if part_verdict(record) != record.head.result:
+        console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
     for alarm in record.alarms:
         console.print(f"alarm {alarm.text}", markup=False)
 
@@ -87,42 +91,69 @@ def export(
 @app.command()
 def gauge(
     run: Run,
+    *,
     hole: Annotated[str, typer.Option(help="Name of the pin hole.")],
     mm: Annotated[float, typer.Option(help="Largest plug gauge that passes.")],
     source: Annotated[str, typer.Option(help="Who measured it.")],
+    gauge_id: Annotated[str, typer.Option(help="Number on the plug gauge.")] = "",
     data_dir: DataDir = DEFAULT,
 ) -> None:
-    """Enter a plug-gauge result of a run."""
+    """Enter a plug-gauge result of a run; a later one of the same hole counts, all are kept."""
     with _store(data_dir) as store:
         # A gauge result comes after the run was sealed, so it has a seal of its own, and the audit
         # log names whoever measured.
-        store.set_gauge(run, hole, mm, source)
-        store.audit(source, "gauge", {"run": run, "hole": hole, "diameter_mm": mm})
-    typer.echo(f"run {run}, hole {hole}: {mm:.2f} mm by {source}")
+        store.set_gauge(run, hole, mm, source, gauge_id)
+        detail = {"run": run, "hole": hole, "diameter_mm": mm, "gauge_id": gauge_id}
+        store.audit(source, "gauge", detail)
+        record = store.run(run)
+    for entry in record.gauge_history:
+        if entry.hole == hole:
+            typer.echo(f"run {run}, {_gauge_line(record, entry)}")
 
 
 @app.command()
-def verify(data_dir: DataDir = DEFAULT) -> None:
-    """Check that nothing that is closed was changed, files included; exit code 1 if it was."""
+def verify(
+    data_dir: DataDir = DEFAULT,
+    head: Annotated[str, typer.Option(help="LENGTH:HASH, as printed on a report.")] = "",
+) -> None:
+    """Check that nothing that is sealed was changed, files included; exit code 1 if it was.
+
+    Without --head entries that somebody has removed from the end together with their head are
+    not found: the newest report has a head to compare with.
+    """
+    printed = _printed(head)
     with _store(data_dir) as store:
-        problems = store.verify()
-        for head in store.runs(limit=1_000_000):
-            problems += _damaged(store, store.run(head.number))
+        problems = store.verify(printed)
+        newest = store.ledger_head()
     for problem in problems:
         typer.echo(problem)
     if problems:
         raise typer.Exit(1)
     typer.echo("all closed runs are as they were sealed")
+    typer.echo(f"ledger head {newest}", err=True)
 
 
-def _damaged(store: RunStore, record: RunRecord) -> list[str]:
-    found = []
-    for artefact in record.artefacts:
-        try:
-            store.artefacts.get(artefact.sha256)
-        except CellError as error:
-            found.append(f"run {record.head.number}, {artefact.name}: {error}")
-    return found
+def _printed(head: str) -> LedgerHead | None:
+    """From the text on a report; raises ``typer.BadParameter``."""
+    if not head:
+        return None
+    length, _, found = head.partition(":")
+    if not length.isdecimal() or len(found) != HASH_DIGITS:
+        raise typer.BadParameter("it reads LENGTH:HASH", param_hint="--head")
+    return LedgerHead(int(length), found)
+
+
+def _gauge_line(record: RunRecord, entry: Gauge) -> str:
+    """One entry with who, when, with which gauge, and what it says."""
+    verdict = judge_gauge(record, entry)
+    least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
+    limit = "" if least_mm is None else f", at least {least_mm:.2f} mm: {verdict}"
+    with_gauge = f", gauge {entry.gauge_id}" if entry.gauge_id else ""
+    replaced = "" if entry in record.gauges else ", replaced by a later entry"
+    return (
+        f"pin hole {entry.hole}: gauge {entry.diameter_mm:.2f} mm ({entry.source})"
+        f"{limit}{with_gauge}, {entry.time:%Y-%m-%d %H:%M}{replaced}"
+    )
 
 
 def _table(runs: Sequence[RunHead]) -> Table:
@@ -138,7 +169,6 @@ def _table(runs: Sequence[RunHead]) -> Table:
 def _row(head: RunHead) -> tuple[str, ...]:
     result = head.result or "open"
     colour = _COLOURS.get(head.result, "red")
-    # A run of the fake cell must never pass for evidence about a real part.
     mark = " (sim)" if head.simulated else ""
     return (
         str(head.number),
@@ -171,7 +201,6 @@ def _figures(judged: Sequence[Figure]) -> Table:
     table = Table("figure", "value", "at least", "at most", "verdict", box=None)
     for entry in judged:
         texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
-        # The verdict is that of the run, with the limits of that day; it is not judged anew here.
         style = "green" if entry.verdict is Verdict.PASS else "red"
         table.add_row(entry.label, *texts, f"[{style}]{entry.verdict}[/]")
     return table

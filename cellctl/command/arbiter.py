@@ -53,13 +53,18 @@ class CommandArbiter:
     async def submit(self, submission: Submission) -> RejectCode:
         """Validate and execute a command; NONE when it is being executed.
 
+        The answer comes when the audit log has the command on disk, that of Stop and Abort at once.
+
         The submission hears of the command's end, which may come before this returns. Raises the
         numbered fault of a device that broke.
         """
         if submission.command.ends_motion:
             return await self._end_motion(submission)
         code = await submission.unless_overtaken(self._validate(submission))
-        return code or await self._execute(submission)
+        code = code or await self._execute(submission)
+        if code is RejectCode.NONE:
+            await submission.or_overtaken(self._written(submission))
+        return code
 
     async def _validate(self, submission: Submission) -> RejectCode:
         """Everything that may wait for the disk; a disk that does not answer is a fault."""
@@ -87,7 +92,9 @@ class CommandArbiter:
             mode = start_mode(command, self._unit.machine)
             if mode is not None:
                 self._unit.factory.accept(command, mode)
-            code = await self._begin(submission)
+            code = await self._tracker.execute(submission)
+            if code is RejectCode.NONE:
+                submission.taken()
             if code is RejectCode.NONE and (command.cntrl_cmd or command.unit_mode):
                 # An acknowledged alarm alone changes nothing that another client decided upon.
                 self._validator.executed(command)
@@ -97,13 +104,26 @@ class CommandArbiter:
         """Stop or Abort, at once: neither the lock of the turn nor the disk may delay it."""
         self._validator.executed(submission.command)
         self._unit.background.start(submission.remember())
-        return await self._begin(submission)
-
-    async def _begin(self, submission: Submission) -> RejectCode:
         code = await self._tracker.execute(submission)
         if code is RejectCode.NONE:
-            self._audit(submission)
+            submission.taken()
+            # In the background: nothing that can fail or wait stands beside ending motion.
+            self._unit.background.start(self._audit(submission))
         return code
+
+    async def _written(self, submission: Submission) -> None:
+        """Wait until the audit log has a command that is being executed, for as long as is due.
+
+        A disk that does not answer is a fault of its own; the command cannot be taken back.
+        """
+        try:
+            async with asyncio.timeout(self._disk_timeout_s):
+                await self._audit(submission)
+        except TimeoutError:
+            what = f"{self._disk_timeout_s:g} s for the audit line of {_name(submission.command)}"
+            await self._unit.machine.fail(DiskSilent(what))
+        except RecordsError as error:
+            _log.error("audit line not written", number=error.number, fault=str(error))
 
     async def _remember(self, submission: Submission) -> RejectCode:
         """Have the client remember the command, on disk before anything may move.
@@ -131,7 +151,7 @@ class CommandArbiter:
             return RejectCode.RECORDS_NOT_READY
         return RejectCode.NONE if known else RejectCode.ALARM_UNKNOWN
 
-    def _audit(self, submission: Submission) -> None:
+    async def _audit(self, submission: Submission) -> None:
         command = submission.command
         detail: dict[str, int | str] = {"mode": self._unit.machine.mode.name.lower()}
         detail |= submission.reference
@@ -143,10 +163,7 @@ class CommandArbiter:
             }
         if command.alarm_ack_id:
             detail["acknowledged"] = command.alarm_ack_id
-        # In the background: the command is being executed, and its entry is no condition for that.
-        self._unit.background.start(
-            self._store.do(RunStore.audit, command.who, _name(command), detail)
-        )
+        await self._store.do(RunStore.audit, command.who, _name(command), detail)
 
 
 def _name(command: UnitCommand) -> str:

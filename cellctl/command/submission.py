@@ -3,11 +3,13 @@
 import asyncio
 from collections.abc import Awaitable, Callable, Coroutine, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import UnitCommand
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,6 +45,9 @@ class Submission:
         """Return as soon as the client has given a Stop or an Abort that waits for this command."""
         await asyncio.Event().wait()  # a client without a queue never lets a Stop wait
 
+    def taken(self) -> None:
+        """The command is being executed; the answer follows when it is on record."""
+
     def ended(self, result: Result) -> None:
         """The accepted command has reached its end. Not called for a refused command."""
 
@@ -52,17 +57,29 @@ class Submission:
         Validation waits for the disk, and a Stop must not. Only validation may be cancelled this
         way: nothing has been given to the state machine yet.
         """
-        validating = asyncio.create_task(validation, name="validation of a command")
+        code = await self._or_overtaken(validation, "validation of a command")
+        return RejectCode.SUPERSEDED if code is None else code
+
+    async def or_overtaken(self, record: Coroutine[Any, Any, None]) -> None:
+        """Wait for the record of a command that is being executed, until ``overtaken`` returns.
+
+        The record is written all the same: only nobody waits for it any more.
+        """
+        await self._or_overtaken(record, "record of a command")
+
+    async def _or_overtaken(self, work: Coroutine[Any, Any, T], name: str) -> T | None:
+        """The result of the work, None as soon as ``overtaken`` returns."""
+        working = asyncio.create_task(work, name=name)
         overtaking = asyncio.create_task(self.overtaken(), name="stop behind a command")
         try:
-            await asyncio.wait({validating, overtaking}, return_when=asyncio.FIRST_COMPLETED)
+            await asyncio.wait({working, overtaking}, return_when=asyncio.FIRST_COMPLETED)
         finally:
             overtaken = overtaking.done()
-            for task in (validating, overtaking):
+            for task in (working, overtaking):
                 task.cancel()
-            # The cancelled validation must have let go of the disk before the Stop is executed.
-            await asyncio.gather(validating, overtaking, return_exceptions=True)
-        return RejectCode.SUPERSEDED if overtaken else validating.result()
+            # The cancelled work must have let go of the disk before the Stop is executed.
+            await asyncio.gather(working, overtaking, return_exceptions=True)
+        return None if overtaken else working.result()
 
 
 Submit = Callable[[Submission], Awaitable[RejectCode]]

@@ -104,6 +104,16 @@ class FigureBeyondLimit(RecordsError):
     reaction = Reaction.STOP
 
 
+class GaugeRefused(RecordsError):
+    """A plug-gauge result cannot be of this run."""
+
+    number = 812
+    text = "Gauge result refused"
+    cause = "Mistyped hole or run number, or a run that ended before its part was finished."
+    remedy = "See the detail for the holes of the run; `cellctl runs list` shows the runs."
+    reaction = Reaction.WARN
+
+
 class RecordSilent(RecordsError):
     """The disk did not open or close the record of a run in time."""
 

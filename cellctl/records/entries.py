@@ -11,6 +11,7 @@ from enum import StrEnum
 from typing import Any
 
 from cellctl.clock import utc_now
+from cellctl.records.seals import Seal
 
 Six = tuple[float | None, ...]
 """x, y, z in mm, rx, ry, rz (or A, B, C of a pose) in degrees; None is unknown."""
@@ -185,6 +186,9 @@ class Gauge:
     hole: str
     diameter_mm: float
     source: str
+    """Who measured."""
+    gauge_id: str | None = None
+    """Of the plug gauge itself; None in stores of schema 1 and 2, empty where nobody named one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,17 +244,6 @@ class RunHead:
 
 
 @dataclass(frozen=True, slots=True)
-class Seal:
-    """The run's place in the hash chain."""
-
-    number: int
-    time: datetime
-    content: str
-    previous: str
-    hash: str
-
-
-@dataclass(frozen=True, slots=True)
 class RunRecord:
     """Everything about a run, each kind in the order in which it was written."""
 
@@ -263,7 +256,9 @@ class RunRecord:
     artefacts: tuple[Artefact, ...]
     alarms: tuple[Alarm, ...]
     gauges: tuple[Gauge, ...]
-    """The newest per hole."""
+    """The newest per hole: it counts."""
+    gauge_history: tuple[Gauge, ...]
+    """All of them, the oldest first."""
     seal: Seal | None
     """None while the run is open."""
 

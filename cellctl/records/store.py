@@ -13,13 +13,11 @@ from sqlalchemy import select
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
-from cellctl.errors.records import ValueRefused
 from cellctl.records.artefacts import ArtefactFolder
-from cellctl.records.database import ledger, reading
+from cellctl.records.database import ledger, reading, sealed
 from cellctl.records.database.rows import (
     active_alarm_rows,
     close,
-    existing_run,
     open_phase,
     open_run,
     to_entry,
@@ -46,9 +44,10 @@ from cellctl.records.entries import (
     RunRecord,
     RunResult,
 )
+from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
+from cellctl.records.seals import LedgerHead
 
-_GAUGE_RANGE_MM = (0.5, 50.0)
 _LINE_SEQ = "line_seq"
 
 
@@ -115,6 +114,7 @@ class RunStore:
         )
         with self._database.write() as session:
             session.add(row)
+            ledger.seal(session, sealed.OPENING, row, row.started)
         return row.number
 
     def add(self, run: int, *details: RunDetail) -> None:
@@ -163,27 +163,33 @@ class RunStore:
         with self._database.write() as session:
             close(session, open_run(session, run), RunResult(result), fault_number, fault)
 
-    def set_gauge(self, run: int, hole: str, diameter_mm: float, source: str) -> None:
-        """A plug-gauge result, also after the run was closed. A later one counts, both stay."""
-        least, greatest = _GAUGE_RANGE_MM
-        if not least <= diameter_mm <= greatest:
-            raise ValueRefused(f"plug gauge {diameter_mm:g} mm, allowed {least:g} to {greatest:g}")
-        if not hole or not source:
-            raise ValueRefused("a gauge result needs its hole and who measured it")
+    def set_gauge(
+        self, run: int, hole: str, diameter_mm: float, source: str, gauge_id: str = ""
+    ) -> None:
+        """A plug-gauge result, also after the run was closed. A later one counts, both stay.
+
+        Raises ``ValueRefused``, ``GaugeRefused`` or ``RunUnknown``.
+        """
+        require_plausible(hole, diameter_mm, source)
         row = GaugeRow(
-            run=run, time=utc_now(), hole=hole, diameter_mm=round(diameter_mm, 3), source=source
+            run=run,
+            time=utc_now(),
+            hole=hole,
+            diameter_mm=round(diameter_mm, 3),
+            source=source,
+            gauge_id=gauge_id,
         )
         with self._database.write() as session:
-            existing_run(session, run)
+            require_gauge(reading.read_run(session, run), hole)
             session.add(row)
-            session.flush()
-            ledger.seal(session, ledger.GAUGE, row.id, row.time)
+            ledger.seal(session, sealed.GAUGE, row, row.time)
 
     def add_alarm(self, run: int | None, number: int, text: str) -> int:
         """A fault or warning; stays active until acknowledged, over restarts too."""
         row = AlarmRow(run=run, time=utc_now(), number=number, text=text)
         with self._database.write() as session:
             session.add(row)
+            ledger.seal(session, sealed.ALARM, row, row.time)
         return row.id
 
     def acknowledge_alarms(self, number: int, who: str) -> int:
@@ -191,7 +197,9 @@ class RunStore:
         with self._database.write() as session:
             rows = session.scalars(active_alarm_rows().where(AlarmRow.number == number)).all()
             for row in rows:
-                row.acknowledged, row.acknowledged_by = utc_now(), who
+                now = utc_now()
+                row.acknowledged, row.acknowledged_by = now, who
+                ledger.seal(session, sealed.ACKNOWLEDGEMENT, row, now)
             return len(rows)
 
     def active_alarms(self) -> list[Alarm]:
@@ -213,6 +221,7 @@ class RunStore:
         with self._database.write() as session:
             if session.get(CalibrationRow, stored.id) is None:
                 session.add(row)
+                ledger.seal(session, sealed.CALIBRATION, row, utc_now())
 
     def invalidate_calibration(self, stored: StoredCalibration, reason: str) -> None:
         """Note that a calibration is worthless from now on; the first reason stays."""
@@ -220,7 +229,9 @@ class RunStore:
         with self._database.write() as session:
             row = session.get_one(CalibrationRow, stored.id)
             if row.invalidated is None:
-                row.invalidated, row.invalidated_reason = utc_now(), reason
+                now = utc_now()
+                row.invalidated, row.invalidated_reason = now, reason
+                ledger.seal(session, sealed.INVALIDATION, row, now)
 
     def newest_time(self) -> datetime | None:
         """When the newest record was written; None in an empty store."""
@@ -238,6 +249,7 @@ class RunStore:
         row = AuditRow(time=utc_now(), actor=actor, action=action, detail=detail or {})
         with self._database.write() as session:
             session.add(row)
+            ledger.seal(session, sealed.AUDIT, row, row.time)
 
     def audit_log(self) -> list[AuditEntry]:
         """Everything that was ever appended, oldest first."""
@@ -248,7 +260,8 @@ class RunStore:
     def note_line_seq(self, seq: int) -> None:
         """Remember the last command number of the line, before the command is obeyed."""
         with self._database.write() as session:
-            session.merge(ValueRow(name=_LINE_SEQ, value=seq))
+            row = session.merge(ValueRow(name=_LINE_SEQ, value=seq))
+            ledger.seal(session, sealed.VALUE, row, utc_now())
 
     def line_seq(self) -> int | None:
         """The last command number of the line before this start."""
@@ -269,7 +282,17 @@ class RunStore:
         with self._database.read() as session:
             return reading.read_run(session, number)
 
-    def verify(self) -> list[str]:
-        """Whether anything that is closed was changed: the problems, none if all is well."""
+    def verify(self, printed: LedgerHead | None = None) -> list[str]:
+        """Whether anything that is sealed was changed: the problems, none if all is well.
+
+        ``printed`` is the head of the ledger on a report, which the ledger must still contain.
+        Files are read too: one that is missing or not as it was stored is a problem.
+        """
         with self._database.read() as session:
-            return list(ledger.problems(session))
+            damaged = reading.damaged_files(session, self.artefacts)
+            return [*ledger.problems(session, printed), *damaged]
+
+    def ledger_head(self) -> LedgerHead:
+        """Length and newest hash of the chain."""
+        with self._database.read() as session:
+            return ledger.head(session)

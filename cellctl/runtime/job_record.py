@@ -1,7 +1,9 @@
-"""The record of one job with contact: opened before anything moves, closed whatever happens."""
+"""The record of one job: opened before anything moves, closed whatever happens."""
 
 import asyncio
 from collections.abc import Sequence
+from hashlib import sha256
+from typing import Any
 
 from cellctl import log
 from cellctl.calibration.store.envelope import StoredCalibration
@@ -13,13 +15,15 @@ from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
-from cellctl.runtime.provenance import provenance
+from cellctl.runtime.provenance import cell_artefact, provenance
 from cellctl.version import software
 
 _log = log.get(__name__)
 
 OPEN_TIMEOUT_S = 30.0
 """For the disk to take the row and the files of a run; nothing has moved yet."""
+MAINTENANCE = "maintenance"
+"""Mode of the runs of procedures, and their process: a procedure may belong to several."""
 
 
 class JobRecord:
@@ -46,11 +50,16 @@ class JobRecord:
         """
         if self._opening is None:
             self._opening = asyncio.create_task(self._write(recipe, mode, stored))
-        await asyncio.wait({self._opening}, timeout=OPEN_TIMEOUT_S)
-        if not self._opening.done():
-            raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
-        self._opening.result()
-        return self.number
+        return await self._opened(self._opening)
+
+    async def open_procedure(self, number: int, label: str) -> int:
+        """The number of the run of a procedure without parts, opened at the first call.
+
+        It has the procedure in place of a recipe; the cell file goes into it whole.
+        """
+        if self._opening is None:
+            self._opening = asyncio.create_task(self._write_procedure(number, label))
+        return await self._opened(self._opening)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:
         """Close it; nothing to close when it was not or could not be opened."""
@@ -70,6 +79,13 @@ class JobRecord:
         )
         _log.info("run closed", run=self.number, result=outcome.value)
 
+    async def _opened(self, opening: "asyncio.Task[None]") -> int:
+        await asyncio.wait({opening}, timeout=OPEN_TIMEOUT_S)
+        if not opening.done():
+            raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
+        opening.result()
+        return self.number
+
     async def _write(
         self,
         recipe: Recipe,
@@ -78,21 +94,41 @@ class JobRecord:
     ) -> None:
         for calibration in stored:
             await self.store.do(RunStore.add_calibration, calibration)
-        cell, command = self._cell, self._command
+        cell = self._cell
         made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
-        self.number = await self.store.do(
-            RunStore.start_run,
+        await self._start(
             process=recipe.process,
-            serial=command.serial,
             recipe_id=recipe.id,
             recipe_name=recipe.name,
             recipe_hash=made_with.recipe_hash,
             mode=mode,
-            software=await asyncio.to_thread(software),
             config_hash=made_with.cell_hash,
             calibration_ids={one.kind: one.id for one in stored},
-            simulated=cell.config.simulated,
-            operator=command.operator,
         )
         for artefact in made_with.artefacts():
             await self.store.do(RunStore.add_artefact, self.number, *artefact)
+
+    async def _write_procedure(self, number: int, label: str) -> None:
+        cell_file = cell_artefact(self._cell.config)
+        cell_hash = sha256(cell_file[1]).hexdigest()
+        await self._start(
+            process=MAINTENANCE,
+            recipe_id=number,
+            recipe_name=label,
+            recipe_hash=cell_hash,
+            mode=MAINTENANCE,
+            config_hash=cell_hash,
+            calibration_ids={},
+        )
+        await self.store.do(RunStore.add_artefact, self.number, *cell_file)
+
+    async def _start(self, **made_with: Any) -> None:
+        """Write the row with what it was made with, and who commanded it."""
+        self.number = await self.store.do(
+            RunStore.start_run,
+            serial=self._command.serial,
+            operator=self._command.operator,
+            software=await asyncio.to_thread(software),
+            simulated=self._cell.config.simulated,
+            **made_with,
+        )

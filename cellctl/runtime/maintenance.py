@@ -7,6 +7,7 @@ from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import RunResult
+from cellctl.records.recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord
@@ -39,12 +40,17 @@ class MaintenanceJob(Job):
 
     @property
     def run_number(self) -> int:
-        """Of its record; only procedures with contact have one."""
+        """Of its record."""
         return self._record.number
 
     async def start(self) -> None:
-        """Nothing to bring anywhere: each procedure begins where it needs to."""
+        """Open the run record, before anything moves; each procedure begins where it needs to.
+
+        A procedure with contact opens its own, with the recipe whose parts it touches.
+        """
         procedure = self._procedure
+        if not procedure.contact:
+            await self._record.open_procedure(procedure.number, procedure.label)
         self._board.update(
             step=procedure.step, step_label=procedure.label, contact=procedure.contact
         )
@@ -66,7 +72,7 @@ class MaintenanceJob(Job):
         await self._keep(outcome)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
-        """The record is the calibration and the audit log; after contact also a run."""
+        """Close the record of the run, and say in the audit log how the procedure ended."""
         self._board.leave_step()
         await self._record.close(outcome, fault)
         ended = {
@@ -102,6 +108,8 @@ class MaintenanceJob(Job):
         )
         await self._store.do(RunStore.add_calibration, stored)
         detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
+        if self.run_number:
+            await RunRecorder(self._store, self.run_number).document("calibration", detail)
         await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
         _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
 

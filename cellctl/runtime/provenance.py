@@ -10,6 +10,8 @@ from cellctl.config import CellConfig
 from cellctl.config.recipe import Recipe
 from cellctl.errors.vision import FeatureFileInvalid
 
+CELL_FILE = "cell.json"
+
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
@@ -35,7 +37,7 @@ class Provenance:
     def artefacts(self) -> list[tuple[str, bytes, str]]:
         """Name, bytes and media type of each file."""
         return [
-            ("cell.json", self.cell, "application/json"),
+            (CELL_FILE, self.cell, "application/json"),
             ("recipe.json", self.recipe, "application/json"),
             *((name, data, "application/toml") for name, data in self.files.items()),
         ]
@@ -50,6 +52,11 @@ def provenance(config: CellConfig, folder: Path, recipe: Recipe) -> Provenance:
         recipe=_canonical({"recipe": recipe.model_dump(mode="json"), "sha256": hashes}),
         files=files,
     )
+
+
+def cell_artefact(config: CellConfig) -> tuple[str, bytes, str]:
+    """The cell file alone, for the record of a run that has no recipe."""
+    return CELL_FILE, _canonical(config.model_dump(mode="json")), "application/json"
 
 
 def _canonical(document: dict[str, Any]) -> bytes:

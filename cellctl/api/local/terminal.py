@@ -1,6 +1,6 @@
 """Turns the requests of operators into commands, which are validated like those of the line PLC."""
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 from cellctl import log
 from cellctl.api.local.messages import (
@@ -30,6 +30,19 @@ from cellctl.packml.unit_command import Options, Source, UnitCommand
 _log = log.get(__name__)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class TerminalSubmission(Submission):
+    """Remembers the state that its command has led to."""
+
+    machine: PackMLMachine
+    state: list[str] = field(default_factory=list)
+    """Empty until the command is being executed."""
+
+    def taken(self) -> None:
+        """Before the answer waits for its record: a short state may have ended until then."""
+        self.state.append(self.machine.state.name)
+
+
 class Terminal:
     """Handles the requests of the local API. Belongs to one event loop."""
 
@@ -56,8 +69,9 @@ class Terminal:
             await self._users.look_up(uid)
         command = replace(command, person=self._users.name(uid))
         # The same validator and queue as for the line; the terminal decides nothing by itself.
-        code = await self._submit(Submission(command))
-        state = self._machine.state.name
+        submission = TerminalSubmission(command, self._machine)
+        code = await self._submit(submission)
+        state = (submission.state or [self._machine.state.name])[0]
         _log.info("local command", who=command.who, cmd=request.request, reject=code.text)
         if code is RejectCode.NONE:
             return Taken(state=state)

@@ -1,7 +1,7 @@
 """Writes down what the steps of one run find out."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -27,6 +27,7 @@ from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.entries import (
     error_figures,
+    gauge_holes,
     loop_pass,
     measurement_detail,
     residual_figure,
@@ -46,8 +47,10 @@ from cellctl.processes.deck_to_frame.record.keys import (
 )
 from cellctl.records.entries import Document, PoseOrigin
 from cellctl.records.figures import Limit, split_document
+from cellctl.records.gauges import GAUGE_HOLES
 from cellctl.records.recorder import RunRecorder
 from cellctl.records.recording import MEDIA_TYPE, encode_curve
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.picture import annotate
 from cellctl.workers import VisionWorkers
@@ -122,6 +125,10 @@ class Journal:
         """The seated deck: error against the seat, gap, rotation, offset at each pin hole."""
         await self.measurement("seated", measured)
         await self._document(seat_record(seat), seat_limits_of(seat, recipe))
+
+    async def gauge_holes(self, pins: Iterable[Hole], recipe: DeckRecipe) -> None:
+        """The holes that a person may gauge, with the gauge that a good part lets through."""
+        await self.recorder.document(GAUGE_HOLES, gauge_holes(pins, recipe))
 
     async def mating_plan(self, plan: MatingPlan) -> None:
         """What was derived before the approach."""

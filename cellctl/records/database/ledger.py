@@ -1,8 +1,10 @@
-"""The hash chain: what is closed can be proved unchanged.
+"""The hash chain: what is sealed can be proved unchanged.
 
 Each entry hashes the content it seals together with the entry before it, so a change, a removal
-or an insertion breaks every later hash. A chain that somebody recomputes as a whole cannot be
-found out from the store alone; print the newest hash on the report, or keep it elsewhere.
+or an insertion breaks every later hash. The head, length and newest hash, lies in a table of its
+own, so that a chain whose newest entries were removed with what they sealed is found out too. A
+chain that somebody recomputes as a whole, head included, cannot be found out from the store alone:
+every report prints the head, and ``cellctl runs verify --head`` compares it with a printed one.
 
 The content of a run depends on the schema that wrote it (``runs.record_schema``): an old run is
 sealed and verified over the tables of its own time, which a migration leaves as they are. That
@@ -16,84 +18,138 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from cellctl.records.database import schema_1
-from cellctl.records.database.canonical import columns, digest
-from cellctl.records.database.schema import (
-    ArtefactRow,
-    DocumentRow,
-    FigureRow,
-    GaugeRow,
-    LedgerRow,
-    PassRow,
-    PhaseRow,
-    PoseRow,
-    RunRow,
-)
+from cellctl.records.database.canonical import digest
+from cellctl.records.database.schema import Base, LedgerHeadRow, LedgerRow
+from cellctl.records.database.sealed import KINDS, RUN
+from cellctl.records.seals import LedgerHead
 
 GENESIS = "0" * 64
-RUN, GAUGE = "run", "gauge"
-_DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
+_HEAD = 1
+_UNREADABLE = "unreadable"
+Key = int | str
 
 
-def seal(session: Session, kind: str, subject: int, time: datetime) -> None:
-    """Append an entry for a closed run or a gauge result."""
+def seal(session: Session, kind: str, row: Base, time: datetime) -> None:
+    """Append an entry for a row that was written or changed in this session."""
+    session.flush()  # gives a new row its number
+    _append(session, kind, getattr(row, KINDS[kind].key), time)
+
+
+def _append(session: Session, kind: str, subject: Key, time: datetime) -> None:
     last = session.scalars(select(LedgerRow).order_by(LedgerRow.number.desc()).limit(1)).first()
-    previous = last.hash if last else GENESIS
-    content = _content(session, kind, subject)
-    row = LedgerRow(time=time, kind=kind, subject=subject, content=content, previous=previous)
+    number, name = (subject, None) if isinstance(subject, int) else (0, subject)
+    row = LedgerRow(
+        time=time,
+        kind=kind,
+        subject=number,
+        name=name,
+        content=_content(session, kind, subject),
+        previous=last.hash if last else GENESIS,
+    )
     row.hash = _entry_hash(row)
     session.add(row)
+    session.flush()
+    session.merge(LedgerHeadRow(id=_HEAD, length=row.number, hash=row.hash))
 
 
-def problems(session: Session) -> Iterator[str]:
-    """Every place where the chain does not fit; nothing when all is as it was sealed."""
+def head(session: Session) -> LedgerHead:
+    """Length and newest hash as they were written down last."""
+    row = session.get(LedgerHeadRow, _HEAD)
+    return LedgerHead(0, GENESIS) if row is None else LedgerHead(row.length, row.hash)
+
+
+def seal_all(session: Session, time: datetime) -> None:
+    """Seal everything that is not sealed yet; for stores of earlier versions."""
+    sealed = {(row.kind, _subject(row)) for row in session.scalars(select(LedgerRow))}
+    for kind in KINDS:
+        for key in _keys(session, kind):
+            if (kind, key) not in sealed:
+                _append(session, kind, key, time)
+    if session.get(LedgerHeadRow, _HEAD) is None:
+        last = session.scalars(select(LedgerRow).order_by(LedgerRow.number.desc()).limit(1)).first()
+        if last is not None:
+            session.merge(LedgerHeadRow(id=_HEAD, length=last.number, hash=last.hash))
+
+
+def problems(session: Session, printed: LedgerHead | None = None) -> Iterator[str]:
+    """Every place where the chain does not fit; nothing when all is as it was sealed.
+
+    ``printed`` is a head that was printed on a report: the chain must still contain it.
+    """
+    rows = session.scalars(select(LedgerRow).order_by(LedgerRow.number)).all()
+    yield from _chain(rows)
+    newest = {(row.kind, _subject(row)): row.number for row in rows}
+    for row in rows:
+        subject, kind = _subject(row), KINDS.get(row.kind)
+        if kind is None:
+            yield f"{_entry(row)} is of an unknown kind"
+        elif kind.superseded and newest[row.kind, subject] != row.number:
+            continue
+        elif row.content != _content(session, row.kind, subject):
+            yield f"{row.kind} {subject} was changed after it was sealed"
+    for name in KINDS:
+        for key in _keys(session, name):
+            if (name, key) not in newest:
+                what = "closed but " if name == RUN else ""
+                yield f"{name} {key} is {what}not sealed"
+    hashes = {row.number: row.hash for row in rows}
+    yield from _against(head(session), hashes, "the ledger's head")
+    if printed is not None:
+        yield from _against(printed, hashes, "the head given")
+
+
+def _chain(rows: Any) -> Iterator[str]:
     previous = GENESIS
-    sealed: set[int] = set()
-    for row in session.scalars(select(LedgerRow).order_by(LedgerRow.number)):
-        what = f"ledger entry {row.number} ({row.kind} {row.subject})"
+    for row in rows:
         if row.previous != previous:
-            yield f"{what} does not follow the entry before it"
+            yield f"{_entry(row)} does not follow the entry before it"
         if row.hash != _entry_hash(row):
-            yield f"{what} was changed"
-        if row.content != _content(session, row.kind, row.subject):
-            yield f"{row.kind} {row.subject} was changed after it was sealed"
-        if row.kind == RUN:
-            sealed.add(row.subject)
+            yield f"{_entry(row)} was changed"
         previous = row.hash
-    for number in session.scalars(select(RunRow.number).where(RunRow.ended.is_not(None))):
-        if number not in sealed:
-            yield f"run {number} is closed but not sealed"
 
 
-def _content(session: Session, kind: str, subject: int) -> str:
-    row = session.get(RunRow if kind == RUN else GaugeRow, subject)
-    if row is None:
-        return ""
-    if not isinstance(row, RunRow):
-        return digest(columns(row))
-    if row.record_schema == 1:
-        document = schema_1.sealed_content(session, subject)
-        return "" if document is None else digest(document)
-    return digest(columns(row) | _details(session, subject))
+def _against(head: LedgerHead, hashes: dict[int, str], what: str) -> Iterator[str]:
+    found = hashes.get(head.length, GENESIS if not head.length and not hashes else None)
+    if found is None:
+        yield f"{what} says {head.length} entries, the ledger ends at {max(hashes, default=0)}"
+    elif found != head.hash:
+        yield f"{what} does not fit entry {head.length}"
 
 
-def _details(session: Session, run: int) -> dict[str, Any]:
-    return {
-        table.__tablename__: [
-            columns(detail)
-            for detail in session.scalars(select(table).where(table.run == run).order_by(table.id))
-        ]
-        for table in _DETAILS
-    }
+def _entry(row: LedgerRow) -> str:
+    return f"ledger entry {row.number} ({row.kind} {_subject(row)})"
+
+
+def _subject(row: LedgerRow) -> Key:
+    return row.subject if row.name is None else row.name
+
+
+def _keys(session: Session, name: str) -> Iterator[Key]:
+    """Keys of all rows of which something is to be sealed."""
+    kind = KINDS[name]
+    for key in session.scalars(select(kind.table.__table__.columns[kind.key])):
+        if _content(session, name, key):
+            yield key
+
+
+def _content(session: Session, kind: str, subject: Key) -> str:
+    """Hash of what is sealed of a subject; empty where there is nothing to be sealed."""
+    try:
+        row = KINDS[kind].row(session, subject)
+        content = None if row is None else KINDS[kind].content(session, row)
+        return "" if content is None else digest(content)
+    except (LookupError, TypeError, ValueError):
+        # A value that nobody of us has written, such as a verdict that does not exist.
+        return _UNREADABLE
 
 
 def _entry_hash(row: LedgerRow) -> str:
-    return digest(
-        {
-            "time": row.time,
-            "kind": row.kind,
-            "subject": row.subject,
-            "content": row.content,
-            "previous": row.previous,
-        }
-    )
+    content: dict[str, Any] = {
+        "time": row.time,
+        "kind": row.kind,
+        "subject": row.subject,
+        "content": row.content,
+        "previous": row.previous,
+    }
+    # Entries of schema 1 and 2 have no name, and their hashes were made without one.
+    return digest(content if row.name is None else content | {"name": row.name})

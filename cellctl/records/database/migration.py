@@ -12,9 +12,12 @@ from contextlib import closing
 from pathlib import Path
 
 from sqlalchemy import Connection, text
+from sqlalchemy.orm import Session
 
 from cellctl.atomic_files import sync_folder
+from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
+from cellctl.records.database.ledger import seal_all
 from cellctl.records.database.schema import SCHEMA_VERSION, Base
 from cellctl.records.database.schema_1.tables import PROCESS
 
@@ -81,5 +84,19 @@ def _from_1_to_2(connection: Connection) -> None:
     Base.metadata.create_all(connection)
 
 
-_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2,)
+def _from_2_to_3(connection: Connection) -> None:
+    """Seals for everything that an auditor asks for, and the head of the chain.
+
+    What earlier versions have not sealed is sealed as it is found. A change that somebody made to
+    it before is not found out; from here on every change is.
+    """
+    for table, column in (("gauges", "gauge_id VARCHAR"), ("ledger", "name VARCHAR")):
+        connection.execute(text(f"ALTER TABLE {table} ADD COLUMN {column}"))
+    Base.metadata.create_all(connection)
+    with Session(connection, join_transaction_mode="rollback_only") as session:
+        seal_all(session, utc_now())
+        session.flush()
+
+
+_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2, _from_2_to_3)
 """The first leads from schema 1 to 2."""

@@ -1,13 +1,15 @@
 """Whole runs from the tables."""
 
+from collections.abc import Iterator
 from datetime import datetime
 from typing import Any, TypeVar
 
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from cellctl.errors.records import ArtefactDamaged
+from cellctl.records.artefacts import ArtefactFolder
 from cellctl.records.database import schema_1
-from cellctl.records.database.ledger import RUN
 from cellctl.records.database.rows import existing_run, to_entry
 from cellctl.records.database.schema import (
     AlarmRow,
@@ -22,6 +24,7 @@ from cellctl.records.database.schema import (
     PoseRow,
     RunRow,
 )
+from cellctl.records.database.sealed import RUN
 from cellctl.records.entries import (
     Alarm,
     Artefact,
@@ -33,8 +36,8 @@ from cellctl.records.entries import (
     RecordedPose,
     RunHead,
     RunRecord,
-    Seal,
 )
+from cellctl.records.seals import Seal
 
 T = TypeVar("T")
 
@@ -49,7 +52,7 @@ def read_run(session: Session, number: int) -> RunRecord:
     sealed = session.scalars(
         select(LedgerRow).where(LedgerRow.kind == RUN, LedgerRow.subject == number)
     ).first()
-    gauges = {gauge.hole: gauge for gauge in _entries(session, GaugeRow, Gauge, number)}
+    gauges = _entries(session, GaugeRow, Gauge, number)
     return RunRecord(
         head=to_entry(row, RunHead),
         phases=_entries(session, PhaseRow, Phase, number),
@@ -59,9 +62,19 @@ def read_run(session: Session, number: int) -> RunRecord:
         documents=details.documents,
         artefacts=_entries(session, ArtefactRow, Artefact, number),
         alarms=_entries(session, AlarmRow, Alarm, number),
-        gauges=tuple(gauges.values()),
+        gauges=tuple({gauge.hole: gauge for gauge in gauges}.values()),
+        gauge_history=gauges,
         seal=None if sealed is None else to_entry(sealed, Seal),
     )
+
+
+def damaged_files(session: Session, files: ArtefactFolder) -> Iterator[str]:
+    """Every file of a run that is missing or not as it was stored."""
+    for row in session.scalars(select(ArtefactRow).order_by(ArtefactRow.id)):
+        try:
+            files.get(row.sha256)
+        except ArtefactDamaged as error:
+            yield f"run {row.run}, {row.name}: {error}"
 
 
 def newest_time(session: Session) -> datetime | None:

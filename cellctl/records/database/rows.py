@@ -19,6 +19,7 @@ from cellctl.records.database.schema import (
     PoseRow,
     RunRow,
 )
+from cellctl.records.database.sealed import RUN
 from cellctl.records.entries import (
     Document,
     Figure,
@@ -82,8 +83,7 @@ def close(
     # Nobody knows when an interrupted phase ended: its end stays unknown rather than invented.
     if phase is not None and result is not RunResult.INTERRUPTED:
         phase.ended = row.ended
-    session.flush()
-    ledger.seal(session, ledger.RUN, row.number, row.ended)
+    ledger.seal(session, RUN, row, row.ended)
 
 
 def active_alarm_rows() -> Select[AlarmRow]:

@@ -15,7 +15,7 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
 from cellctl.records.entries import Matrix, PassComponent, PoseOrigin, Six, Verdict
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 """``PRAGMA user_version`` of the database; see ``migration.py`` for older ones."""
 
 
@@ -184,6 +184,8 @@ class GaugeRow(Base):
     hole: Mapped[str]
     diameter_mm: Mapped[float]
     source: Mapped[str]
+    gauge_id: Mapped[str | None]
+    """Of the plug gauge itself; None in rows of schema 1 and 2."""
 
 
 class AuditRow(Base):
@@ -204,12 +206,25 @@ class LedgerRow(Base):
     number: Mapped[int] = mapped_column(primary_key=True)
     time: Mapped[datetime]
     kind: Mapped[str]
-    """``run`` or ``gauge``."""
+    """One of the kinds of ``sealed.py``."""
     subject: Mapped[int]
-    """Number of the run or id of the gauge row."""
+    """Number of the run or id of the row; 0 for a subject that has a name."""
+    name: Mapped[str | None]
+    """Of a subject without a number: the id of a calibration, the name of a value."""
     content: Mapped[str] = mapped_column(String(64))
     previous: Mapped[str] = mapped_column(String(64))
     hash: Mapped[str] = mapped_column(String(64), unique=True)
+
+
+class LedgerHeadRow(Base):
+    """Length and newest hash of the chain: a tail that was cut off shows."""
+
+    __tablename__ = "ledger_head"
+    id: Mapped[int] = mapped_column(primary_key=True)
+    """Always 1."""
+    length: Mapped[int]
+    """Number of the newest entry."""
+    hash: Mapped[str] = mapped_column(String(64))
 
 
 class ValueRow(Base):

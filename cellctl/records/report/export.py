@@ -10,6 +10,7 @@ from typing import Any
 
 from cellctl.errors.records import RecordNotWritten, ValueRefused
 from cellctl.records.entries import RunRecord
+from cellctl.records.gauges import part_verdict
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages
 from cellctl.records.report.view import build_view
@@ -44,16 +45,19 @@ def export_run(
             addresses[artefact.name] = inline if single_file else name.as_posix()
     calibrations = {stored.id: stored for stored in store.calibrations()}
     brought = pages(record, lambda artefact: store.artefacts.get(artefact.sha256))
-    page = render(build_view(record, calibrations, brought, addresses))
+    view = build_view(record, calibrations, brought, addresses, store.ledger_head())
+    page = render(view)
     _write(folder / REPORT, page.encode())
-    _write(folder / RECORD, (json.dumps(document(record), indent=1) + "\n").encode())
+    plain = {**document(record), "ledger_head": str(view.ledger_head)}
+    _write(folder / RECORD, (json.dumps(plain, indent=1) + "\n").encode())
     return folder / REPORT
 
 
 def document(record: RunRecord) -> Mapping[str, Any]:
     """A run as plain data: the head's fields beside the lists."""
     fields = asdict(record)
-    plain: dict[str, Any] = json.loads(json.dumps(fields.pop("head") | fields, default=_plain))
+    whole = fields.pop("head") | fields | {"part_verdict": part_verdict(record)}
+    plain: dict[str, Any] = json.loads(json.dumps(whole, default=_plain))
     return plain
 
 

@@ -11,6 +11,8 @@ from cellctl.records.entries import (
     RunRecord,
     Verdict,
 )
+from cellctl.records.figures import NO_LIMIT
+from cellctl.records.gauges import gauge_limits, judge_gauge
 from cellctl.records.report.sections import (
     FactList,
     Heading,
@@ -102,9 +104,14 @@ def passes(record: RunRecord) -> ReportSection:
 
 def gauges(record: RunRecord) -> ReportSection:
     """Plug gauges that a person has entered."""
-    rows = tuple(_gauge_row(entry) for entry in record.gauges)
-    table = ReportTable(("hole", "gauge mm", "measured by"), rows, numbers=False)
-    return ReportSection("Plug gauges", (table,) if rows else ())
+    return ReportSection("Plug gauges", (gauge_table(record),) if record.gauges else ())
+
+
+def gauge_table(record: RunRecord) -> ReportTable:
+    """Every gauge that was ever entered, in the order of entry; the last of each hole counts."""
+    columns = ("hole", "gauge mm", "at least", "verdict", "gauge", "measured by", "entered")
+    rows = (_gauge_row(record, entry) for entry in record.gauge_history)
+    return ReportTable(columns, tuple(rows), numbers=False)
 
 
 def unless_shown(record: RunRecord, shown: frozenset[RecordPart]) -> tuple[ReportSection, ...]:
@@ -176,6 +183,18 @@ def _pass_row(entry: LoopPass) -> TableRow:
     )
 
 
-def _gauge_row(entry: Gauge) -> TableRow:
-    texts = (entry.hole, fixed(entry.diameter_mm, 2), entry.source)
-    return TableRow(tuple(TableCell(text) for text in texts))
+def _gauge_row(record: RunRecord, entry: Gauge) -> TableRow:
+    verdict = judge_gauge(record, entry)
+    replaced = entry not in record.gauges
+    least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
+    texts = (
+        entry.hole,
+        fixed(entry.diameter_mm, 2),
+        fixed(least_mm, 2),
+        "replaced by a later entry" if replaced else _VERDICTS[verdict],
+        entry.gauge_id or MISSING,
+        entry.source,
+        when(entry.time),
+    )
+    mark = RowMark.NONE if replaced else _MARKS[verdict]
+    return TableRow(tuple(TableCell(text) for text in texts), mark)

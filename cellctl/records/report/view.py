@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from cellctl.records.entries import Calibration, Figure, RunRecord, RunResult, Verdict
+from cellctl.records.gauges import part_verdict
 from cellctl.records.report import run_sections
 from cellctl.records.report.calibration_view import (
     CalibrationLine,
@@ -16,6 +17,7 @@ from cellctl.records.report.calibration_view import (
 from cellctl.records.report.pictures import PictureGroup, picture_groups
 from cellctl.records.report.sections import ProcessPages, ReportSection, Tile
 from cellctl.records.report.text import quantity
+from cellctl.records.seals import LedgerHead
 
 MOST_TILES = 6
 """As many as fit into two rows of a printed page."""
@@ -42,6 +44,8 @@ class ReportView:
     poses: tuple[PoseLine, ...]
     after_calibration: tuple[ReportSection, ...]
     pictures: tuple[PictureGroup, ...]
+    ledger_head: LedgerHead
+    """Of the store when the report was made."""
 
 
 def build_view(
@@ -49,12 +53,10 @@ def build_view(
     calibrations: Mapping[str, Calibration],
     pages: ProcessPages,
     addresses: Mapping[str, str],
+    ledger_head: LedgerHead,
 ) -> ReportView:
     """Calibrations by identity, what the process brings, and addresses of pictures by name."""
-    result = record.head.result
-    verdict, verdict_class = (
-        ("Not closed", "bad") if result is None else _VERDICTS[RunResult(result)]
-    )
+    verdict, verdict_class = _verdict(record)
     used = [calibrations[i] for i in record.head.calibration_ids.values() if i in calibrations]
     return ReportView(
         record=record,
@@ -74,7 +76,18 @@ def build_view(
             run_sections.further_figures(record),
         ),
         pictures=picture_groups(addresses),
+        ledger_head=ledger_head,
     )
+
+
+def _verdict(record: RunRecord) -> tuple[str, str]:
+    """Words and class of the badge: how the run ended, or what the measuring room found."""
+    result = record.head.result
+    if result is None:
+        return "Not closed", "bad"
+    if part_verdict(record) != result:
+        return "Bad part: plug gauge beyond its limit", "bad"
+    return _VERDICTS[RunResult(result)]
 
 
 def _filled(*sections: ReportSection) -> tuple[ReportSection, ...]:

@@ -56,8 +56,10 @@ class PixelNoise:
     weights: Array
     """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
     strokes: csr_array
-    """Grey that each stroke adds to each pixel at one standard deviation, shape (k, n). Sparse, because
-    no more than two strokes reach a pixel: dense rows take most of the time of a fit."""
+    """Grey that each stroke adds to each pixel at one standard deviation, shape (k, n).
+
+    Sparse, because no more than two strokes reach a pixel: dense rows take most of a fit's time.
+    """
     posterior: Array
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
 

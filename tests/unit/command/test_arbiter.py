@@ -1,6 +1,8 @@
 """What the line may ask for, and what becomes of its numbers and alarms."""
 
+import asyncio
 import threading
+from dataclasses import dataclass
 from datetime import timedelta
 from typing import Any
 
@@ -16,7 +18,8 @@ from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
 from tests.unit.calibration.store.shipped import renew_calibrations
-from tests.unit.daemon_rig import DaemonRig
+from tests.unit.cell.bench import start_command
+from tests.unit.daemon_rig import DaemonRig, RigSubmission
 
 
 def audit(store: RunStore) -> list[tuple[str, str, dict[str, Any]]]:
@@ -111,6 +114,72 @@ async def test_a_disk_that_hangs_refuses_what_may_move_and_holds_nothing_up(
         assert rig.shown().alarms == (809,)
         assert await rig.take(Command.ABORT) is RejectCode.NONE
         await rig.to(State.ABORTED)
+    finally:
+        disk.set()
+
+
+async def test_an_answer_comes_after_its_audit_line_but_a_stop_waits_for_nothing(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk, write = threading.Event(), RunStore.audit
+
+    def slow(store: RunStore, *entry: Any) -> None:
+        assert disk.wait(10)
+        write(store, *entry)
+
+    monkeypatch.setattr(RunStore, "audit", slow)
+    try:
+        answer = asyncio.create_task(rig.take(Command.RESET))
+        await rig.to(State.IDLE)
+        assert not answer.done(), "executed, but not answered before it is on record"
+        assert await asyncio.wait_for(rig.take(Command.STOP), 1.0) is RejectCode.NONE
+        await rig.to(State.STOPPED)
+        assert not answer.done()
+    finally:
+        disk.set()
+    assert await answer is RejectCode.NONE
+    await rig.unit.background.drain()
+    actions = [action for _, action, _ in await rig.archive.do(audit)]
+    assert sorted(actions) == ["reset", "stop"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WithStopBehind(RigSubmission):
+    """Its client has given a Stop that waits for it."""
+
+    async def overtaken(self) -> None:
+        await self.rig.to(State.IDLE)
+
+
+async def test_a_stop_behind_a_command_does_not_wait_for_its_audit_line(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk, write = threading.Event(), RunStore.audit
+
+    def slow(store: RunStore, *entry: Any) -> None:
+        assert disk.wait(10)
+        write(store, *entry)
+
+    monkeypatch.setattr(RunStore, "audit", slow)
+    reset = start_command(cntrl_cmd=Command.RESET)
+    submission = WithStopBehind(reset, 7, rig)
+    try:
+        assert await asyncio.wait_for(rig.arbiter.submit(submission), 1.0) is RejectCode.NONE
+    finally:
+        disk.set()
+    await rig.archive.do(RunStore.runs)
+    assert [action for _, action, _ in await rig.archive.do(audit)] == ["reset"], "written anyway"
+
+
+async def test_a_disk_that_takes_no_audit_line_delays_no_answer_for_long(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    disk = threading.Event()
+    monkeypatch.setattr(RunStore, "audit", lambda *_: disk.wait(10))
+    rig.arbitrate(disk_timeout_s=0.3)
+    try:
+        assert await asyncio.wait_for(rig.take(Command.RESET), 2.0) is RejectCode.NONE
+        assert rig.shown().alarms == (809,)
     finally:
         disk.set()
 

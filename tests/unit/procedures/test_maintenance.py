@@ -66,7 +66,13 @@ async def test_a_result_that_passed_is_kept(rig: ProcedureRig, procedure: list[o
     (who, what, detail), (_, ended, end) = await rig.audit()
     assert (who, what, detail["item"]) == ("OP-3", "calibration stored", "head_1")
     assert (ended, end["outcome"]) == ("procedure ended", "good")
-    assert await rig.archive.do(RunStore.runs) == []
+    (head,) = await rig.archive.do(RunStore.runs)
+    assert (head.mode, head.result, head.recipe_id) == ("maintenance", "good", 101)
+    assert head.number == job.run_number
+    record = await rig.archive.do(RunStore.run, head.number)
+    assert record.document("calibration")["id"] == stored.id
+    assert [artefact.name for artefact in record.artefacts] == ["cell.json"]
+    assert await rig.archive.do(RunStore.verify) == []
 
 
 async def test_a_bad_result_is_put_aside_with_its_reason(

@@ -16,6 +16,7 @@ from cellctl.cli.runs import app
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import migration
+from cellctl.records.database.schema import SCHEMA_VERSION
 from cellctl.records.entries import LoopPass, PoseOrigin
 from cellctl.records.figures import figure
 from cellctl.records.report.export import export_run
@@ -223,7 +224,7 @@ def test_everything_else_is_still_there(store: RunStore) -> None:
 def test_the_store_is_backed_up_before_it_is_changed(old: Path) -> None:
     before = dump(old / "store.sqlite")
     RunStore(old, create=False).close()
-    assert version(old) == 2
+    assert version(old) == SCHEMA_VERSION
     backup = old / "store-schema-1.sqlite"
     assert dump(backup) == before
     assert not list(old.glob("*.part"))

@@ -1,6 +1,6 @@
 """Measurements and passes of the loop as entries of the record, in mm, µm and degrees."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
 )
 from cellctl.records.entries import Figure, LoopPass, PassComponent
 from cellctl.records.figures import Limit, figure
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.chi_square import ChiSquare
 from cellctl.vision.registration.part_pose import RESIDUAL_LIMIT_M
 
@@ -137,6 +138,17 @@ def seat_record(seat: SeatError) -> dict[str, Any]:
         f"{PIN_OFFSETS}_mm": dict(seat.offsets_mm),
         f"{GAP_BY_VISION}_mm": seat.gap_mm,
         f"{SEAT_ROTATION}_deg": seat.rotation_deg,
+    }
+
+
+def gauge_holes(pins: Iterable[Hole], recipe: DeckRecipe) -> dict[str, Any]:
+    """Limits of the plug gauge by hole: the offset that the recipe allows narrows the passage."""
+    return {
+        hole.name: {
+            "least_mm": hole.diameter_m / MM - recipe.seated_limit_mm,
+            "most_mm": hole.diameter_m / MM,
+        }
+        for hole in pins
     }
 
 

@@ -6,7 +6,7 @@ from cellctl.processes.deck_to_frame.report.hole_table import TABULATED, hole_bl
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.processes.deck_to_frame.report.tiles import tiles
 from cellctl.records.entries import Gauge, RunRecord
-from cellctl.records.report.run_sections import pass_table
+from cellctl.records.report.run_sections import gauge_table, pass_table
 from cellctl.records.report.sections import (
     Drawing,
     ProcessPages,
@@ -56,7 +56,8 @@ def _pin_holes(record: RunRecord) -> ReportSection:
     drawing = Drawing(plug_gauges(record.gauges), _GAUGE_CAPTION)
     columns = ("hole", "gauge mm", "offset below mm", "verdict", "measured by")
     rows = tuple(_gauge_row(gauge) for gauge in record.gauges)
-    return ReportSection("Pin holes", (drawing, ReportTable(columns, rows, numbers=False)))
+    newest = ReportTable(columns, rows, numbers=False)
+    return ReportSection("Pin holes", (drawing, newest, gauge_table(record)))
 
 
 def _gauge_row(gauge: Gauge) -> TableRow:

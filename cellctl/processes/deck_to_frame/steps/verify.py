@@ -28,13 +28,15 @@ async def verify(seat: Seated) -> Verified:
     M_T_D = deck_in_frame(seat.c1_T_M.pose, measurement.c1_T_part)
     seated = RigidTransform.from_translation([0.0, 0.0, run.recipe.deck_thickness_mm * MM])
     holes = run.facts.deck_features.holes
-    judged = [hole for hole in holes if hole.kind == "pin"] or holes
+    pins = [hole for hole in holes if hole.kind == "pin"]
     offsets_mm = {
         hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
-        for hole in judged
+        for hole in pins or holes
     }
     found = SeatError(assembly_error(seated, M_T_D), offsets_mm)
     await run.journal.verification(found, run.recipe, measurement)
+    if pins:
+        await run.journal.gauge_holes(pins, run.recipe)
     beyond = list(_beyond(found, run.recipe))
     if beyond:
         raise SeatedOffPosition("; ".join(beyond))

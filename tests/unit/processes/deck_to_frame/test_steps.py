@@ -256,6 +256,9 @@ async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
     }
     assert figures["pin_offsets.P1"].value == pytest.approx(0.03, abs=1e-5)
     assert figures["pin_offsets.P1"].verdict is Verdict.PASS
+    holes_mm = (await rig.record()).document("gauge_holes")
+    assert set(holes_mm) == {hole.name for hole in holes if hole.kind == "pin"}
+    assert holes_mm["P1"]["least_mm"] == pytest.approx(holes_mm["P1"]["most_mm"] - 0.2)
 
 
 async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:

@@ -1,0 +1,56 @@
+"""Plug gauges: which holes of a run may be gauged, and what a gauge says about the part.
+
+A process records the document ``GAUGE_HOLES`` in each run whose part can be gauged:
+``{"P1": {"least_mm": 5.8, "most_mm": 6.0}, …}``. Runs of earlier versions have none.
+"""
+
+from collections.abc import Mapping
+
+from cellctl.errors.records import GaugeRefused, ValueRefused
+from cellctl.records.entries import Gauge, RunRecord, RunResult, Verdict
+from cellctl.records.figures import NO_LIMIT, Limit
+
+GAUGE_HOLES = "gauge_holes"
+_RANGE_MM = Limit(0.5, 50.0)
+_NO_PART = frozenset({RunResult.STOPPED, RunResult.ABORTED, RunResult.INTERRUPTED})
+
+
+def gauge_limits(record: RunRecord) -> Mapping[str, Limit]:
+    """Limits of the gauge of each hole, mm; empty when the run does not say."""
+    holes = record.document(GAUGE_HOLES)
+    return {name: Limit(hole["least_mm"], hole["most_mm"]) for name, hole in holes.items()}
+
+
+def judge_gauge(record: RunRecord, gauge: Gauge) -> Verdict | None:
+    """Whether a gauge is within the limits of its hole; None when the run does not say."""
+    return gauge_limits(record).get(gauge.hole, NO_LIMIT).judge(gauge.diameter_mm)
+
+
+def part_verdict(record: RunRecord) -> str | None:
+    """What the part is, with what the measuring room found: a gauge can make a good part bad.
+
+    The result of the run itself never changes: it says how the run ended.
+    """
+    judged = {judge_gauge(record, gauge) for gauge in record.gauges}
+    if record.head.result == RunResult.GOOD and Verdict.FAIL in judged:
+        return RunResult.BAD
+    return record.head.result
+
+
+def require_plausible(hole: str, diameter_mm: float, source: str) -> None:
+    """Raise ``ValueRefused`` for what is no result of a plug gauge."""
+    if _RANGE_MM.judge(diameter_mm) is not Verdict.PASS:
+        allowed = f"allowed {_RANGE_MM.lower:g} to {_RANGE_MM.upper:g}"
+        raise ValueRefused(f"plug gauge {diameter_mm:g} mm, {allowed}")
+    if not hole or not source:
+        raise ValueRefused("a gauge result needs its hole and who measured it")
+
+
+def require_gauge(record: RunRecord, hole: str) -> None:
+    """Raise ``GaugeRefused`` for a result that cannot be of this run."""
+    head = record.head
+    if head.result in _NO_PART:
+        raise GaugeRefused(f"run {head.number} is {head.result}: it has no finished part")
+    known = record.document(GAUGE_HOLES)
+    if known and hole not in known:
+        raise GaugeRefused(f"run {head.number} has no pin hole {hole}; it has {', '.join(known)}")

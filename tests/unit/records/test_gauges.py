@@ -1,0 +1,93 @@
+"""Plug gauges: they turn the verdict, keep their history, and belong to a part that there is."""
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.runs import app
+from cellctl.errors.records import GaugeRefused
+from cellctl.records import RunResult, RunStore
+from cellctl.records.entries import Document
+from cellctl.records.gauges import GAUGE_HOLES, part_verdict
+from cellctl.records.report.export import export_run
+from tests.unit.records.conftest import start
+from tests.unit.records.page import read
+
+HOLES = {name: {"least_mm": 5.8, "most_mm": 6.0} for name in ("P1", "P5")}
+
+
+@pytest.fixture
+def run(store: RunStore) -> int:
+    """A good part with two holes that can be gauged."""
+    number = start(store)
+    store.add(number, Document(GAUGE_HOLES, HOLES))
+    store.close_run(number, RunResult.GOOD)
+    return number
+
+
+def test_a_gauge_beyond_its_limit_turns_the_verdict(store: RunStore, run: int) -> None:
+    store.set_gauge(run, "P1", 5.95, "OP-7", "PG-3")
+    assert part_verdict(store.run(run)) == "good"
+    store.set_gauge(run, "P5", 5.70, "OP-7", "PG-3")
+    record = store.run(run)
+    assert part_verdict(record) == "bad"
+    assert record.head.result == "good", "how the run ended is sealed"
+
+
+def test_a_gauge_greater_than_its_hole_turns_the_verdict_too(store: RunStore, run: int) -> None:
+    store.set_gauge(run, "P1", 6.02, "OP-7")
+    assert part_verdict(store.run(run)) == "bad"
+
+
+def test_both_entries_are_shown_everywhere(store: RunStore, run: int, tmp_path: Path) -> None:
+    store.set_gauge(run, "P5", 5.70, "OP-7", "PG-3")
+    store.set_gauge(run, "P5", 5.99, "OP-8", "PG-4")
+    record = store.run(run)
+    assert [entry.diameter_mm for entry in record.gauges] == [5.99]
+    history = [(entry.diameter_mm, entry.gauge_id) for entry in record.gauge_history]
+    assert history == [(5.70, "PG-3"), (5.99, "PG-4")]
+    page = " ".join(read(export_run(store, run, tmp_path)).texts)
+    for word in ("5.70", "PG-3", "OP-7", "5.99", "PG-4", "OP-8", "replaced by a later entry"):
+        assert word in page, word
+    document = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    assert [entry["diameter_mm"] for entry in document["gauge_history"]] == [5.70, 5.99]
+    assert document["gauge_history"][0]["time"]
+    shown = CliRunner().invoke(app, ["show", str(run), "--data-dir", str(store.path)]).stdout
+    assert "gauge 5.70 mm (OP-7)" in shown
+    assert "replaced by a later entry" in shown
+    assert "gauge 5.99 mm (OP-8)" in shown
+
+
+def test_the_report_and_show_say_bad(store: RunStore, run: int, tmp_path: Path) -> None:
+    store.set_gauge(run, "P5", 5.70, "OP-7")
+    page = " ".join(read(export_run(store, run, tmp_path)).texts)
+    assert "Bad part: plug gauge beyond its limit" in page
+    assert "Good part" not in page
+    assert json.loads((tmp_path / "run.json").read_text())["part_verdict"] == "bad"
+    shown = CliRunner().invoke(app, ["show", str(run), "--data-dir", str(store.path)]).stdout
+    assert "the part is bad: a plug gauge is beyond its limit" in shown
+
+
+def test_a_hole_that_there_is_not_is_refused(store: RunStore, run: int) -> None:
+    with pytest.raises(GaugeRefused, match="no pin hole P9; it has P1, P5"):
+        store.set_gauge(run, "P9", 5.95, "OP-7")
+    assert store.run(run).gauge_history == ()
+
+
+@pytest.mark.parametrize("result", [RunResult.ABORTED, RunResult.STOPPED, RunResult.INTERRUPTED])
+def test_a_run_without_a_part_is_refused(store: RunStore, result: RunResult) -> None:
+    number = start(store)
+    store.close_run(number, result)
+    with pytest.raises(GaugeRefused, match=f"is {result}: it has no finished part"):
+        store.set_gauge(number, "P1", 5.95, "OP-7")
+
+
+def test_the_command_tells_of_the_entry_before(store: RunStore, run: int) -> None:
+    where = ["--data-dir", str(store.path)]
+    options = ["--hole", "P5", "--source", "OP-7", "--gauge-id", "PG-3"]
+    CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.70", *options, *where])
+    told = CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.99", *options, *where]).stdout
+    assert "5.70 mm (OP-7), at least 5.80 mm: fail, gauge PG-3" in told
+    assert "5.99 mm (OP-7), at least 5.80 mm: pass" in told
