@@ -14,6 +14,8 @@ TEXT_SIZE = 9
 
 def new_figure(width: float = 12.0, height: float = 8.0) -> Figure:
     """A figure that needs no display and leaves no global state."""
+    # Not ``pyplot``: it keeps every figure until it is closed, and the workers live as long as the
+    # daemon.
     return Figure(figsize=(width, height), layout="constrained")
 
 

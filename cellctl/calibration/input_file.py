@@ -63,6 +63,8 @@ def _words(detail: ErrorDetails) -> str:
     if kind == "value_error":
         message = str(detail["ctx"]["error"])
     else:
+        # What was found belongs to the message: a comma or a unit in the wrong place is seen at
+        # once.
         message = f"{detail['msg']}, got {_shorten(repr(detail['input']))}"
     key = f" (key {place[-1]!r})" if place and isinstance(place[-1], str) else ""
     return f"{_place(place[:-1] if key else place)}{message}{key}"
@@ -89,6 +91,8 @@ def numbers(values: Any, shape: tuple[int | None, ...], what: str) -> Array:
         array = np.asarray(values, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(what) from error
+    # The shape is tested here and not left to the solver, whose error would name no key of the
+    # file.
     fits = array.ndim == len(shape) and all(
         wanted in (None, length) for wanted, length in zip(shape, array.shape, strict=True)
     )

@@ -18,6 +18,8 @@ def pose_to_record(pose: UncertainPose) -> dict[str, Any]:
     matrix_mm = pose.pose.as_matrix()
     matrix_mm[:3, 3] /= MM
     return {
+        # The matrix is what is read back. The written form beside it is for people and for
+        # controllers; at B = ±90° its angles are not unique.
         "matrix_mm": matrix_mm.tolist(),
         "xyz_abc_mm_deg": pose_to_xyzabc(pose.pose).tolist(),
         "covariance_mm_deg": covariance_to_written(pose.covariance).tolist(),
@@ -54,6 +56,8 @@ def matrix_mm_to_pose(values: Any) -> RigidTransform:
     if array.shape != (4, 4) or not np.isfinite(array).all():
         raise ValueError(_NOT_A_POSE)
     rotation = array[:3, :3]
+    # Files from other programs have few decimals, so the tolerance is wide; ``RigidTransform``
+    # makes the matrix orthogonal. A reflection would pass the first test.
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0:
         raise ValueError("the rotation part of a pose is not a rotation")
     matrix = array.copy()
