@@ -29,7 +29,7 @@ class UncertainPose:
         rotation = self.pose.rotation.as_matrix()
         arm = rotation @ other.pose.translation
         from_self = np.eye(6)
-        # Turning a by dr moves the origin of c by dr × arm = −arm × dr.
+        # A turn of the first pose by dr moves the origin of c by dr × arm = −arm × dr.
         from_self[:3, 3:] = -skew(arm)
         from_other = np.kron(np.eye(2), rotation)
         covariance = (

@@ -37,7 +37,7 @@ def _derivative(axis: int) -> Array:
 
 _BY_U, _BY_V = _derivative(0), _derivative(1)
 # Chebyshev nodes keep the error of the polynomial even over the patch. With equidistant nodes it
-# would be largest at the border, which is where the rim lies.
+# would grow towards the border, where the rim lies.
 _LINE: Array = np.cos(np.linspace(0.0, np.pi, 7))
 _NODES: Array = np.stack([axis.ravel() for axis in np.meshgrid(_LINE, _LINE)])
 _FIT: Array = np.asarray(np.linalg.pinv(_terms(*_NODES).T), dtype=float)

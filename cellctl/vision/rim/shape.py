@@ -142,8 +142,7 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     dx, dy = x - shape.centre[0], y - shape.centre[1]
     a = x * x + y * y + 1e-9
     b = dx * x + dy * y
-    # Pixels outside the rim meet no wall: the bound makes the root zero for them instead of
-    # undefined.
+    # Pixels outside the rim meet no wall: the bound keeps the root real for them.
     c = np.minimum(dx * dx + dy * dy - shape.radius**2, 0.0)
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 
