@@ -71,7 +71,7 @@ class SocketFile:
             found = self.path.lstat()
         except FileNotFoundError:
             return
-        # A wrong path in the cell file must not cost anybody a file.
+        # With a wrong path in the cell file, the file of somebody else must not be deleted.
         if not stat.S_ISSOCK(found.st_mode):
             raise FileExistsError("is no socket")
         # A dead daemon leaves its file behind. Only a connection tells it from one that is alive.

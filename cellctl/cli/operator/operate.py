@@ -122,8 +122,8 @@ def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None
 def _begin(client: DaemonClient, request: CommandRequest, *, wait: bool) -> None:
     """Give the command and wait; interrupting the wait does not end the run."""
     client.command(request)
-    # "Taken" only means that the command is being executed. Starting may still fail, for example
-    # for a calibration that has expired, and the operator must see that from the exit code.
+    # "Taken" only means that the command is being executed. Starting may still fail, and the
+    # operator must see that from the exit code.
     report = _arrived(client.settled(), _BEGUN)
     if wait:
         # Without a time-out, because nobody knows how long a person keeps a run on hold.

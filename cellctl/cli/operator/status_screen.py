@@ -97,7 +97,7 @@ def _calibrations(report: StatusReport, now: datetime) -> Table:
 def _dates(item: CalibrationReport, now: datetime) -> tuple[str, str]:
     if item.made is None or item.valid_until is None:
         return "–", "–"
-    # Whole days, rounded down: a calibration never lasts longer than the screen says.
+    # Whole days, rounded down: a calibration lasts at least as long as the screen says.
     left = max(0, (item.valid_until - now).days)
     return f"{(now - item.made).days} d", f"{left} d"
 

@@ -91,7 +91,7 @@ def next_step(law: CreepLaw, state: CreepState) -> float:
     step_m = law.period_s * error_n / (resistance + law.period_s * state.stiffness_n_m)
     stiffest = min(law.stiffness_n_m, law.stiffening_ratio * state.stiffness_n_m)
     # The contact stiffens while it closes, and no move is exactly as long as commanded. Both are
-    # allowed for before the step is made, because a step cannot be stopped half-way.
+    # allowed for before the step is made, because the force is read only after it.
     furthest_m = (law.abort_n - state.force_n) / stiffest - 3.0 * law.step_sigma_m
     bound_m = min(law.greatest_step_m, max(furthest_m, law.smallest_step_m))
     step_m = float(np.clip(step_m, -law.greatest_step_m, bound_m))
