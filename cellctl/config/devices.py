@@ -76,6 +76,12 @@ class ForceSensorConfig(DeviceConfig):
     """While armed: no sample for this long is a trip."""
     flange_age_ms: Annotated[float, Field(ge=20, le=1000)] = 100.0
     """While armed: a flange pose older than this is a trip."""
+    free_force_n: Annotated[float, Field(gt=0, le=20_000)] = 2000.0
+    """Greatest force at the sensor in moves that should touch nothing: what the load makes of their
+    acceleration and, before it was identified, of their tilt. The default fits 200 kg at 40 % of
+    rated joint speed: 1.5 kN on the fake cell."""
+    free_moment_n_m: Annotated[float, Field(gt=0, le=20_000)] = 900.0
+    """The same for moments: 0.6 kN·m on the fake cell."""
     cpu: Annotated[int, Field(ge=0, le=255)] | None = None
     """Pin the guard to this processor; off by default."""
 

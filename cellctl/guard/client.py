@@ -125,8 +125,9 @@ class GuardClient:
 
     @property
     def gravity_compensated(self) -> bool:
-        """True once a gravity compensation was set; without one nothing can be armed."""
-        return self._gravity_compensation is not None
+        """True while the weight of a load is subtracted; not after a compensation of nothing."""
+        load = (self._gravity_compensation or {"load": ()})["load"]
+        return any(any(row) for row in load)
 
     async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
         """Give wrenches in this frame from now on; drops the tare.

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.config.base import JointsDeg
@@ -38,12 +39,11 @@ async def _head_to(head: StereoStation, joints_deg: JointsDeg) -> None:
 
 async def main_to_home(cell: DeckCell) -> None:
     """The main robot with its deck clear of station and heads; off the station first if low."""
-    main = cell.main_config
-    home_rad = np.radians(main.poses_deg[HOME])
+    home_rad = np.radians(cell.main_config.poses_deg[HOME])
     if _is_at(cell.main.state(), home_rad):
         return
     await lift_off(cell)
-    await cell.main.move_joint(home_rad, speed_ratio=main.speed_percent / 100)
+    await move_joint_free(cell.cell, cell.arm, home_rad)
 
 
 def _is_at(state: RobotState, joints_rad: Array) -> bool:

@@ -124,6 +124,7 @@ class CellInMemory:
         self.digital_ios: dict[str, Any] = {}
         self.guard = TinyGuard()
         self.guards = {"force": self.guard}
+        self.main.watched_by = self.guard
         self.workers = InlineWorkers()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}

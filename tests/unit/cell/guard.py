@@ -20,6 +20,7 @@ class TinyGuard:
     serial: str = SENSOR
     trip: GuardTrip | None = None
     gravity_compensated: bool = True
+    armed: bool = False
     limits: list[GuardLimits] = field(default_factory=list)
     """Of every arming."""
     asked: list[str] = field(default_factory=list)
@@ -49,17 +50,19 @@ class TinyGuard:
 
     async def arm(self, limits: GuardLimits) -> None:
         self._do("arm")
+        self.armed = True
         self.limits.append(limits)
 
     async def disarm(self) -> None:
         self._do("disarm")
+        self.armed = False
 
     async def stop_robot(self) -> None:
         self._do("stop_robot")
 
     async def acknowledge(self) -> None:
         self._do("acknowledge")
-        self.trip = None
+        self.armed, self.trip = False, None
 
     def samples(self, since_s: float) -> GuardSamples:
         count = len(self.raw)

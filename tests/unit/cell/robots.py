@@ -12,6 +12,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed, TargetOutOfBounds
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, RobotMode, RobotState
+from tests.unit.cell.guard import TinyGuard
 
 FAR_M = 5.0
 
@@ -45,6 +46,8 @@ class StillRobot(Robot):
     """Fields of the state that differ."""
     latched: bool = False
     stops: int = 0
+    watched_by: TinyGuard | None = None
+    """No move may begin while this guard is not armed."""
 
     async def connect(self) -> None:
         self._meet("connect")
@@ -103,6 +106,7 @@ class StillRobot(Robot):
         if self.latched:
             raise NotRearmed(self.name)
         self._meet("move")
+        assert self.watched_by is None or self.watched_by.armed, "a move without the force guard"
         self.moves.append(move)
         self.on_the_way.set()
         try:

@@ -1,5 +1,7 @@
 """Away from the frame after a fault or a false seat, watched for whatever holds the deck."""
 
+from scipy.spatial.transform import RigidTransform
+
 from cellctl.cell.guarded_moves import Motion
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.approach import advance
@@ -19,10 +21,23 @@ async def back_off(attempt: Attempt) -> None:
     fault without moving when it gives no live readings, ``LiftOffHeld`` when something holds the
     deck, and the robot's fault when it cannot move.
     """
+    here = attempt.robot.state().base_T_flange
+    back_m = min(attempt.plan.settings.back_off_m, attempt.plan.travel_of(here))
+    target = advance(here, attempt.plan.flange_T_deck, -back_m)
+    await _leave(attempt, here, target, back_m)
+
+
+async def return_to_stand_off(attempt: Attempt) -> None:
+    """The same, but all the way to the stand-off of the plan."""
+    here, plan = attempt.robot.state().base_T_flange, attempt.plan
+    await _leave(attempt, here, plan.base_T_flange, plan.travel_of(here))
+
+
+async def _leave(
+    attempt: Attempt, here: RigidTransform, target: RigidTransform, back_m: float
+) -> None:
     plan, settings = attempt.plan, attempt.plan.settings
     attempt.raise_trip()
-    here = attempt.robot.state().base_T_flange
-    back_m = min(settings.back_off_m, plan.travel_of(here))
     if back_m <= settings.smallest_step_m:
         await attempt.guard.disarm()
         return
@@ -34,7 +49,7 @@ async def back_off(attempt: Attempt) -> None:
     await _move(attempt, attempt.robot.step(pose, speed_m_s=first_speed_m_s(settings)))
     if back_m > first_m:
         motion = attempt.robot.move_linear(
-            advance(here, plan.flange_T_deck, -back_m),
+            target,
             speed_m_s=settings.back_off_speed_m_s,
             acceleration_m_s2=settings.acceleration_m_s2,
         )

@@ -6,9 +6,11 @@ from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.force import CommissioningFailed, FalseSeat
 from cellctl.force.contact.commissioning import StiffnessEstimate, joint_stiffness
 from cellctl.interfaces import Robot
-from cellctl.processes.deck_to_frame.mating.attempt import Report
+from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report
+from cellctl.processes.deck_to_frame.mating.back_off import return_to_stand_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult
 
 
@@ -38,11 +40,8 @@ async def measure_contact_stiffness(
         if result.outcome is not MatingOutcome.SEATED:
             gap_mm = result.verdict.gap_m * 1e3
             raise FalseSeat(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)
-        await robot.move_linear(
-            plan.base_T_flange,
-            speed_m_s=plan.settings.back_off_speed_m_s,
-            acceleration_m_s2=plan.settings.acceleration_m_s2,
-        )
+        async with Recorder(robot, guard, plan) as recorder:
+            await return_to_stand_off(Attempt(robot, guard, plan, recorder, report))
         if result.stiffness is None:
             raise CommissioningFailed("a contact gave too few readings for a stiffness")
         results.append(result)

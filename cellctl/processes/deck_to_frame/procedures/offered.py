@@ -10,6 +10,7 @@ from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.cell.free_moves import free_tolerance, watched
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM
 from cellctl.procedures.base_frame import AxisTurns, calibrate_base
@@ -123,16 +124,17 @@ class _OnCell:
         # The check of the cell file saw to it that the robot states both lengths.
         arm = ArmGeometry(d1_m=(main.d1_mm or 0.0) * MM, a1_m=(main.a1_mm or 0.0) * MM)
         await clear_the_cell(cell, context.board)
-        return await calibrate_base(
-            context,
-            cell.main,
-            cell.tracker,
-            cell.workers,
-            turns=turns,
-            arm=arm,
-            kind=BASE_FRAME,
-            go_home=partial(main_to_home, cell),
-        )
+        async with watched(cell.arm, free_tolerance(cell.arm)):
+            return await calibrate_base(
+                context,
+                cell.main,
+                cell.tracker,
+                cell.workers,
+                turns=turns,
+                arm=arm,
+                kind=BASE_FRAME,
+                go_home=partial(main_to_home, cell),
+            )
 
     async def board(self, head: str, context: ProcedureContext) -> ProcedureOutcome | None:
         """104, 105."""
@@ -144,20 +146,22 @@ class _OnCell:
         """106: home holds the deck in the mating orientation, high above the frame."""
         cell, settings = self._cell, self._cell.settings
         await clear_the_cell(cell, context.board)
-        return await identify_payload_on_cell(
-            context,
-            cell.arm,
-            cell.workers,
-            pose_count=settings.payload_poses,
-            cone_deg=settings.payload_cone_deg,
-            kind=PAYLOAD,
-        )
+        async with watched(cell.arm, free_tolerance(cell.arm)):
+            return await identify_payload_on_cell(
+                context,
+                cell.arm,
+                cell.workers,
+                pose_count=settings.payload_poses,
+                cone_deg=settings.payload_cone_deg,
+                kind=PAYLOAD,
+            )
 
     async def stop_latency(self, context: ProcedureContext) -> ProcedureOutcome:
         """107."""
         cell = self._cell
         await clear_the_cell(cell, context.board)
         bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.recipes)
-        return await measure_stop_latency_on_cell(
-            context, cell.main, cell.workers, bound_ms=bound_ms, kind=STOP_LATENCY
-        )
+        async with watched(cell.arm, free_tolerance(cell.arm)):
+            return await measure_stop_latency_on_cell(
+                context, cell.main, cell.workers, bound_ms=bound_ms, kind=STOP_LATENCY
+            )

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -15,9 +16,8 @@ async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     """Bring the deck above the station, measure it, and solve its pose on the flange."""
     run = frame.run
     main, config = run.cell.main, run.cell.main_config
-    await main.move_joint(
-        np.radians(config.poses_deg[DECK_MEASURE]), speed_ratio=config.speed_percent / 100
-    )
+    above_rad = np.radians(config.poses_deg[DECK_MEASURE])
+    await move_joint_free(run.cell.cell, run.cell.arm, above_rad)
     await settle(run.cell.guard)
     nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
     predicted = run.base_T_c1.inv() * main.state().base_T_flange * nominal

@@ -1,6 +1,7 @@
 """Guarded moves on simulated time, with the swing of the load and real contact: no false alarm."""
 
 from contextlib import nullcontext
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -12,6 +13,7 @@ from benchmarks.campaign_mating_cell import MatingCell
 from benchmarks.campaign_mating_loop import run_simulated
 from benchmarks.campaign_mating_trial import nominal_settings, plan_for
 from cellctl.cell.devices import Cell
+from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded
@@ -100,3 +102,25 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
     assert stopped[2] > 1.5e-3, "where it met the frame, and no farther"
     assert world.controller.latched
     assert not world.arm.moving(world.world.time_s)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("free_force_n", [2000.0, 300.0])
+def test_a_joint_move_at_the_taught_speed_is_watched_and_its_inertia_allowed(
+    free_force_n: float,
+) -> None:
+    world = MatingCell(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    cell = cell_of(world)
+    sensor = cell.arm.sensor.model_copy(update={"free_force_n": free_force_n})
+    home_rad = np.radians(cell.main_config.poses_deg["home"])
+
+    async def go_home() -> None:
+        await move_joint_free(cell.cell, replace(cell.arm, sensor=sensor), home_rad)
+
+    if free_force_n > 1000.0:
+        run_simulated(world.start_s, world.advance, go_home)
+        np.testing.assert_allclose(world.arm.joints(world.world.time_s), home_rad, atol=1e-6)
+        return
+    with pytest.raises(ForceLimitExceeded):
+        run_simulated(world.start_s, world.advance, go_home)
+    assert world.controller.latched

@@ -56,7 +56,7 @@ class Scene:
     def __init__(self, **looks: Any) -> None:
         self.plan = plan()
         self.robot = StillRobot("main", flange=self.plan.pose_at(TRAVEL_M), looks=looks)
-        self.guard = Guard()
+        self.guard = self.robot.watched_by = Guard()
         recorder = SimpleNamespace(curve=curve, travel_at=lambda _: TRAVEL_M)
         self.attempt = Attempt(
             self.robot, self.guard, self.plan, cast(Recorder, recorder), lambda _: None

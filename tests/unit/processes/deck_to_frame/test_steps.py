@@ -102,7 +102,7 @@ async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
     assert down.speed == pytest.approx(stand_off.run.recipe.mating.fast_speed_mm_s * 1e-3)
     height_mm = (above.target.translation - down.target.translation)[2] * 1e3
     assert height_mm == pytest.approx(stand_off.run.recipe.station_tolerance_mm, rel=1e-4)
-    wide, tight = rig.bench.cell.guard.limits
+    _, wide, tight = rig.bench.cell.guard.limits
     assert wide.filtered[2] == pytest.approx(2 * 200.0 * 0.2 + 50.0)
     assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 50.0)
     assert rig.bench.cell.guard.asked.count("tare") == 2

@@ -1,0 +1,54 @@
+"""Moves where nothing should be touched, under the force guard: home, measuring, procedures."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.devices import Cell
+from cellctl.cell.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_moves import TARE_S, WrenchTolerance, guarded
+from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.settling import settle
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.geometry.pose import Array
+
+
+@asynccontextmanager
+async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterator[None]:
+    """Arm the guard with limits on the wrench at the sensor; disarm it after a good end.
+
+    A trip stops the robot at once, and whoever supervises the guard has its fault. Without a
+    gravity compensation the wrench at the beginning, at standstill, is taken as zero, and the
+    tolerance must cover what the load makes of every turn. Raises ``NotSettled`` and
+    ``GuardRefused``: without a working guard nothing moves.
+    """
+    guard = arm.guard
+    await guard.disarm()
+    await guard.set_wrench_frame(RigidTransform.identity())
+    if not guard.gravity_compensated:
+        await guard.set_gravity_compensation(GravityCompensation.none())
+        await settle(guard)
+        await guard.tare(TARE_S)
+    force_n, moment_n_m = tolerance.force_n, tolerance.moment_n_m
+    filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
+    await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+    yield
+    await guard.disarm()
+
+
+async def move_joint_free(cell: Cell, arm: GuardedRobot, joints_rad: Array) -> None:
+    """To taught joints, shape (6,), at the robot's taught speed; raises the fault of a trip."""
+    tolerance = free_tolerance(arm)
+    motion = arm.robot.move_joint
+    with cell.trips_awaited(arm.sensor_name):
+        async with watched(arm, tolerance):
+            speed_ratio = arm.config.speed_percent / 100
+            trip = await guarded(arm.robot, arm.guard, motion(joints_rad, speed_ratio=speed_ratio))
+            if trip is not None:
+                raise trip.fault()
+
+
+def free_tolerance(arm: GuardedRobot) -> WrenchTolerance:
+    """What the load may make of acceleration and tilt at the robot's taught speed."""
+    return WrenchTolerance(arm.sensor.free_force_n, arm.sensor.free_moment_n_m)
