@@ -103,6 +103,10 @@ class Cell:
         checks |= {f"force_sensors.{name}": guard.check for name, guard in self.guards.items()}
         return checks
 
+    def incidents(self) -> list[CellError]:
+        """What the drivers have noticed beside their work since the last call."""
+        return [one for device in self._by_path().values() for one in device.incidents()]
+
     async def ask_silent_devices(self) -> None:
         """Have each device answer that reports nothing by itself; fills ``unanswered``.
 

@@ -58,10 +58,14 @@ class CommandArbiter:
         The submission hears of the command's end, which may come before this returns. Raises the
         numbered fault of a device that broke.
         """
-        if submission.command.ends_motion:
+        command = submission.command
+        if command.ends_motion:
             return await self._end_motion(submission)
         code = await submission.unless_overtaken(self._validate(submission))
-        code = code or await self._execute(submission)
+        if code is not RejectCode.NONE:
+            self._unit.machine.refused(command.cntrl_cmd, code, command.unit_mode)
+            return code
+        code = await self._execute(submission)
         if code is RejectCode.NONE:
             await submission.or_overtaken(self._written(submission))
         return code
@@ -86,6 +90,7 @@ class CommandArbiter:
             # Another command may have been executed while this one waited for disk and turn.
             code = self._validator.validate_turn(command)
             if code is not RejectCode.NONE:
+                self._unit.machine.refused(command.cntrl_cmd, code, command.unit_mode)
                 return code
             # Accepted inside the turn: of two Starts that were validated at the same time, the one
             # that is refused below must not leave its parameters behind for the other one's job.

@@ -51,7 +51,10 @@ class CommandTracker:
         command, machine = submission.command, self._machine
         if command.unit_mode not in (0, machine.mode) and not command.ends_motion:
             code = validate_in_new_mode(command, machine.state)
-            code = code or await machine.set_mode(command.unit_mode)
+            if code is not RejectCode.NONE:
+                machine.refused(command.cntrl_cmd, code)
+                return code
+            code = await machine.set_mode(command.unit_mode)
             if code is not RejectCode.NONE:
                 return code
         if command.cntrl_cmd == Command.UNDEFINED and (command.unit_mode or command.alarm_ack_id):

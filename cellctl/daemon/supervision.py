@@ -84,6 +84,8 @@ class LinkMonitor:
                     await self._unit.machine.fail(error)
             else:
                 self._broken.discard(name)
+        for incident in self._cell.incidents():
+            await self._unit.machine.fail(incident)
         for name, guard in self._cell.guards.items():
             await self._look_at_trip(name, guard.trip)
             await self._look_at_real_time(name, guard.health().degraded)

@@ -71,6 +71,20 @@ class StaleData(LinkError):
     remedy = "Check the device's program and load; then Clear and Reset."
 
 
+class CallerRefused(LinkError):
+    """Somebody who is not the device called on its port."""
+
+    number = 212
+    text = "A stranger called on the port of a device and was refused"
+    cause = (
+        "Another controller with wrong settings, or a program that should not be in this network."
+    )
+    remedy = (
+        "Find the caller by its address; correct the device's address in the cell file if it moved."
+    )
+    reaction = Reaction.WARN
+
+
 class DeviceFault(LinkError):
     """A device answered, but with a fault of its own."""
 

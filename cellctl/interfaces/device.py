@@ -4,6 +4,8 @@ from abc import ABC, abstractmethod
 from types import TracebackType
 from typing import Self
 
+from cellctl.errors.base import CellError
+
 
 class Device(ABC):
     """A device of the daemon's event loop."""
@@ -18,6 +20,13 @@ class Device(ABC):
     @abstractmethod
     async def disconnect(self) -> None:
         """Drop the link. Idempotent, in any state."""
+
+    def incidents(self) -> tuple[CellError, ...]:
+        """What its driver has noticed beside its work since the last call, such as a stranger.
+
+        Supervision asks a few times a second and makes alarms of them.
+        """
+        return ()
 
     async def __aenter__(self) -> Self:
         await self.connect()

@@ -14,7 +14,7 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.packml.tables import ON_COMMAND, requested
-from cellctl.packml.validation import Refusal, validate_command, validate_mode
+from cellctl.packml.validation import MODE_REQUEST, Refusal, validate_command, validate_mode
 
 Gate = Callable[[State, Command], RejectCode]
 
@@ -61,6 +61,8 @@ class PackMLMachine:
         self._changed = asyncio.Event()
         self._reactions: set[asyncio.Task[None]] = set()
         self._faults: list[CellError] = []
+        self.mode_since_s = self.state_since_s = now_s()
+        """Monotonic time of the last change of mode and of state."""
         self.refusals: deque[Refusal] = deque(maxlen=8)
         self.on_change: list[Callable[[State, State], None]] = []
         self.on_fault: list[Callable[[CellError], None]] = []
@@ -119,7 +121,7 @@ class PackMLMachine:
                 if code is RejectCode.NONE:
                     self._execute(Command(command))
         if code is not RejectCode.NONE:
-            self._refused(f"command {command}", code)
+            self.refused(command, code)
         return code
 
     async def set_mode(self, mode: int) -> RejectCode:
@@ -127,10 +129,12 @@ class PackMLMachine:
         async with self._turn:
             code = validate_mode(self.state, mode)
             if code is RejectCode.NONE:
+                if mode != self._mode:
+                    self.mode_since_s = now_s()
                 self._mode = Mode(mode)
                 self._announce()
         if code is not RejectCode.NONE:
-            self._refused(f"mode {mode}", code)
+            self.refused(0, code, mode)
         return code
 
     async def safe_point(self) -> bool:
@@ -214,6 +218,7 @@ class PackMLMachine:
         state = self._chart.complete() if command is None else self._chart.command(command)
         if state is not State.EXECUTE and state not in _BEFORE_EXECUTE:
             self._pause = None
+        self.state_since_s = now_s()
         self._activities.follow(previous, state)
         self._announce(previous)
 
@@ -260,8 +265,15 @@ class PackMLMachine:
         for observer in self.on_fault:
             observer(error)
 
-    def _refused(self, request: str, code: RejectCode) -> None:
-        self.refusals.append(Refusal(now_s(), self._mode, self.state, request, code))
+    def refused(self, command: int, code: RejectCode, mode: int = 0) -> None:
+        """Keep a refusal; also called by whoever refuses before the machine is asked.
+
+        A refused ``mode`` is given where there is no command.
+        """
+        request, number = f"command {command}", command
+        if not command and mode:
+            request, number = f"mode {mode}", MODE_REQUEST + mode
+        self.refusals.append(Refusal(now_s(), self._mode, self.state, request, code, number))
 
     def _announce(self, previous: State | None = None) -> None:
         self._changed.set()

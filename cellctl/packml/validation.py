@@ -12,6 +12,9 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.packml.tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND
 
+MODE_REQUEST = 0x100
+"""Added to the number of a mode, so that it is no command."""
+
 
 @dataclass(frozen=True, slots=True)
 class Refusal:
@@ -23,6 +26,8 @@ class Refusal:
     state: State
     request: str
     code: RejectCode
+    number: int = 0
+    """Of the command that was refused; of a mode ``MODE_REQUEST`` more than that."""
 
 
 def validate_command(state: State, mode: Mode, command: int) -> RejectCode:

@@ -4,10 +4,24 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from cellctl.packml.mode import Mode
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 
 NO_VALUE = float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class ShownRefusal:
+    """A command or a mode that was refused."""
+
+    age_s: float
+    mode: Mode
+    """Of the unit, at that moment."""
+    state: State
+    request: int
+    """Number of the command; of a mode 0x100 more than that."""
+    code: RejectCode
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,3 +60,9 @@ class CellStatus:
     force_z_n: float = NO_VALUE
     force_limit_n: float = NO_VALUE
     serial: str = ""
+    mode_time_s: float = 0.0
+    """Since the mode changed last: ModeTimeCurrent."""
+    state_time_s: float = 0.0
+    """Since the state changed last: StateTimeCurrent."""
+    refusals: tuple[ShownRefusal, ...] = ()
+    """The last eight at most, the newest first."""

@@ -2,6 +2,7 @@
 
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
+from cellctl.clock import now_s
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
@@ -9,7 +10,7 @@ from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.runtime.alarms import Alarms
-from cellctl.runtime.cell_status import NO_VALUE, CellStatus
+from cellctl.runtime.cell_status import NO_VALUE, CellStatus, ShownRefusal
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_factory import JobFactory
 from cellctl.runtime.progress import ProgressBoard
@@ -37,7 +38,7 @@ class StatusView:
 
     def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
         """Everything at this moment; ``job`` is the present or the last one."""
-        machine, progress = self._machine, self._board.current
+        machine, progress, time_s = self._machine, self._board.current, now_s()
         faults = machine.faults
         alarms = tuple(dict.fromkeys((*self._alarms.numbers, *(f.number for f in faults))))
         return CellStatus(
@@ -68,6 +69,12 @@ class StatusView:
             force_z_n=self._force_z_n(),
             force_limit_n=progress.force_limit_n,
             serial=job.serial if job else "",
+            mode_time_s=time_s - machine.mode_since_s,
+            state_time_s=time_s - machine.state_since_s,
+            refusals=tuple(
+                ShownRefusal(time_s - one.time_s, one.mode, one.state, one.number, one.code)
+                for one in reversed(machine.refusals)
+            ),
         )
 
     def _may_start(self) -> bool:

@@ -21,19 +21,22 @@ class Peer:
         self.count = 0
 
     @classmethod
-    async def connect(cls, port: int) -> Self:
-        """Try until the driver listens, at most two seconds."""
+    async def connect(cls, port: int, address: str = "127.0.0.1") -> Self:
+        """Try until the driver listens, at most two seconds; from an address of this machine."""
+        source = (address, 0)
         async with asyncio.timeout(2):
             while True:
                 try:
-                    return cls(*await asyncio.open_connection("127.0.0.1", port))
+                    return cls(*await asyncio.open_connection("127.0.0.1", port, local_addr=source))
                 except ConnectionRefusedError:
                     await asyncio.sleep(0.01)
 
     @classmethod
-    async def greeted(cls, port: int, channel: str, option: str = "") -> Self:
+    async def greeted(
+        cls, port: int, channel: str, option: str = "", address: str = "127.0.0.1"
+    ) -> Self:
         """Connected and accepted."""
-        peer = await cls.connect(port)
+        peer = await cls.connect(port, address)
         await peer.hello(channel, option=option)
         return peer
 

@@ -55,3 +55,24 @@ def test_bounds_are_not_optional(bound: str) -> None:
 def test_the_guard_needs_its_own_port() -> None:
     with pytest.raises(ValidationError, match="guard_port"):
         SiasunStopChannelConfig.model_validate({"robot_name": "SR500A"})
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.168.20.1", "::"])
+def test_a_port_that_others_reach_needs_the_address_of_the_robot(host: str) -> None:
+    with pytest.raises(ValidationError, match="robot_address"):
+        SiasunConfig.model_validate(GOOD | {"listen_host": host})
+    named = SiasunConfig.model_validate(
+        GOOD | {"listen_host": host, "robot_address": "192.168.20.11"}
+    )
+    assert named.robot_address == "192.168.20.11"
+
+
+@pytest.mark.parametrize("host", ["127.0.0.1", "::1", "localhost"])
+def test_a_port_of_this_pc_alone_needs_none(host: str) -> None:
+    assert SiasunConfig.model_validate(GOOD | {"listen_host": host}).robot_address == ""
+
+
+@pytest.mark.parametrize("address", ["192.168.20.999", "robot.local"])
+def test_the_address_of_the_robot_is_an_address(address: str) -> None:
+    with pytest.raises(ValidationError, match=r"robot_address|IPv4"):
+        SiasunConfig.model_validate(GOOD | {"robot_address": address})

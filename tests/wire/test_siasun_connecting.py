@@ -5,6 +5,7 @@ import asyncio
 import pytest
 
 from cellctl.errors.link import (
+    CallerRefused,
     ConnectTimeout,
     LinkLost,
     PortInUse,
@@ -30,6 +31,28 @@ async def test_disconnect_ends_a_pending_connect() -> None:
         with pytest.raises(LinkLost):
             await connecting
     await peer.close()
+
+
+async def test_an_impostor_is_refused_and_reported_and_the_robot_is_not_kept_out() -> None:
+    settings = config(robot_address="127.0.0.2")
+    robot = SiasunRobot("main", settings)
+    connecting = asyncio.create_task(robot.connect())
+    for _ in range(2):
+        impostor = await Peer.connect(settings.state_port)
+        impostor.stat()
+        await impostor.closed()
+        await impostor.close()
+    sta = await Peer.greeted(settings.state_port, "STA", address="127.0.0.2")
+    cmd = await Peer.greeted(settings.command_port, "CMD", address="127.0.0.2")
+    sta.stat()
+    await connecting
+    (refused,) = robot.incidents()
+    assert isinstance(refused, CallerRefused)
+    assert refused.detail == "SR500A STA: 127.0.0.1 called, the robot is 127.0.0.2"
+    assert robot.incidents() == ()
+    await robot.disconnect()
+    for peer in (cmd, sta):
+        await peer.close()
 
 
 async def test_port_in_use() -> None:

@@ -163,6 +163,23 @@ async def test_wrong_robot() -> None:
     await peer.close()
 
 
+async def test_an_impostor_on_the_port_of_the_guard_is_refused_and_named() -> None:
+    settings = config(0.5).model_copy(update={"robot_address": "127.0.0.2"})
+    channel = SiasunStopChannel(settings)
+    opening = asyncio.create_task(asyncio.to_thread(channel.open))
+    impostor = await Peer.connect(settings.guard_port)
+    await impostor.closed()
+    await impostor.close()
+    with pytest.raises(ConnectTimeout, match=r"refused: 127\.0\.0\.1"):
+        await opening
+    opening = asyncio.create_task(asyncio.to_thread(channel.open))
+    peer = await Peer.connect(settings.guard_port, "127.0.0.2")
+    await peer.hello("GRD")
+    await opening
+    channel.close()
+    await peer.close()
+
+
 async def test_a_stranger_does_not_block_the_robot() -> None:
     settings = config()
     channel = SiasunStopChannel(settings)

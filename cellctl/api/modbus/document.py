@@ -19,6 +19,7 @@ _HISTORY = (
         "added at 74-79; seq_tail moved to 124, the end of the block, to stay there",
     ),
     (3, "status bit 12, stop_not_confirmed"),
+    (4, "mode_time, state_time and the last eight refusals added at 80-115"),
 )
 _RESULTS = {
     Result.NONE: "not ended",

@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 3
+MAP_VERSION = 4
 
 
 class Kind(StrEnum):
@@ -86,6 +86,24 @@ _PEAKS = tuple(
     )
     for index, axis in enumerate(("fx", "fy", "fz", "mx", "my", "mz"))
 )
+REFUSALS = 8
+_REFUSALS = tuple(
+    Item(
+        84 + 4 * index + offset,
+        f"refusal_{index + 1}_{what}",
+        f"refusal {index + 1}: {text}",
+        unit=unit,
+    )
+    for index in range(REFUSALS)
+    for offset, (what, unit, text) in enumerate(
+        (
+            ("age", "s", "how long ago; 65535 is that long or longer"),
+            ("where", "", "mode x 256 + state at that moment"),
+            ("request", "", "PackML command, or 0x100 + mode"),
+            ("code", "", "reject code; 0 where there is no refusal"),
+        )
+    )
+)
 
 INPUT: tuple[Item, ...] = (
     Item(0, "seq_head", "equal to seq_tail when the block is of one piece"),
@@ -117,6 +135,9 @@ INPUT: tuple[Item, ...] = (
     _i32(75, "force_z", "mN", "present force on the deck along its z, gravity removed"),
     _i32(77, "force_limit", "mN", "its limit in the present recipe"),
     Item(79, "run_result", "of run_number: 0 open, else as the results"),
+    Item(80, "mode_time", "since the mode changed: PackML ModeTimeCurrent", Kind.U32, "s", 2),
+    Item(82, "state_time", "since the state changed: PackML StateTimeCurrent", Kind.U32, "s", 2),
+    *_REFUSALS,
     Item(124, "seq_tail", "equal to seq_head; will stay at 124"),
 )
 

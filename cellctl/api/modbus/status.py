@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 from cellctl.api.modbus.image import Value, millionths, thousandths
-from cellctl.api.modbus.register_map import MAP_VERSION, STATUS_BITS, VALIDITY_REGISTERS
+from cellctl.api.modbus.register_map import MAP_VERSION, REFUSALS, STATUS_BITS, VALIDITY_REGISTERS
 from cellctl.runtime.cell_status import CellStatus
 
 _BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}
 _AXES = ("x", "y", "z", "rx", "ry", "rz")
 _WRENCH = ("fx", "fy", "fz", "mx", "my", "mz")
-_U16_MAX = 0xFFFF
+_U16_MAX, _U32_MAX = 0xFFFF, 0xFFFF_FFFF
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,10 +64,32 @@ def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Valu
         "force_z": thousandths(status.force_z_n),
         "force_limit": thousandths(status.force_limit_n),
         "serial_echo": status.serial,
+        "mode_time": min(_U32_MAX, int(status.mode_time_s)),
+        "state_time": min(_U32_MAX, int(status.state_time_s)),
+        **_refusals(status),
         "test_u32": 0x12345678,
         "test_f32": 123.456,
         "test_text": "ABCDEF",
     }
+
+
+def _refusals(status: CellStatus) -> dict[str, Value]:
+    found: dict[str, Value] = {}
+    for index in range(REFUSALS):
+        entry = status.refusals[index] if index < len(status.refusals) else None
+        registers = (
+            (0, 0, 0, 0)
+            if entry is None
+            else (
+                min(_U16_MAX, int(entry.age_s)),
+                entry.mode << 8 | entry.state,
+                min(_U16_MAX, entry.request),
+                int(entry.code),
+            )
+        )
+        names = (f"refusal_{index + 1}_{what}" for what in ("age", "where", "request", "code"))
+        found |= dict(zip(names, registers, strict=True))
+    return found
 
 
 def _status_word(status: CellStatus, handshake: Handshake) -> int:

@@ -22,6 +22,7 @@ class CommandChannel:
             "CMD",
             config.robot_name,
             max_deadman_s=config.max_deadman_s,
+            robot_address=config.robot_address,
             on_up=self._up,
             on_record=self._take,
             on_lost=on_lost,

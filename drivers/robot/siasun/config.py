@@ -1,5 +1,6 @@
 """The settings of a SIASUN robot in the cell file. mm, degrees, mm/s, seconds."""
 
+from ipaddress import ip_address, ip_network
 from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -17,9 +18,20 @@ class _Section(BaseModel):
     """Address of this PC that the job programs connect to."""
     robot_name: Annotated[str, Field(pattern=r"^[A-Z0-9_-]{1,16}$")]
     """The name the controller must give in its hello."""
+    robot_address: str = ""
+    """Address of the controller, or a network; others are refused. Not needed on loopback."""
     connect_timeout_s: Seconds = 10.0
     max_deadman_s: Seconds = 0.5
     """A job program that would keep moving longer than this without a heartbeat is refused."""
+
+    @model_validator(mode="after")
+    def _robot_is_known(self) -> Self:
+        if self.robot_address:
+            ip_network(self.robot_address, strict=False)
+        elif not _is_loopback(self.listen_host):
+            # The protocol has no password, so a name alone would let anybody be the robot.
+            raise ValueError(f"robot_address is needed when listening on {self.listen_host}")
+        return self
 
 
 class SiasunConfig(_Section):
@@ -76,3 +88,7 @@ class SiasunStopChannelConfig(_Section):
     """The guard's own channel to the same controller."""
 
     guard_port: Port
+
+
+def _is_loopback(host: str) -> bool:
+    return host == "localhost" or ip_address(host).is_loopback

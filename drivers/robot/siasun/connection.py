@@ -7,6 +7,7 @@ import socket
 from collections.abc import Callable
 
 from cellctl.errors.link import (
+    CallerRefused,
     ConnectTimeout,
     LinkError,
     LinkLost,
@@ -15,10 +16,13 @@ from cellctl.errors.link import (
 )
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.decoder import RecordReader
-from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
+from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
 from drivers.robot.siasun.records import Hello, Record
 
 _log = logging.getLogger(__name__)
+
+MOST_STRANGERS = 16
+"""Addresses that are remembered: a scan of the network must fill neither memory nor alarms."""
 
 
 class SjlChannel:
@@ -34,6 +38,7 @@ class SjlChannel:
         robot: str,
         *,
         max_deadman_s: float,
+        robot_address: str,
         on_up: Callable[[], None],
         on_record: Callable[[Record], None],
         on_lost: Callable[[LinkError], None],
@@ -43,6 +48,9 @@ class SjlChannel:
         self._channel = channel
         self._robot = robot
         self._max_deadman_s = max_deadman_s
+        self._robot_address = robot_address
+        self._strangers: dict[str, CallerRefused | None] = {}
+        """By address; None once it was told."""
         self._on_up = on_up
         self._on_record = on_record
         self._on_lost = on_lost
@@ -60,10 +68,17 @@ class SjlChannel:
     def __str__(self) -> str:
         return f"{self._robot} {self._channel}"
 
+    def incidents(self) -> tuple[CallerRefused, ...]:
+        """Strangers that have called since the last call, each address once while it listens."""
+        new = tuple(one for one in self._strangers.values() if one is not None)
+        self._strangers = dict.fromkeys(self._strangers)
+        return new
+
     async def listen(self, host: str, port: int) -> None:
         """Open the port; ``PortInUse`` when it cannot be had."""
         loop = asyncio.get_running_loop()
         self._refused = None
+        self._strangers.clear()
         try:
             self._server = await loop.create_server(lambda: _Client(self), host, port)
         except OSError as error:
@@ -112,12 +127,21 @@ class SjlChannel:
 
     # --- called by the client
 
-    def _admit(self, client: "_Client") -> bool:
+    def _admit(self, client: "_Client", caller: str) -> bool:
+        if not is_robot(caller, self._robot_address):
+            self._refuse(caller)
+            return False
         if self._client is not None or self._server is None:
             _log.warning("%s: second connection refused", self)
             return False
         self._client = client
         return True
+
+    def _refuse(self, caller: str) -> None:
+        if caller not in self._strangers and len(self._strangers) < MOST_STRANGERS:
+            fault = CallerRefused(f"{self}: {caller} called, the robot is {self._robot_address}")
+            self._strangers[caller] = fault
+            _log.warning("%s", fault)
 
     def _record(self, record: Record) -> None:
         if self._accepted:
@@ -174,7 +198,7 @@ class _Client(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
-        if not self._channel._admit(self):
+        if not self._channel._admit(self, transport.get_extra_info("peername")[0]):
             transport.abort()
             return
         self._transport = transport

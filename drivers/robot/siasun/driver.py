@@ -90,6 +90,10 @@ class SiasunRobot(StreamingRobot):
         finally:
             await self._close()
 
+    def incidents(self) -> tuple[CellError, ...]:
+        """Strangers that called on the robot's ports."""
+        return (*self._command.channel.incidents(), *self._state.channel.incidents())
+
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report. ``stop_latched`` includes this driver's own latch."""
         state = self._state.newest(max_age_s)

@@ -1,10 +1,21 @@
 """What both ends of an SJL/1 channel must agree on before anything else is said."""
 
+from ipaddress import IPv6Address, ip_address, ip_network
+
 from drivers.robot.siasun.protocol import VERSION
 from drivers.robot.siasun.records import Hello
 
 HELLO_TIMEOUT_S = 2.0
 SESSIONS = 999_999
+
+
+def is_robot(caller: str, robot_address: str) -> bool:
+    """Whether a caller's address is that of the robot; every address is where none is named."""
+    if not robot_address:
+        return True
+    address = ip_address(caller)
+    mapped = address.ipv4_mapped if isinstance(address, IPv6Address) else None
+    return (mapped or address) in ip_network(robot_address, strict=False)
 
 
 def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tuple[str, str] | None:

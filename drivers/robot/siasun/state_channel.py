@@ -34,6 +34,7 @@ class StateChannel:
             "STA",
             config.robot_name,
             max_deadman_s=config.max_deadman_s,
+            robot_address=config.robot_address,
             on_up=self._up,
             on_record=self._take,
             on_lost=self._lost,

@@ -18,7 +18,7 @@ from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.config import SiasunStopChannelConfig
 from drivers.robot.siasun.decoder import RecordReader
-from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, refusal
+from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
 from drivers.robot.siasun.records import Hello, Record, Status, StopDone
 
 _CHUNK_BYTES = 4096
@@ -43,10 +43,13 @@ class SiasunStopChannel(StopChannel):
         self._beats = 0
         self._stop_record = b""
         self._last: Status | None = None
+        self._stranger = ""
+        """Address of the last caller that is not the robot."""
 
     def open(self) -> None:
         """Wait for the controller's job; ``ConnectTimeout`` when it does not come."""
         self.close()
+        self._stranger = ""
         host, port = self._config.listen_host, self._config.guard_port
         deadline_s = now_s() + self._config.connect_timeout_s
         try:
@@ -111,7 +114,11 @@ class SiasunStopChannel(StopChannel):
         """Serve one caller. A caller that does not speak the protocol is sent away."""
         listener.settimeout(self._left_s(deadline_s))
         with contextlib.suppress(TimeoutError):
-            client, _ = listener.accept()
+            client, caller = listener.accept()
+            if not is_robot(caller[0], self._config.robot_address):
+                client.close()
+                self._stranger = caller[0]
+                return
             try:
                 self._greet(client, min(deadline_s, now_s() + HELLO_TIMEOUT_S))
             except VersionMismatch:
@@ -162,7 +169,8 @@ class SiasunStopChannel(StopChannel):
         left_s = deadline_s - now_s()
         if left_s <= 0.0:
             name, timeout_s = self._config.robot_name, self._config.connect_timeout_s
-            raise ConnectTimeout(f"{name} GRD did not connect within {timeout_s:g} s")
+            trace = f"; refused: {self._stranger}" if self._stranger else ""
+            raise ConnectTimeout(f"{name} GRD did not connect within {timeout_s:g} s{trace}")
         return left_s
 
     def _lost(self, facts: str) -> LinkLost:

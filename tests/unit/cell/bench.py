@@ -102,6 +102,7 @@ class CellInMemory:
     stop_motion: Any = Cell.stop_motion
     rearm: Any = Cell.rearm
     health_checks: Any = Cell.health_checks
+    incidents: Any = Cell.incidents
     ask_silent_devices: Any = Cell.ask_silent_devices
     _disarm_where_robots_stand: Any = Cell._disarm_where_robots_stand
     connect: Any = Cell.connect

@@ -12,7 +12,7 @@ from cellctl.daemon.supervision import LinkMonitor, supervise
 from cellctl.errors.force import GuardDied
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.line import LineTaskDied
-from cellctl.errors.link import ConnectTimeout, PortInUse, StaleData
+from cellctl.errors.link import CallerRefused, ConnectTimeout, PortInUse, StaleData
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
@@ -46,6 +46,23 @@ async def test_a_broken_link_is_reported_once_until_it_is_whole_again(rig: Daemo
     rig.bench.cell.aux_1.faults["state"] = StaleData("2 s")
     await links.look()
     assert await alarms(rig) == [207, 207]
+
+
+async def test_what_a_driver_has_refused_is_an_alarm(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.idle()
+    incidents = [CallerRefused("SR500A STA: 192.0.2.66 called")]
+    monkeypatch.setattr(
+        type(rig.bench.cell.main),
+        "incidents",
+        lambda _robot: (incidents.pop(),) if incidents else (),
+    )
+    links = watch(rig)
+    await links.look()
+    await links.look()
+    assert await alarms(rig) == [212]
+    assert rig.unit.machine.state is State.IDLE
 
 
 REFUSED = "no SCHED_FIFO: Operation not permitted"

@@ -2,12 +2,18 @@
 
 import math
 
+import pytest
+
 from cellctl.api.modbus.register_map import VALIDITY_REGISTERS
 from cellctl.api.modbus.status import Handshake, values
+from cellctl.clock import now_s
 from cellctl.errors.link import StaleData
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.runtime import status_view
 from tests.unit.daemon_rig import DaemonRig
 
 
@@ -20,6 +26,29 @@ async def test_a_cell_at_rest(rig: DaemonRig) -> None:
     assert (status.recipe_active, status.run_number, status.serial) == (0, 0, "")
     assert math.isfinite(status.force_z_n)
     assert values(status, Handshake(), 1)["alarm_count"] == 0
+
+
+async def test_times_run_and_refusals_are_kept_the_newest_first(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.idle()
+    entered = rig.shown()
+    later_s = now_s() + 100.0
+    monkeypatch.setattr(status_view, "now_s", lambda: later_s)
+    assert rig.shown().state_time_s == pytest.approx(entered.state_time_s + 100.0, abs=5.0)
+    assert rig.shown().mode_time_s >= rig.shown().state_time_s
+    assert await rig.take(Command.UNHOLD) is RejectCode.COMMAND_NOT_ALLOWED
+    assert await rig.take(Command.START, recipe_id=99) is RejectCode.RECIPE_UNKNOWN
+    assert await rig.take(Command.UNDEFINED, unit_mode=7) is RejectCode.MODE_NOT_CONFIGURED
+    found = [(entry.state, entry.request, entry.code) for entry in rig.shown().refusals]
+    assert found == [
+        (State.IDLE, 0x107, RejectCode.MODE_NOT_CONFIGURED),
+        (State.IDLE, Command.START, RejectCode.RECIPE_UNKNOWN),
+        (State.IDLE, Command.UNHOLD, RejectCode.COMMAND_NOT_ALLOWED),
+    ]
+    await rig.take(Command.ABORT)
+    await rig.to(State.ABORTED)
+    assert rig.shown().mode_time_s > 90.0, "the mode has not changed"
 
 
 async def test_a_robot_on_its_panel_is_shown(rig: DaemonRig) -> None:

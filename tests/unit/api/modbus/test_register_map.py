@@ -20,8 +20,8 @@ from cellctl.api.modbus.register_map import (
     item,
 )
 from cellctl.api.modbus.status import Handshake, values
-from cellctl.packml import State
-from cellctl.runtime.cell_status import CellStatus
+from cellctl.packml import Mode, RejectCode, State
+from cellctl.runtime.cell_status import CellStatus, ShownRefusal
 
 # Written out from the agreed map, not derived from it.
 AGREED = {
@@ -34,6 +34,8 @@ AGREED = {
     "pose_error_x": 31, "pose_error_rz": 41, "peak_fx": 43, "peak_mz": 53, "serial_echo": 55,
     "test_u32": 67, "test_f32": 69, "test_text": 71,
     "iteration": 74, "force_z": 75, "force_limit": 77, "run_result": 79, "seq_tail": 124,
+    "mode_time": 80, "state_time": 82, "refusal_1_age": 84, "refusal_1_code": 87,
+    "refusal_8_age": 112, "refusal_8_code": 115,
 }  # fmt: skip
 
 
@@ -108,6 +110,25 @@ def test_alarms_beyond_eight_are_counted() -> None:
     shown = values(CellStatus(alarms=tuple(range(501, 511))), Handshake(), 1)
     assert shown["alarm_count"] == 10
     assert (shown["alarm_1"], shown["alarm_8"]) == (501, 508)
+
+
+def test_the_ring_of_refusals_begins_with_the_newest() -> None:
+    code = RejectCode.COMMAND_NOT_ALLOWED
+    refusals = (
+        ShownRefusal(2.6, Mode.PRODUCTION, State.EXECUTE, 1, code),
+        ShownRefusal(1e9, Mode.MAINTENANCE, State.IDLE, 0x103, RejectCode.MODE_CHANGE_NOT_ALLOWED),
+    )
+    shown = values(CellStatus(refusals=refusals), Handshake(), 1)
+    entries = [
+        tuple(shown[f"refusal_{n}_{what}"] for what in ("age", "where", "request", "code"))
+        for n in (1, 2, 3)
+    ]
+    assert entries == [(2, 0x0106, 1, 0x84), (65535, 0x0204, 0x103, 0x83), (0, 0, 0, 0)]
+
+
+def test_times_in_mode_and_state_are_whole_seconds() -> None:
+    shown = values(CellStatus(mode_time_s=90_000.7, state_time_s=3.9), Handshake(), 1)
+    assert (shown["mode_time"], shown["state_time"]) == (90_000, 3)
 
 
 def test_head_and_tail_agree() -> None:
