@@ -1,6 +1,6 @@
 """Every command of `cellctl`."""
 
-from cellctl.cli import check, demo, faults, run, runs
+from cellctl.cli import check, demo, faults, replay, run, runs
 from cellctl.cli.offline import calibrate, identify_payload, measure
 from cellctl.cli.operator.commands import add_operator_commands
 from cellctl.cli.root import new_app
@@ -13,6 +13,7 @@ app.command("run", rich_help_panel=_CELL)(run.run)
 app.command("demo", rich_help_panel=_CELL, context_settings=demo.PASS_THROUGH)(demo.demo)
 add_operator_commands(app)
 app.add_typer(runs.app, name="runs", rich_help_panel=_RECORDS)
+app.command("replay", rich_help_panel=_RECORDS)(replay.replay)
 app.command("faults", rich_help_panel=_RECORDS)(faults.faults)
 app.add_typer(calibrate.app, name="calibrate", rich_help_panel=_OFFLINE)
 app.command("measure", rich_help_panel=_OFFLINE)(measure.measure)

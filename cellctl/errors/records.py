@@ -114,6 +114,19 @@ class GaugeRefused(RecordsError):
     reaction = Reaction.WARN
 
 
+class NotReplayable(RecordsError):
+    """A run cannot be computed anew from its record."""
+
+    number = 813
+    text = "The run cannot be replayed"
+    cause = (
+        "It was recorded by a version that kept no raw images, or ended before it measured; a file "
+        "of it is missing, or its process cannot replay."
+    )
+    remedy = "See the detail for what is missing; `cellctl runs verify` finds damaged files."
+    reaction = Reaction.WARN
+
+
 class RecordSilent(RecordsError):
     """The disk did not open or close the record of a run in time."""
 

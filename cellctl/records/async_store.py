@@ -6,9 +6,20 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl import log
+from cellctl.errors.records import RecordNotWritten, RecordsError
+from cellctl.records.raw_images import (
+    MEDIA_TYPE,
+    GreyImage,
+    encode_and_put,
+    lowest_priority_thread,
+)
 from cellctl.records.store import RunStore
 
+_log = log.get(__name__)
+
+IMAGES_TIMEOUT_S = 5.0
+"""How long the closing of a run waits for its images."""
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -24,6 +35,8 @@ class AsyncRunStore:
         except BaseException:
             self._thread.shutdown()
             raise
+        self._images = lowest_priority_thread()
+        self._keeping: set[asyncio.Task[None]] = set()
         self.fault: RecordNotWritten | None = None
         """The first write that did not reach the disk; the store takes no run after it."""
 
@@ -46,7 +59,33 @@ class AsyncRunStore:
         loop = asyncio.get_running_loop()
         return await asyncio.shield(loop.run_in_executor(self._thread, work))
 
+    def keep_image(self, run: int, name: str, image: GreyImage) -> None:
+        """Keep an image, shape (height, width), as a file of a run, whenever there is time.
+
+        Returns at once: a run neither waits for its images nor ends because one was not kept.
+        """
+        task = asyncio.create_task(self._keep_image(run, name, image))
+        self._keeping.add(task)
+        task.add_done_callback(self._keeping.discard)
+
+    async def images_kept(self, timeout_s: float = IMAGES_TIMEOUT_S) -> None:
+        """Wait for the images that were given until now; later ones find their run closed."""
+        if self._keeping:
+            _, late = await asyncio.wait(set(self._keeping), timeout=timeout_s)
+            if late:
+                _log.error("raw images are late", images=len(late), timeout_s=timeout_s)
+
+    async def _keep_image(self, run: int, name: str, image: GreyImage) -> None:
+        loop = asyncio.get_running_loop()
+        files = self._store.artefacts
+        try:
+            data = await loop.run_in_executor(self._images, encode_and_put, image, files)
+            await self.do(RunStore.add_artefact, run, name, data, MEDIA_TYPE)
+        except RecordsError as error:
+            _log.error("raw image not kept", run=run, image=name, fault=str(error))
+
     def close(self) -> None:
         """Finish pending writes and close the store."""
+        self._images.shutdown(wait=True)
         self._thread.submit(self._store.close).result()
         self._thread.shutdown(wait=True)

@@ -20,6 +20,7 @@ from cellctl.records.entries import (
     RunDetail,
 )
 from cellctl.records.figures import NO_LIMIT, Limit, figure
+from cellctl.records.raw_images import GreyImage
 from cellctl.records.store import RunStore
 
 
@@ -106,6 +107,10 @@ class RunRecorder:
     async def add(self, *details: RunDetail) -> None:
         """Details of several kinds in one transaction; all of them are recorded, or none."""
         await self.store.do(RunStore.add, self.run, *details)
+
+    def raw_image(self, name: str, image: GreyImage) -> None:
+        """An image as the camera gave it, shape (height, width); kept later, see ``keep_image``."""
+        self.store.keep_image(self.run, name, image)
 
     async def artefact(self, name: str, data: bytes, media_type: str) -> str:
         """A file of the run, by a name that no other file of the run has; its SHA-256."""

@@ -70,6 +70,7 @@ class JobRecord:
         except CellError:
             if not self.number:
                 return  # there is no record; this is the fault that has ended the run
+        await self.store.images_kept()
         await self.store.do(
             RunStore.close_run,
             self.number,

@@ -6,7 +6,7 @@ of it for its cell, and calls the methods below. The rest of cellctl knows no pr
 """
 
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -19,9 +19,11 @@ from cellctl.config.process_definition import ProcessDefinition, process_definit
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
+from cellctl.errors.records import NotReplayable
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.entries import RunRecord
+from cellctl.records.entries import Calibration, RunRecord
 from cellctl.records.recorder import RunRecorder
+from cellctl.records.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.procedure import Procedure
@@ -120,6 +122,20 @@ class Process(ProcessDefinition, Generic[P, R, S]):
         ``read`` gives the bytes of a file of the run and raises ``ArtefactDamaged``.
         """
         return ProcessPages()
+
+    @classmethod
+    def replay(
+        cls,
+        record: RunRecord,
+        read: ReadArtefact,  # noqa: ARG003
+        calibrations: Mapping[str, Calibration],  # noqa: ARG003
+    ) -> Iterator[Replayed]:
+        """Compute every measurement of a recorded run anew, beside what the record says.
+
+        Called without a cell, like ``report``; ``calibrations`` of the store by their ids. Raises
+        ``NotReplayable``.
+        """
+        raise NotReplayable(f"the process {record.head.process} cannot do that")
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibrations and other measurements of Maintenance, by their numbers."""

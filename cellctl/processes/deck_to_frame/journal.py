@@ -44,7 +44,9 @@ from cellctl.processes.deck_to_frame.record.keys import (
     HEAD_1,
     LOOP,
     MATING,
+    MEASURED_FROM,
 )
+from cellctl.processes.deck_to_frame.record.sources import measured_from, raw_images
 from cellctl.records.entries import Document, PoseOrigin
 from cellctl.records.figures import Limit, split_document
 from cellctl.records.gauges import GAUGE_HOLES
@@ -90,7 +92,7 @@ class Journal:
         )
         await self.recorder.add(residual_figure(kind, measured))
         await self._reported(kind, measured)
-        await self._pictures(kind, measured)
+        await self._images(kind, measured)
 
     async def deck_on_flange(self, flange_T_deck: UncertainPose) -> None:
         """The deck's pose on the flange (eq. 4)."""
@@ -114,7 +116,7 @@ class Journal:
         await self.recorder.add(entry, *error_figures(entry), residual)
         self.iterations = number
         await self._reported(f"iteration-{number}", measured)
-        await self._pictures(f"iteration-{number}", measured)
+        await self._images(f"iteration-{number}", measured)
 
     async def verification(
         self,
@@ -162,11 +164,19 @@ class Journal:
                 data = await self.workers.run(encode_curve, curve, utc_now(), facts)
                 await self.recorder.artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 
-    async def _pictures(self, kind: str, measured: PartMeasurement) -> None:
+    async def _images(self, kind: str, measured: PartMeasurement) -> None:
         """A kind that comes again, after a Hold, gets a number: no picture hides another."""
         self._names[kind] += 1
-        if self._names[kind] > 1:
-            kind = f"{kind}-again-{self._names[kind]}"
+        name = kind if self._names[kind] == 1 else f"{kind}-again-{self._names[kind]}"
+        if measured.predicted is not None:
+            images = raw_images(name, measured.shots)
+            source = measured_from(kind, measured, list(images))
+            await self.recorder.document(MEASURED_FROM, {name: source})
+            for file, image in images.items():
+                self.recorder.raw_image(file, image)
+        await self._pictures(name, measured)
+
+    async def _pictures(self, kind: str, measured: PartMeasurement) -> None:
         for head, (pair, found) in enumerate(zip(measured.pairs, measured.heads, strict=True), 1):
             for side, image in (("left", pair.left), ("right", pair.right)):
                 data = await self.workers.run(draw, image, found, side)

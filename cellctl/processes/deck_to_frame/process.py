@@ -1,6 +1,6 @@
 """The process itself: one deck onto one frame (the paper's section 1.2), as cellctl sees it."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -11,7 +11,8 @@ from cellctl.errors.vision import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import ROLES
 from cellctl.processes.deck_to_frame.settings import DeckSettings
-from cellctl.records.entries import RunRecord
+from cellctl.records.entries import Calibration, RunRecord
+from cellctl.records.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
@@ -107,6 +108,15 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         from cellctl.processes.deck_to_frame.report.pages import pages
 
         return pages(record, read)
+
+    @classmethod
+    def replay(
+        cls, record: RunRecord, read: ReadArtefact, calibrations: Mapping[str, Calibration]
+    ) -> Iterator[Replayed]:
+        """Poses from the raw images, what followed from them, and the peaks of the force."""
+        from cellctl.processes.deck_to_frame.replay import replay
+
+        return replay(record, read, calibrations)
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibration and commissioning, 101 to 108."""

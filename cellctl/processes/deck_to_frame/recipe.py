@@ -39,8 +39,9 @@ class Pins(Section):
     max_travel_mm: Annotated[float, Field(gt=0, le=2)] = 0.2
     """How far it may give way altogether, and how far it may turn."""
     max_yaw_deg: Annotated[float, Field(gt=0, le=1)] = 0.03
-    lateral_stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)] = 1000.0
-    """Upper bounds of what is felt across the approach: the robot's own are a safe choice."""
+    lateral_stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)] | None = None
+    """Upper bound of what is felt across the approach, the robot's own is a safe choice; None:
+    ``stiffness_n_per_mm`` of the mating."""
     yaw_stiffness_n_m_per_deg: Annotated[float, Field(ge=10, le=200_000)] = 5300.0
 
 
@@ -71,6 +72,11 @@ class Mating(Section):
     stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
     """Robot and joint in series: upper bound, used while procedure 108 has no valid result for
     this recipe; 108 does not pass beyond it. The robot's own stiffness is a safe choice."""
+    travel_sigma_mm: Annotated[float, Field(gt=0, le=1)]
+    """What the arm is off after a straight move over the stand-off distance: from its data sheet or
+    from a measurement with a tracker; standard deviation."""
+    step_sigma_mm: Annotated[float, Field(gt=0, le=0.1)]
+    """The same for the length of a single move of a few hundredths of a millimetre."""
     part_spread_ratio: Annotated[float, Field(ge=1, le=10)] = 1.5
     """Other parts of this recipe may be so much stiffer than those of procedure 108."""
     max_tries: Annotated[int, Field(ge=1, le=5)] = 3
@@ -93,6 +99,9 @@ class DeckRecipe(Recipe):
     deck_features: str
     deck_thickness_mm: Annotated[float, Field(gt=0, le=200)]
     """D1 of the paper."""
+    deck_thickness_sigma_mm: Annotated[float, Field(gt=0, le=1)]
+    """Standard deviation of the thickness over the parts: from the drawing, its tolerance over the
+    root of three, or from measured parts."""
     face_mm: tuple[Length, Length] = (1000.0, 500.0)
     """Length along x and width along y of the mating face: a tilted deck touches with an edge."""
     stand_off_mm: Annotated[float, Field(gt=0, le=100)]

@@ -35,6 +35,8 @@ from cellctl.records.report.text import (
 )
 from cellctl.records.units import words
 
+REPLAY_INPUT = ".input"
+"""Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}
 _VERDICTS = {Verdict.PASS: "within", Verdict.FAIL: "beyond", None: MISSING}
 
@@ -57,7 +59,9 @@ def further_figures(record: RunRecord) -> ReportSection:
         for entry in record.newest_figures.values()
         if entry.verdict is None
     )
-    keys = dict.fromkeys(entry.key for entry in record.documents)
+    keys = dict.fromkeys(
+        entry.key for entry in record.documents if not entry.key.endswith(REPLAY_INPUT)
+    )
     documents = tuple(fact for key in keys for fact in facts(record.document(key)))
     lists = (FactList(figures), FactList(documents))
     return ReportSection("Further figures", tuple(entry for entry in lists if entry.facts))

@@ -35,15 +35,22 @@ class FeatureFile:
 def read_features(path: Path) -> FeatureFile:
     """Read a feature file; raises ``FeatureFileInvalid`` with the reason."""
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = path.read_bytes()
     except OSError as error:
         raise FeatureFileInvalid(f"{path}: {error.strerror or error}") from error
+    return parse_features(content, str(path))
+
+
+def parse_features(content: bytes, name: str) -> FeatureFile:
+    """The content of a feature file of that name; raises ``FeatureFileInvalid``."""
+    try:
+        data = tomllib.loads(content.decode())
     except ValueError as error:
-        raise FeatureFileInvalid(f"{path} is not TOML: {error}") from error
+        raise FeatureFileInvalid(f"{name} is not TOML: {error}") from error
     try:
         return _features(data)
     except ValueError as error:
-        raise FeatureFileInvalid(f"{path}: {error}") from error
+        raise FeatureFileInvalid(f"{name}: {error}") from error
 
 
 def _features(data: Mapping[str, Any]) -> FeatureFile:

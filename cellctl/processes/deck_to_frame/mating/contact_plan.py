@@ -12,7 +12,7 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.commissioned import Commissioned
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
-from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Pins
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating, Pins
 from cellctl.processes.deck_to_frame.state import Corrected
 
 ABORT_MARGIN_N = 5.0
@@ -70,20 +70,24 @@ def mating_settings(
         acceleration_m_s2=mating.acceleration_mm_s2 * MM,
         greatest_past_m=mating.max_past_contact_mm * MM,
         window_m=mating.contact_window_mm * MM,
+        travel_sigma_m=mating.travel_sigma_mm * MM,
+        step_sigma_m=mating.step_sigma_mm * MM,
+        thickness_sigma_m=recipe.deck_thickness_sigma_mm * MM,
         half_size_m=(length_mm / 2 * MM, width_mm / 2 * MM),
         plausible=(mating.max_untared_force_n, mating.max_untared_moment_n_m),
         max_lateral_n=mating.max_lateral_force_n,
         max_moment_n_m=mating.max_moment_n_m,
-        pins=_pin_settings(mating.pins) if mating.pins else None,
+        pins=_pin_settings(mating, mating.pins) if mating.pins else None,
     )
 
 
-def _pin_settings(pins: Pins) -> PinSettings:
+def _pin_settings(mating: Mating, pins: Pins) -> PinSettings:
+    lateral_n_per_mm = pins.lateral_stiffness_n_per_mm or mating.stiffness_n_per_mm
     return PinSettings(
         engagement_m=pins.engagement_mm * MM,
         compliant=pins.compliance,
         greatest_travel_m=pins.max_travel_mm * MM,
         greatest_yaw_rad=math.radians(pins.max_yaw_deg),
-        lateral_stiffness_n_m=pins.lateral_stiffness_n_per_mm / MM,
+        lateral_stiffness_n_m=lateral_n_per_mm / MM,
         yaw_stiffness_n_m_rad=pins.yaw_stiffness_n_m_per_deg / math.radians(1.0),
     )

@@ -1,7 +1,7 @@
 """Measure a part with both heads: grab, find holes, average, fit, until it is certain enough."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -51,6 +51,10 @@ class PartMeasurement:
     frames: int
     base_T_flange: RigidTransform
     """Main robot, as reported while the images were taken."""
+    predicted: RigidTransform | None = None
+    """``c1_T_part`` near which the holes were looked for; None where nobody looked."""
+    shots: tuple[tuple[StereoPair, StereoPair], ...] = ()
+    """The images of both heads of every frame, the oldest first."""
 
     @property
     def own(self) -> UncertainPose:
@@ -101,15 +105,17 @@ class PartMeasurer:
         predictions = self._geometry.camera_T_part(c1_T_part)
         base_T_flange = self._cell.main.state().base_T_flange
         taken: list[tuple[PairMeasurement, PairMeasurement]] = []
+        shots: list[tuple[StereoPair, StereoPair]] = []
         while True:
             wanted = min(len(taken) or frames, max_frames - len(taken))
             for _ in range(wanted):
                 pairs, found = await self._one_frame(features, predictions)
                 taken.append(found)
+                shots.append(pairs)
             self._check_standstill(base_T_flange)
             measurement = self._combine(features, taken, pairs, base_T_flange)
             if (measurement.sigma_mm_deg <= wanted_sigma_mm_deg).all():
-                return measurement
+                return replace(measurement, predicted=c1_T_part, shots=tuple(shots))
             if len(taken) >= max_frames:
                 raise UncertaintyTooLarge(_sigma_text(measurement, wanted_sigma_mm_deg))
             _log.info("more frames needed", sigma=measurement.sigma_mm_deg.round(5).tolist())
@@ -156,14 +162,24 @@ class PartMeasurer:
         pairs: tuple[StereoPair, StereoPair],
         base_T_flange: RigidTransform,
     ) -> PartMeasurement:
-        heads = (average([one for one, _ in taken]), average([two for _, two in taken]))
-        pose = part_pose(*heads, self._geometry.c1_T_c2, features.holes, self._method)
+        heads, pose = combined(features, taken, self._geometry, self._method)
         return PartMeasurement(pose, heads, pairs, len(taken), base_T_flange)
 
     def _check_standstill(self, base_T_flange: RigidTransform) -> None:
         for head, reference in zip(self._cell.heads, self._reference, strict=True):
             require_unmoved(head.name, head.robot, reference)
         require_unmoved("the main robot", self._cell.main, base_T_flange)
+
+
+def combined(
+    features: FeatureFile,
+    taken: Sequence[tuple[PairMeasurement, PairMeasurement]],
+    geometry: HeadGeometry,
+    method: Method,
+) -> tuple[tuple[PairMeasurement, PairMeasurement], PartPose]:
+    """The holes of both heads, averaged over the frames, and the pose of the part from them."""
+    heads = (average([one for one, _ in taken]), average([two for _, two in taken]))
+    return heads, part_pose(*heads, geometry.c1_T_c2, features.holes, method)
 
 
 def _sigma_text(measurement: PartMeasurement, wanted: Array) -> str:

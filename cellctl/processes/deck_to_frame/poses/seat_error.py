@@ -1,11 +1,14 @@
 """How far a seated deck is from its seat."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error
+from cellctl.vision.features.hole import Hole
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,3 +29,18 @@ class SeatError:
     def rotation_deg(self) -> float:
         """About the worst axis."""
         return float(np.degrees(np.abs(self.error[3:]).max()))
+
+
+def pin_holes(holes: Sequence[Hole]) -> list[Hole]:
+    """Those that a pin enters, and that a person can gauge."""
+    return [hole for hole in holes if hole.kind == "pin"]
+
+
+def seat_error(M_T_D: RigidTransform, thickness_m: float, holes: Sequence[Hole]) -> SeatError:
+    """Of a deck of that thickness, judged at its pin holes, at every hole where it has none."""
+    seat = RigidTransform.from_translation([0.0, 0.0, thickness_m])
+    offsets_mm = {
+        hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
+        for hole in pin_holes(holes) or holes
+    }
+    return SeatError(assembly_error(seat, M_T_D), offsets_mm)

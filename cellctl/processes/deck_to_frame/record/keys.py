@@ -14,6 +14,9 @@ COMPONENTS = (
 )  # fmt: skip
 """Name and unit of the components of one pass, of the error in the axes of the frame."""
 
+MEASURED_FROM = "measurements.input"
+"""Document: for each measurement the images and the prediction that it was computed from."""
+
 MATING = "mating"
 """Document with what is no number."""
 TARGET_FORCE, LIMIT_FORCE, PEAK_FORCE = "target_force", "limit_force", "peak_force"

@@ -2,13 +2,10 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-from scipy.spatial.transform import RigidTransform
-
 from cellctl.errors.vision import SeatedOffPosition
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error, deck_in_frame
-from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
+from cellctl.processes.deck_to_frame.poses.pose_correction import deck_in_frame
+from cellctl.processes.deck_to_frame.poses.seat_error import SeatError, pin_holes, seat_error
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.state import Seated, Verified
 
@@ -26,16 +23,10 @@ async def verify(seat: Seated) -> Verified:
         run.facts.deck_features, run.base_T_c1.inv() * flange * seat.flange_T_deck
     )
     M_T_D = deck_in_frame(seat.c1_T_M.pose, measurement.c1_T_part)
-    seated = RigidTransform.from_translation([0.0, 0.0, run.recipe.deck_thickness_mm * MM])
     holes = run.facts.deck_features.holes
-    pins = [hole for hole in holes if hole.kind == "pin"]
-    offsets_mm = {
-        hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
-        for hole in pins or holes
-    }
-    found = SeatError(assembly_error(seated, M_T_D), offsets_mm)
+    found = seat_error(M_T_D, run.recipe.deck_thickness_mm * MM, holes)
     await run.journal.verification(found, run.recipe, measurement)
-    if pins:
+    if pins := pin_holes(holes):
         await run.journal.gauge_holes(pins, run.recipe)
     beyond = list(_beyond(found, run.recipe))
     if beyond:

@@ -62,6 +62,32 @@ def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
     assert settings.yaw_stiffness_n_m_rad == pytest.approx(3e5, rel=0.02)
 
 
+def test_spreads_of_part_and_arm_are_the_recipe_s(rig: RunRig) -> None:
+    spreads = {"travel_sigma_mm": 0.02, "step_sigma_mm": 0.005}
+    mating = rig.bench.recipe.mating.model_copy(update=spreads)
+    settings = settings_of(rig, mating=mating, deck_thickness_sigma_mm=0.06)
+    assert settings.thickness_sigma_m == pytest.approx(6e-5)
+    assert settings.travel_sigma_m == pytest.approx(2e-5)
+    assert settings.step_sigma_m == pytest.approx(5e-6)
+
+
+def test_across_the_pins_the_arm_is_as_stiff_as_the_recipe_says(rig: RunRig) -> None:
+    changes = {"pins": Pins(engagement_mm=3.0), "stiffness_n_per_mm": 700.0}
+    settings = settings_of(rig, mating=rig.bench.recipe.mating.model_copy(update=changes)).pins
+    assert settings is not None
+    assert settings.lateral_stiffness_n_m == pytest.approx(7e5)
+
+
+async def test_a_greater_spread_of_the_thickness_opens_the_window(rig: RunRig) -> None:
+    """Good parts of a wider tolerance must not end as contact too early or too late."""
+    narrow = await plan_of(rig, Commissioned())
+    recipe = rig.bench.recipe.model_copy(update={"deck_thickness_sigma_mm": 0.06})
+    corrected = await correct_pose(await at_the_stand_off(rig, recipe=recipe))
+    wide = contact_plan(corrected, Commissioned())
+    assert wide.window.latest_m - wide.window.expected_m > 2e-4
+    assert narrow.window.latest_m - narrow.window.expected_m < 1.5e-4
+
+
 def test_no_measurement_goes_beyond_the_bound(rig: RunRig) -> None:
     recipe, stiff = rig.bench.recipe, Commissioned(stiffness_n_m=9e5)
     settings = mating_settings(rig.bench.deck.force_config, recipe, stiff, 200.0)

@@ -5,7 +5,12 @@ from pydantic import ValidationError
 
 from cellctl.processes.deck_to_frame.recipe import Mating
 
-BOUNDS = {"stop_latency_ms": 300.0, "stiffness_n_per_mm": 1000.0}
+BOUNDS = {
+    "stop_latency_ms": 300.0,
+    "stiffness_n_per_mm": 1000.0,
+    "travel_sigma_mm": 0.01,
+    "step_sigma_mm": 0.003,
+}
 
 
 def test_the_forces_of_the_paper_are_the_defaults() -> None:

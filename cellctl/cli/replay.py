@@ -1,0 +1,72 @@
+"""`cellctl replay`: compute a recorded run anew and compare."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from cellctl.cli.runs import DEFAULT, DataDir, Run
+from cellctl.config.process_definition import installed_processes, process_definition
+from cellctl.errors.records import NotReplayable
+from cellctl.records.replayed import Replayed
+from cellctl.records.store import RunStore
+from cellctl.runtime.process import Process
+
+
+def replay(
+    run: Run,
+    *,
+    data_dir: DataDir = DEFAULT,
+    every: Annotated[bool, typer.Option("--every", help="Also what came out the same.")] = False,
+) -> None:
+    """Compute every measurement of a run anew from its raw images, poses and forces.
+
+    With the code of today; exit code 1 when anything differs from the record.
+    """
+    lines = _replayed(run, data_dir)
+    differing = [line for line in lines if not line.identical]
+    shown = lines if every else differing
+    if shown:
+        Console().print(_table(shown))
+    measurements = len({line.measurement for line in lines})
+    same = len(lines) - len(differing)
+    typer.echo(f"{measurements} measurements, {same} of {len(lines)} numbers are identical")
+    if differing:
+        raise typer.Exit(1)
+
+
+def _replayed(run: int, data_dir: Path) -> list[Replayed]:
+    store = RunStore(data_dir, create=False)
+    try:
+        record = store.run(run)
+        calibrations = {one.id: one for one in store.calibrations()}
+        process = _process(record.head.process)
+        files = store.artefacts
+        return list(process.replay(record, lambda one: files.get(one.sha256), calibrations))
+    finally:
+        store.close()
+
+
+def _process(name: str) -> type[Process[Any, Any, Any]]:
+    if name in installed_processes():
+        definition = process_definition(name)
+        if issubclass(definition, Process):
+            return definition
+    raise NotReplayable(f"the process {name} is not installed")
+
+
+def _table(lines: list[Replayed]) -> Table:
+    table = Table("measurement", "number", "recorded", "computed", "difference", box=None)
+    for line in lines:
+        values = (
+            "–" if value is None else f"{value:.9g} {line.unit}"
+            for value in (
+                line.recorded,
+                line.computed,
+            )
+        )
+        style = None if line.identical else "red"
+        table.add_row(line.measurement, line.name, *values, f"{line.difference:.3g}", style=style)
+    return table

@@ -1,0 +1,46 @@
+"""What a measurement was computed from, so that it can be computed anew from the record."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.interfaces import StereoPair
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.record.keys import FRAME
+
+IMAGES_PER_FRAME = 4
+"""Left and right of head I, left and right of head II."""
+
+
+def raw_images(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dict[str, Image]:
+    """The images of a measurement by the names of their files, ``IMAGES_PER_FRAME`` a frame."""
+    return {
+        f"raw/{name}-frame-{frame}-head-{head}-{side}.png": image
+        for frame, pairs in enumerate(shots, start=1)
+        for head, pair in enumerate(pairs, start=1)
+        for side, image in (("left", pair.left), ("right", pair.right))
+    }
+
+
+def measured_from(kind: str, measured: PartMeasurement, images: list[str]) -> dict[str, Any]:
+    """Key of the recorded result, part, prediction and images of one measurement.
+
+    The prediction is a matrix in metres with all digits: angles would round it.
+    """
+    assert measured.predicted is not None
+    return {
+        "key": kind,
+        "part": FRAME if kind == FRAME else "deck",
+        "c1_T_part_predicted": measured.predicted.as_matrix().tolist(),
+        "result": measured.c1_T_part.as_matrix().tolist(),
+        "covariance": np.asarray(measured.pose.pose.covariance).tolist(),
+        "images": images,
+    }
+
+
+def predicted_pose(source: Mapping[str, Any]) -> RigidTransform:
+    """``c1_T_part`` near which the holes were looked for."""
+    return RigidTransform.from_matrix(np.array(source["c1_T_part_predicted"], float))

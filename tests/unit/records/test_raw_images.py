@@ -1,0 +1,68 @@
+"""Raw images: without loss, in their run before it is closed, and never in the way of it."""
+
+import asyncio
+import os
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellctl.errors.records import ArtefactDamaged
+from cellctl.records import RunResult, RunStore
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.raw_images import MEDIA_TYPE, decode, lowest_priority_thread
+from tests.unit.records.conftest import start
+
+
+@pytest.fixture
+def archive(tmp_path: Path) -> Iterator[AsyncRunStore]:
+    archive = AsyncRunStore(tmp_path)
+    yield archive
+    archive.close()
+
+
+async def test_every_bit_of_an_image_is_kept(archive: AsyncRunStore) -> None:
+    run = await archive.do(start)
+    image = np.random.default_rng(1).integers(0, 256, (120, 160), dtype=np.uint8)
+    archive.keep_image(run, "raw/deck.png", image)
+    await archive.images_kept()
+    await archive.do(RunStore.close_run, run, RunResult.GOOD)
+    (artefact,) = (await archive.do(RunStore.run, run)).artefacts
+    assert (artefact.name, artefact.media_type) == ("raw/deck.png", MEDIA_TYPE)
+    data = await archive.do(lambda store: store.artefacts.get(artefact.sha256))
+    np.testing.assert_array_equal(decode(data), image)
+    assert await archive.do(RunStore.verify) == []
+
+
+async def test_a_run_goes_on_while_its_images_are_coded(
+    archive: AsyncRunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    coded = threading.Event()
+    monkeypatch.setattr(
+        "cellctl.records.async_store.encode_and_put", lambda *_: coded.wait(10) and b"late"
+    )
+    run = await archive.do(start)
+    try:
+        archive.keep_image(run, "raw/deck.png", np.zeros((2, 2), np.uint8))
+        await asyncio.wait_for(archive.do(RunStore.audit, "OP-7", "goes on"), 1.0)
+        await asyncio.wait_for(archive.images_kept(timeout_s=0.05), 1.0)
+        await archive.do(RunStore.close_run, run, RunResult.GOOD)
+    finally:
+        coded.set()
+    await archive.images_kept()
+    assert (await archive.do(RunStore.run, run)).artefacts == (), "too late for its run"
+
+
+def test_images_are_coded_when_nobody_else_computes() -> None:
+    thread = lowest_priority_thread()
+    niceness = thread.submit(os.getpriority, os.PRIO_PROCESS, 0).result()
+    thread.shutdown()
+    assert niceness == 19
+    assert os.getpriority(os.PRIO_PROCESS, 0) < 19
+
+
+def test_what_is_no_image_is_said_to_be_none() -> None:
+    with pytest.raises(ArtefactDamaged):
+        decode(b"not a PNG")
