@@ -127,6 +127,16 @@ class NotReplayable(RecordsError):
     reaction = Reaction.WARN
 
 
+class RunInterrupted(RecordsError):
+    """The daemon ended in the middle of a run; found at the next start."""
+
+    number = 821
+    text = "A run was interrupted by the end of the daemon"
+    cause = "The daemon was killed or the PC lost its power while a part was being made."
+    remedy = "Look at arm and part before Reset: it lifts an arm off that stands in the station."
+    reaction = Reaction.WARN
+
+
 class RecordSilent(RecordsError):
     """The disk did not open or close the record of a run in time."""
 

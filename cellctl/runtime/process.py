@@ -114,6 +114,13 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     async def clear(self) -> None:
         """Reset, with all robots ready: leave the station, whatever a run has left there."""
 
+    async def show_contact_force(self) -> None:
+        """Have the guards subtract the weight of the payload, as far as it is known; moves nothing.
+
+        Called once after a start that found an interrupted run. Raises the faults of calibrations
+        and guard; by default nothing is done.
+        """
+
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:  # noqa: ARG003
         """What the report of a run shows besides the pages that any run has; by default nothing.

@@ -20,6 +20,7 @@ from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
+from cellctl.runtime.interrupted import interrupted_faults
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.job_factory import JobFactory
 from cellctl.runtime.job_runner import JobRunner
@@ -68,6 +69,8 @@ class UnitController:
             gate=self._gate,
         )
         self._ending = False
+        self._interrupted: list[int] = []
+        """Runs that an earlier process left open, as long as nobody was told of them."""
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
         self.view = StatusView(
@@ -88,9 +91,9 @@ class UnitController:
         its result.
         """
         await asyncio.to_thread(self.calibrations.require_writable)
-        interrupted = await self._store.do(RunStore.mark_interrupted)
-        if interrupted:
-            _log.warning("an earlier process left runs open", runs=interrupted)
+        self._interrupted = await self._store.do(RunStore.mark_interrupted)
+        if self._interrupted:
+            _log.warning("an earlier process left runs open", runs=self._interrupted)
         await self.alarms.open()
         heads = await self._store.do(RunStore.runs, limit=1_000_000)
         self.parts = sum(
@@ -161,6 +164,16 @@ class UnitController:
         # Whoever clears says that the robots stand: one that was given up gets its links back.
         if not self._cell.connected or self._cell.unstopped:
             await self._cell.connect()
+        # Once the devices are there, whenever that is: before, nobody knows where an arm stands.
+        runs, self._interrupted = self._interrupted, []
+        if runs:
+            await self._tell_of(runs)
+
+    async def _tell_of(self, runs: list[int]) -> None:
+        processes = self._processes.values()
+        for run, fault in await interrupted_faults(runs, self._cell, processes, self._store):
+            _log.warning("interrupted run", number=fault.number, fault=str(fault))
+            self.alarms.add(fault, run)
 
     async def _resetting(self) -> None:
         await self._cell.rearm()

@@ -102,6 +102,14 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         for cell in self._cells():
             await lift_off(cell)
 
+    async def show_contact_force(self) -> None:
+        """With the payload that was identified last."""
+        from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
+
+        payload = self.services.calibrations.read(PAYLOAD)
+        for cell in self._cells():
+            await cell.guard.set_gravity_compensation(payload.gravity_compensation)
+
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
         """Holes, the loop, forces over time and travel, pin holes."""

@@ -1,0 +1,76 @@
+"""After a start that found an interrupted run: where the arms stand, and under what force."""
+
+import asyncio
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+from cellctl import log
+from cellctl.cell.devices import Cell
+from cellctl.clock import now_s
+from cellctl.errors import CellError
+from cellctl.errors.records import RunInterrupted
+from cellctl.geometry.pose import pose_to_xyzabc
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.store import RunStore
+from cellctl.runtime.process import Process
+
+_log = log.get(__name__)
+
+READING_S = 0.2
+"""Samples of the force that are averaged."""
+PATIENCE_S = 1.0
+_POLL_S = 0.02
+
+
+async def interrupted_faults(
+    runs: Sequence[int],
+    cell: Cell,
+    processes: Iterable[Process[Any, Any, Any]],
+    store: AsyncRunStore,
+) -> list[tuple[int, RunInterrupted]]:
+    """A fault for each interrupted run, with its number; moves nothing.
+
+    What cannot be found out is said in its place, because a cell that does not come up for it would
+    tell even less. Raises the faults of the run store.
+    """
+    for process in processes:
+        try:
+            await process.show_contact_force()
+        except CellError as fault:
+            _log.warning("contact force not shown", process=process.name, fault=str(fault))
+    here = "; ".join([*_poses(cell), *[await _force(cell, name) for name in cell.guards]])
+    found = []
+    for run in runs:
+        phases = (await store.do(RunStore.run, run)).phases
+        step = f"step {phases[-1].number} {phases[-1].label}" if phases else "no step yet"
+        found.append((run, RunInterrupted(f"run {run}, {step}; now {here}")))
+    return found
+
+
+def _poses(cell: Cell) -> list[str]:
+    texts = []
+    for name, robot in cell.robots.items():
+        try:
+            x, y, z, a, b, c = pose_to_xyzabc(robot.state().base_T_flange)
+            texts.append(f"{name} at {x:.1f} {y:.1f} {z:.1f} mm {a:.2f} {b:.2f} {c:.2f}°")
+        except CellError as fault:
+            texts.append(f"{name} unknown ({fault})")
+    return texts
+
+
+async def _force(cell: Cell, name: str) -> str:
+    """The mean wrench of one sensor; without tare, so the drift of its zero is in it."""
+    guard, begin_s = cell.guards[name], now_s()
+    try:
+        while guard.latest().time_s < begin_s + READING_S:
+            if now_s() > begin_s + PATIENCE_S:
+                return f"{name}: no fresh samples"
+            await asyncio.sleep(_POLL_S)
+        x_n, y_n, z_n = guard.samples(begin_s).wrench[:, :3].mean(axis=0)
+    except CellError as fault:
+        return f"{name}: unknown ({fault})"
+    weight = "without the payload's weight" if guard.gravity_compensated else "payload included"
+    force_n = float(np.linalg.norm([x_n, y_n, z_n]))
+    return f"{name}: {force_n:.1f} N (Fx {x_n:.1f}, Fy {y_n:.1f}, Fz {z_n:.1f} N), {weight}"

@@ -1,0 +1,65 @@
+"""After a daemon that died in a run, the next start says where the arm stands and what it feels."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellctl.errors.link import StaleData
+from cellctl.errors.records import RecordNotWritten, RunInterrupted
+from cellctl.packml.state import State
+from cellctl.records.store import RunStore
+from cellctl.runtime import interrupted
+from tests.unit.daemon_rig import DaemonRig
+
+
+@pytest.fixture
+async def died(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> DaemonRig:
+    """In contact, with 20 N; the unit is not open."""
+    monkeypatch.setattr(interrupted, "READING_S", 0.0)
+
+    def lost(*_: object, **__: object) -> None:
+        raise RecordNotWritten("the daemon was killed")
+
+    rig.contact.may_end.clear()
+    await rig.started()
+    await rig.contact.reached.wait()
+    with monkeypatch.context() as killed:
+        killed.setattr(RunStore, "close_run", lost)
+        await rig.close()
+    guard = rig.bench.cell.guard
+    guard.raw = np.tile([0.0, 12.0, -16.0, 0.0, 0.0, 0.0], (50, 1))
+    guard.asked.clear()
+    guard.gravity_compensated = False
+    return rig
+
+
+async def test_line_alarms_and_record_say_where_the_arm_stands(died: DaemonRig) -> None:
+    moves = len(died.bench.cell.main.moves)
+    await died.open()
+    status = died.shown()
+    assert status.state is State.STOPPED
+    assert RunInterrupted.number in status.alarms
+    assert status.warning
+    record = await died.record()
+    assert record.head.result == "interrupted"
+    text = next(one.text for one in record.alarms if one.number == RunInterrupted.number)
+    x_mm, y_mm, z_mm = died.bench.cell.main.flange.translation * 1e3
+    assert "run 1, step 50 mate" in text
+    assert f"main at {x_mm:.1f} {y_mm:.1f} {z_mm:.1f} mm" in text
+    assert "force: 20.0 N (Fx 0.0, Fy 12.0, Fz -16.0 N), without the payload's weight" in text
+    assert len(died.bench.cell.main.moves) == moves
+    await died.close()
+    await died.open()
+    alarms = (await died.record()).alarms
+    assert [one.number for one in alarms].count(RunInterrupted.number) == 1, "said once"
+
+
+async def test_what_is_not_known_is_said_and_the_cell_comes_up(died: DaemonRig) -> None:
+    died.bench.cell.guard.faults["set_gravity_compensation"] = StaleData("guard")
+    died.bench.cell.aux_1.faults["state"] = StaleData("2 s")
+    await died.open()
+    assert died.shown().state is State.STOPPED
+    text = (await died.record()).alarms[-1].text
+    assert "aux_1 unknown (F207" in text
+    assert "payload included" in text
