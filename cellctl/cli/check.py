@@ -1,11 +1,12 @@
 """`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 from rich.console import Console
 
+from cellctl import plugins
 from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig, load_cell, problems
 from cellctl.config.process_definition import installed_processes, process_definition
@@ -28,6 +29,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
         console.print(f"  {key:32} {device.driver}", markup=False)
+    _say_what_is_not_checked(console, cell)
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
@@ -40,6 +42,19 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
             style="yellow",
             markup=False,
         )
+
+
+def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
+    """Robots whose joint moves nobody holds against the bounds of their flange."""
+    for name, robot in cell.robots.items():
+        driver: Any = plugins.load(plugins.ROBOT, robot.driver)
+        if not driver.checks_joint_ways(driver.Config.model_validate(robot.settings)):
+            console.print(
+                f"  robots.{name}: joint moves are not checked against its workspace (the driver's "
+                "settings say nothing of its kinematics)",
+                style="yellow",
+                markup=False,
+            )
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:

@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -59,6 +60,14 @@ class Robot(Device):
     Every method may raise ``LinkLost``, ``ReplyTimeout`` or ``ProtocolViolation``; moves also
     ``MotionRejected``, ``MotionAborted``, ``RobotNotReady``, ``NotRearmed``, ``TargetOutOfBounds``.
     """
+
+    @classmethod
+    def checks_joint_ways(cls, config: Any) -> bool:  # noqa: ARG003 - of use to drivers only
+        """Whether, with these settings, joint moves are held against the bounds of the flange.
+
+        ``config`` is an instance of the driver's ``Config``. `cellctl check` asks.
+        """
+        return False
 
     @abstractmethod
     async def disconnect(self) -> None:

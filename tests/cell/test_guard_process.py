@@ -148,6 +148,24 @@ async def test_an_ignored_stop_is_repeated_and_then_the_beats_end() -> None:
         assert late_s < SETTINGS.stop_confirm_s + 0.15
 
 
+async def test_a_stop_that_the_daemon_asks_for_goes_out_on_the_guards_own_channel() -> None:
+    async with rig() as cell:
+        cell.robot.deaf = 1_000_000
+        await cell.client.arm(PATIENT)
+        await cell.client.stop_robot()
+        await cell.robot.stopped(10)
+        await asyncio.sleep(0.15)
+        beats = len(cell.robot.beats_s)
+        await asyncio.sleep(0.1)
+        assert len(cell.robot.beats_s) == beats, "no sign of life while the stop is not confirmed"
+        assert cell.client.health().armed
+        assert cell.client.trip is None
+        cell.robot.deaf = 0
+        await until(lambda: cell.robot.latched)
+        await cell.client.acknowledge()
+        await until(lambda: len(cell.robot.beats_s) > beats)
+
+
 async def test_the_death_of_the_guard_is_told_and_the_beats_end() -> None:
     async with rig() as cell:
         taring = asyncio.create_task(cell.client.tare(5.0))

@@ -11,10 +11,16 @@ from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
 from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.kinematics import Kinematics
 from drivers.robot.siasun.records import StreamFigures, StreamOption
 
 STEP_MAX_ANGLE_DEG = 0.5
 """The controller refuses a STEP that turns further (protocol, section 4)."""
+DH_FITS_MM = 5.0
+DH_FITS_DEG = 0.5
+"""A table of the right arm fits its controller's pose much better, one of another does not."""
+WAY_STEP_RAD = math.radians(1.0)
+"""A flange 3 m from the axis moves by 52 mm between two points of the way that are checked."""
 
 
 class Bounds:
@@ -23,6 +29,7 @@ class Bounds:
     def __init__(self, name: str, config: SiasunConfig) -> None:
         self._name = name
         self._config = config
+        self._kinematics = Kinematics(config.dh) if config.dh is not None else None
 
     def joints(self, joints_rad: Array, speed_ratio: float) -> tuple[Array, int]:
         """Joint angles in degrees and speed in percent."""
@@ -37,6 +44,37 @@ class Bounds:
         if not 0.0 < speed_ratio * 100.0 <= limit:
             self._refuse(f"joint speed {speed_ratio * 100.0:g} %, allowed (0, {limit}]")
         return joints_deg, max(1, math.floor(speed_ratio * 100.0 + 1e-9))
+
+    @property
+    def knows_joint_ways(self) -> bool:
+        """True when the configuration says where the flange is at given joints."""
+        return self._kinematics is not None
+
+    def joint_way(self, state: RobotState, joints_rad: Array) -> None:
+        """Refuse a joint move on whose way the flange leaves the box for joint moves.
+
+        All joints move together and straight in joint space. The table is compared with what the
+        robot reports of itself first: one that does not fit would check nothing.
+        """
+        kinematics = self._kinematics
+        if kinematics is None:
+            return
+        distance_m, angle_rad = state.distance_to(kinematics.base_T_flange(state.joints_rad))
+        if not (distance_m / MM <= DH_FITS_MM and math.degrees(angle_rad) <= DH_FITS_DEG):
+            self._refuse(
+                f"the dh table puts the flange {distance_m / MM:.2f} mm and "
+                f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it"
+            )
+        lower, upper = self._config.joint_workspace_mm
+        greatest_rad = float(np.abs(joints_rad - state.joints_rad).max())
+        points = max(2, math.ceil(greatest_rad / WAY_STEP_RAD) + 1)
+        for joints in np.linspace(state.joints_rad, joints_rad, points):
+            place_mm = kinematics.base_T_flange(joints).translation / MM
+            if not np.all((place_mm >= lower) & (place_mm <= upper)):
+                self._refuse(
+                    f"on the way to joints {np.round(np.degrees(joints_rad), 3).tolist()} deg the "
+                    f"flange comes to {np.round(place_mm, 1).tolist()} mm"
+                )
 
     def pose(self, base_T_flange: RigidTransform) -> Array:
         """The pose in its written form, mm and degrees."""

@@ -9,6 +9,7 @@ Port = Annotated[int, Field(ge=1, le=65535)]
 Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Point = tuple[float, float, float]
 Joints = tuple[float, float, float, float, float, float]
+Row = tuple[float, float, float, float]
 
 
 class _Section(BaseModel):
@@ -53,6 +54,12 @@ class SiasunConfig(_Section):
     joints_min_deg: Joints
     joints_max_deg: Joints
     """What a joint move may ask for; at most the robot's own range."""
+    dh: tuple[Row, Row, Row, Row, Row, Row] | None = None
+    """Standard Denavit-Hartenberg table, base to flange: offset of the angle (deg), d (mm), a (mm),
+    alpha (deg) of each joint. Without it the way of a joint move is not checked."""
+    joint_workspace_min_mm: Point | None = None
+    """Corners of a wider box for the flange in joint moves; None: that of all other moves."""
+    joint_workspace_max_mm: Point | None = None
     max_speed_mm_s: Annotated[float, Field(gt=0.0, le=2000.0)]
     max_acceleration_mm_s2: Annotated[float, Field(gt=0.0, le=5000.0)] = 1000.0
     max_joint_speed_percent: Annotated[int, Field(ge=1, le=100)] = 25
@@ -70,6 +77,12 @@ class SiasunConfig(_Section):
     arrival_tolerance_deg: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
     """Of the flange's angle, and of every joint."""
 
+    @property
+    def joint_workspace_mm(self) -> tuple[Point, Point]:
+        """Lower and upper corner of the box for joint moves."""
+        lower = self.joint_workspace_min_mm or self.workspace_min_mm
+        return lower, self.joint_workspace_max_mm or self.workspace_max_mm
+
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if self.command_port == self.state_port:
@@ -77,6 +90,7 @@ class SiasunConfig(_Section):
         pairs = {
             "workspace_min_mm": (self.workspace_min_mm, self.workspace_max_mm),
             "joints_min_deg": (self.joints_min_deg, self.joints_max_deg),
+            "joint_workspace_min_mm": self.joint_workspace_mm,
         }
         for key, (lower, upper) in pairs.items():
             if not all(low < high for low, high in zip(lower, upper, strict=True)):

@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from typing import Any
 
 from scipy.spatial.transform import RigidTransform
 
@@ -57,6 +58,11 @@ class SiasunRobot(StreamingRobot):
         self._connecting = asyncio.Lock()
         self._connected = False
 
+    @classmethod
+    def checks_joint_ways(cls, config: Any) -> bool:
+        """Only with a dh table in the configuration."""
+        return config.dh is not None
+
     async def connect(self) -> None:
         """Listen and wait for both channels and a first state report. Idempotent."""
         async with self._connecting:
@@ -100,8 +106,11 @@ class SiasunRobot(StreamingRobot):
         return replace(state, stop_latched=True) if self._latch else state
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
-        """MOVJ."""
+        """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
+        if self._bounds.knows_joint_ways:
+            self._check_ready()
+            self._bounds.joint_way(self.state(self._config.stale_s), joints_rad)
         return await self._move(
             lambda session, seq: protocol.move_joint(session, seq, joints_deg.tolist(), percent),
             lambda state: self._arrival.off_joints(state, joints_rad),

@@ -224,3 +224,9 @@ def test_check_says_which_recipes_the_cell_can_run() -> None:
 def test_a_sensor_with_bad_settings_is_reported_and_judged_no_further(tmp_path: Path) -> None:
     path = changed(tmp_path, one=('transport = "tcp"', 'transport = "telepathy"'))
     assert {problem.key for problem in problems(path)} == {"force_sensors.force.settings.transport"}
+
+
+def test_check_says_whose_joint_moves_nobody_checks() -> None:
+    words = "robots.main: joint moves are not checked"
+    assert words in CliRunner().invoke(app, ["check", str(CONFIG / "cell.toml")]).output
+    assert words not in CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")]).output

@@ -34,8 +34,8 @@ def require_near(
 def require_clearance(recipe: DeckRecipe, features: FeatureFile, M_T_D: RigidTransform) -> None:
     """Raise ``TargetOutOfBounds`` when a commanded deck would come too near to the frame.
 
-    The moves of the compensation are not guarded by force: they must not be able to touch, however
-    wrong the measurement behind them is.
+    The guard watches the corrections too, but it stops an arm only after it has met something: they
+    must not be able to touch, however wrong the measurement behind them is.
     """
     holes_m = np.array([hole.position_m for hole in features.holes])
     half_x_m, half_y_m = np.abs(holes_m[:, :2]).max(axis=0)
