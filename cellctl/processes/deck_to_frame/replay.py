@@ -178,7 +178,9 @@ def replay(
         if identity not in calibrations:
             raise NotReplayable(f"calibration {name} of this run is not in the store")
         if name in kinds:
-            results[name] = kinds[name].result(calibrations[identity].record)
+            # As it lay in its file: the run store gives tuples in place of lists.
+            written = json.loads(json.dumps(calibrations[identity].record))
+            results[name] = kinds[name].result(written)
     geometry = CalibrationSet.of(CalibrationSnapshot(results, {}))
     yield from Replay(record, read, DeckRecipe.model_validate(recipe), geometry, features).lines()
 
