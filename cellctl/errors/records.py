@@ -136,19 +136,6 @@ class RecordSilent(RecordsError):
     remedy = "Check the disk. The record is completed when the disk answers; see cellctl runs show."
 
 
-class NotReplayable(RecordsError):
-    """A run cannot be computed anew from its record."""
-
-    number = 813
-    text = "The run cannot be replayed"
-    cause = (
-        "It was recorded by a version that kept no raw images, or ended before it measured; a file "
-        "of it is missing, or its process cannot replay."
-    )
-    remedy = "See the detail for what is missing; `cellctl runs verify` finds damaged files."
-    reaction = Reaction.WARN
-
-
 class DiskSilent(RecordsError):
     """The disk did not take or give what a command waits for."""
 
