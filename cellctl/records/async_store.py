@@ -12,7 +12,7 @@ from cellctl.records.raw_images import (
     MEDIA_TYPE,
     GreyImage,
     encode_and_put,
-    lowest_priority_thread,
+    low_priority_thread,
 )
 from cellctl.records.store import RunStore
 
@@ -35,7 +35,7 @@ class AsyncRunStore:
         except BaseException:
             self._thread.shutdown()
             raise
-        self._images = lowest_priority_thread()
+        self._images = low_priority_thread()
         self._keeping: set[asyncio.Task[None]] = set()
         self.fault: RecordNotWritten | None = None
         """The first write that did not reach the disk; the store takes no run after it."""

@@ -11,7 +11,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import utc_now
 from cellctl.force.contact.curve import ForceCurve
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.record import (
@@ -47,7 +47,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     MEASURED_FROM,
 )
 from cellctl.processes.deck_to_frame.record.sources import measured_from, raw_images
-from cellctl.records.entries import Document, PoseOrigin
+from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, split_document
 from cellctl.records.gauges import GAUGE_HOLES
 from cellctl.records.recorder import RunRecorder
@@ -101,6 +101,15 @@ class Journal:
     async def commanded(self, base_T_flange: RigidTransform) -> None:
         """Where the main robot is sent to bring the deck to its target."""
         await self.recorder.pose("target", PoseOrigin.COMMANDED, BASE, FLANGE, base_T_flange)
+
+    async def arrived(self, commanded: RigidTransform, reported: RigidTransform) -> None:
+        """A move of the main robot over the station: where it was sent, where it says it is."""
+        six = [[float(value) for value in pose_to_xyzabc(pose)] for pose in (commanded, reported)]
+        detail = {"commanded_mm_deg": six[0]}
+        pose = RecordedPose(
+            "arrived", PoseOrigin.REPORTED, BASE, FLANGE, tuple(six[1]), detail=detail
+        )
+        await self.recorder.add(pose)
 
     async def iteration(
         self,

@@ -47,8 +47,9 @@ from cellctl.vision.registration.part_pose import PartPose
 POSE = (("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("A", "°"), ("B", "°"), ("C", "°"))
 FORCE_RESOLUTION = 1e-4
 """Force curves are written with four decimals."""
-POSE_RESOLUTION = 1e-9
-"""In mm and degrees, of what is computed from recorded poses, which are written as angles."""
+ROUNDING = 1e-9
+"""In mm and degrees: the last digits depend on the number of threads that compute, and recorded
+poses are written as angles."""
 
 
 @dataclass(slots=True)
@@ -67,14 +68,20 @@ class Replay:
     def lines(self) -> Iterator[Replayed]:
         """Everything in the order in which it was measured."""
         for name, source in self.record.document(MEASURED_FROM).items():
+            there = {artefact.name for artefact in self.record.artefacts}
+            wanted = source["images"]
+            found_images = sum(image in there for image in wanted)
+            yield Replayed(name, "raw images", "", len(wanted), found_images)
+            if found_images < len(wanted):
+                continue
             pose = self._measure(source)
             c1_T_part = pose.pose.pose
             recorded = RigidTransform.from_matrix(np.array(source["result"], float))
-            yield from compare(name, POSE, _six(recorded), _six(c1_T_part))
+            yield from compare(name, POSE, _six(recorded), _six(c1_T_part), ROUNDING)
             sigmas = np.sqrt(np.diag(np.array(source["covariance"], float)))
             columns = [(f"σ {axis}", unit) for axis, unit in COMPONENTS]
             was, found = in_mm_deg(sigmas), in_mm_deg(pose.pose.sigma)
-            yield from compare(name, columns, was.tolist(), found.tolist())
+            yield from compare(name, columns, was.tolist(), found.tolist(), ROUNDING)
             yield from self._derived(name, source["key"], pose.pose)
         yield from self._forces()
 
@@ -101,8 +108,6 @@ class Replay:
 
     def _frames(self, names: Sequence[str]) -> Iterator[list[Image]]:
         artefacts = {artefact.name: artefact for artefact in self.record.artefacts}
-        if missing := [name for name in names if name not in artefacts]:
-            raise NotReplayable(f"{len(missing)} raw images are missing, {missing[0]} first")
         for begin in range(0, len(names), IMAGES_PER_FRAME):
             frame = names[begin : begin + IMAGES_PER_FRAME]
             yield [decode(self.read(artefacts[name])) for name in frame]
@@ -116,7 +121,7 @@ class Replay:
             base_T_flange = UncertainPose.exact(_pose(self._last_pose(key, PoseOrigin.REPORTED)))
             found = deck_on_flange(base_T_flange, self.geometry.base_T_c1, c1_T_part)
             was = self._last_pose(FLANGE_T_DECK, PoseOrigin.MEASURED).pose_mm_deg
-            yield from compare(FLANGE_T_DECK, POSE, was, _six(found.pose), POSE_RESOLUTION)
+            yield from compare(FLANGE_T_DECK, POSE, was, _six(found.pose), ROUNDING)
             return
         if self.c1_T_M is None:
             raise NotReplayable(f"{name} comes before the frame was measured")
@@ -127,7 +132,7 @@ class Replay:
             figures, _ = split_document(seat_record(seat_error(M_T_D, thickness_m, holes)))
             for entry in figures:
                 yield Replayed(
-                    name, entry.key, entry.unit, self.record.value(entry.key), entry.value
+                    name, entry.key, entry.unit, self.record.value(entry.key), entry.value, ROUNDING
                 )
             return
         error = assembly_error(target_M_T_D(thickness_m, self.recipe.stand_off_mm * MM), M_T_D)
@@ -135,7 +140,7 @@ class Replay:
             if key == f"iteration-{passed.number}":
                 was_error = [component.value for component in passed.components]
                 columns = [(f"error {axis}", unit) for axis, unit in COMPONENTS]
-                yield from compare(name, columns, was_error, in_mm_deg(error).tolist())
+                yield from compare(name, columns, was_error, in_mm_deg(error).tolist(), ROUNDING)
 
     def _last_pose(self, key: str, origin: PoseOrigin) -> RecordedPose:
         found = [pose for pose in self.record.poses if (pose.key, pose.origin) == (key, origin)]
@@ -178,7 +183,9 @@ def replay(
         if identity not in calibrations:
             raise NotReplayable(f"calibration {name} of this run is not in the store")
         if name in kinds:
-            results[name] = kinds[name].result(calibrations[identity].record)
+            # As it lay in its file: the run store gives tuples in place of lists.
+            written = json.loads(json.dumps(calibrations[identity].record))
+            results[name] = kinds[name].result(written)
     geometry = CalibrationSet.of(CalibrationSnapshot(results, {}))
     yield from Replay(record, read, DeckRecipe.model_validate(recipe), geometry, features).lines()
 

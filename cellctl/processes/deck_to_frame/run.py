@@ -150,3 +150,4 @@ class AssemblyRun:
                 )
             )
         await settle(self.cell.guard)
+        await self.journal.arrived(base_T_flange, self.cell.main.state().base_T_flange)

@@ -85,7 +85,7 @@ async def replay(rig: DaemonRig, *options: str) -> tuple[int, str]:
 async def test_a_recorded_run_comes_out_the_same(rig: DaemonRig, seeing: Seeing) -> None:
     names = await good_run(rig)
     assert len(names) == 4 * len(seeing.found)
-    assert names[0] == "raw/frame-frame-1-head-1-left.png"
+    assert names[0] == "raw/frame-frame-1-head-1-left.pgm.zst"
     code, said = await replay(rig, "--every")
     assert code == 0, said
     for name in ("frame", "deck", "flange_T_deck", "iteration-1", "error X", "seated"):

@@ -18,7 +18,7 @@ IMAGES_PER_FRAME = 4
 def raw_images(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dict[str, Image]:
     """The images of a measurement by the names of their files, ``IMAGES_PER_FRAME`` a frame."""
     return {
-        f"raw/{name}-frame-{frame}-head-{head}-{side}.png": image
+        f"raw/{name}-frame-{frame}-head-{head}-{side}.pgm.zst": image
         for frame, pairs in enumerate(shots, start=1)
         for head, pair in enumerate(pairs, start=1)
         for side, image in (("left", pair.left), ("right", pair.right))

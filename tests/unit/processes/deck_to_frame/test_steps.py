@@ -152,6 +152,22 @@ async def test_the_correction_ends_within_the_thresholds(rig: RunRig) -> None:
     np.testing.assert_allclose(pose_to_xyzabc(corrected.M_T_D.pose), true_mm_deg, atol=1e-6)
 
 
+async def test_every_move_over_the_station_is_recorded_with_where_it_ended(rig: RunRig) -> None:
+    stand_off = await at_the_stand_off(rig)
+    rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
+    await correct_pose(stand_off)
+    arrived = [pose for pose in (await rig.record()).poses if pose.key == "arrived"]
+    moves = [move for move in rig.bench.cell.main.moves if move.kind == "linear"]
+    assert len(arrived) == len(moves) == 3, "above the stand-off, down to it, corrected"
+    for pose, move in zip(arrived, moves, strict=True):
+        assert (pose.origin, pose.parent, pose.child) == (PoseOrigin.REPORTED, "base", "flange")
+        np.testing.assert_allclose(
+            np.array(pose.detail["commanded_mm_deg"], float), pose_to_xyzabc(move.target), atol=1e-9
+        )
+    last = np.array(arrived[-1].pose_mm_deg, float)
+    np.testing.assert_allclose(last, pose_to_xyzabc(rig.bench.cell.main.flange), atol=1e-9)
+
+
 async def test_the_paper_s_rule_converges_too(rig: RunRig) -> None:
     shipped = rig.bench.recipe
     settings = shipped.pose_correction.model_copy(update={"rule": "paper"})
