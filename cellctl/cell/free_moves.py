@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
@@ -13,24 +14,30 @@ from cellctl.cell.settling import settle
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import Array
 
+LEVER_M = 0.5
+"""No load hangs farther from the sensor than this."""
+
 
 @asynccontextmanager
 async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterator[None]:
     """Arm the guard with limits on the wrench at the sensor; disarm it after a good end.
 
     A trip stops the robot at once, and whoever supervises the guard has its fault. Without a
-    gravity compensation the wrench at the beginning, at standstill, is taken as zero, and the
-    tolerance must cover what the load makes of every turn. Raises ``NotSettled`` and
-    ``GuardRefused``: without a working guard nothing moves.
+    gravity compensation the wrench at the beginning, at standstill, is taken as zero, and its
+    weight is added to the tolerance: the load is felt again as far as the arm tilts. Raises
+    ``NotSettled`` and ``GuardRefused``: without a working guard nothing moves.
     """
     guard = arm.guard
     await guard.disarm()
     await guard.set_wrench_frame(RigidTransform.identity())
+    weight_n = 0.0
     if not guard.gravity_compensated:
         await guard.set_gravity_compensation(GravityCompensation.none())
         await settle(guard)
-        await guard.tare(TARE_S)
-    force_n, moment_n_m = tolerance.force_n, tolerance.moment_n_m
+        tare = await guard.tare(TARE_S)
+        weight_n = float(np.linalg.norm(tare.mean[:3]))
+    force_n = tolerance.force_n + weight_n
+    moment_n_m = tolerance.moment_n_m + weight_n * LEVER_M
     filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
     await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
     yield

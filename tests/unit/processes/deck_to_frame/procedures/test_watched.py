@@ -3,9 +3,12 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from cellctl.cell.free_moves import free_tolerance, watched
 from cellctl.errors.base import CellError
+from cellctl.guard.report import TareResult
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.cell.bench import make_bench
 from tests.unit.procedures.rig import ProcedureRig
@@ -36,3 +39,21 @@ async def test_without_the_guard_nothing_moves(rig: ProcedureRig) -> None:
     with pytest.raises(CellError, match="no fresh samples"):
         await rig.procedures[106].run(rig.context)
     assert not rig.bench.cell.main.moves
+
+
+async def test_a_load_that_nobody_has_identified_may_be_felt_as_far_as_the_arm_tilts(
+    rig: ProcedureRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    deck, guard = rig.bench.deck, rig.bench.cell.guard
+    guard.gravity_compensated = False
+
+    async def tare(_: float) -> TareResult:
+        return TareResult(np.array([0.0, 30.0, -1990.0, 1.0, 2.0, 3.0]), np.ones(6), 100)
+
+    monkeypatch.setattr(guard, "tare", tare)
+    async with watched(deck.arm, free_tolerance(deck.arm)):
+        assert guard.armed
+    assert not guard.armed
+    assert guard.limits[0].filtered[0] == pytest.approx(
+        deck.force_config.free_force_n + 1990.2, rel=1e-4
+    )
