@@ -14,8 +14,9 @@ from cellctl.records.artefacts import ArtefactFolder
 
 MEDIA_TYPE = "application/zstd"
 """PGM inside: `zstd -d` gives a picture that any viewer opens."""
+_GREATEST_NICENESS = 19
 _NICENESS = 10
-"""Below the vision workers, above what only fills idle time: a run is closed with its images."""
+"""Added to that of the daemon. Not all there is: a run is closed with its images."""
 _LEVEL = 1
 """Noise cannot be compressed: more effort costs seconds and saves a few per cent. PNG takes ten
 times as long."""
@@ -57,4 +58,5 @@ def decode(data: bytes) -> GreyImage:
 
 def _at_low_priority() -> None:
     # On Linux every thread has a niceness of its own.
-    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICENESS)
+    niceness = min(os.getpriority(os.PRIO_PROCESS, 0) + _NICENESS, _GREATEST_NICENESS)
+    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)

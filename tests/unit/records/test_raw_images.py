@@ -59,8 +59,8 @@ def test_images_are_coded_at_low_priority() -> None:
     thread = low_priority_thread()
     niceness = thread.submit(os.getpriority, os.PRIO_PROCESS, 0).result()
     thread.shutdown()
-    assert niceness == 10
-    assert os.getpriority(os.PRIO_PROCESS, 0) != 10
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    assert niceness == min(own + 10, 19)
 
 
 def test_what_is_no_image_is_said_to_be_none() -> None:
