@@ -1,7 +1,7 @@
 """Guarded moves on simulated time, with the swing of the load and real contact: no false alarm."""
 
 from contextlib import nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -20,6 +20,7 @@ from cellctl.errors.force import ForceLimitExceeded
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.facts import RunFacts
+from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
@@ -43,12 +44,23 @@ def cell_of(world: MatingCell) -> DeckCell:
     return DeckCell(cell, arm, nothing, nothing, nothing, settings, recipes, FrameMemory())
 
 
-def run_on(world: MatingCell) -> AssemblyRun:
+@dataclass
+class Arrivals:
+    """In place of the journal: where moves were sent, and where they ended."""
+
+    seen: list[tuple[RigidTransform, RigidTransform]] = field(default_factory=list)
+
+    async def arrived(self, commanded: RigidTransform, reported: RigidTransform) -> None:
+        self.seen.append((commanded, reported))
+
+
+def run_on(world: MatingCell, arrivals: Arrivals | None = None) -> AssemblyRun:
     cell, nothing = cell_of(world), cast(Any, None)
     values = dict.fromkeys(RunFacts.__dataclass_fields__, nothing)
     payload = SimpleNamespace(mass_kg=200.0)
     facts = RunFacts(**values | {"cell": cell, "recipe": cell.recipes[0], "payload": payload})
-    return AssemblyRun(OpenRun(facts, nothing, nothing, nothing, Interruption()), nothing)
+    journal = cast(Journal, arrivals or Arrivals())
+    return AssemblyRun(OpenRun(facts, nothing, journal, nothing, Interruption()), nothing)
 
 
 def raised(world: MatingCell, height_m: float) -> RigidTransform:
@@ -76,7 +88,8 @@ def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
 
 def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     world = MatingCell(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
-    run, above = run_on(world), raised(world, 0.04)
+    arrivals = Arrivals()
+    run, above = run_on(world, arrivals), raised(world, 0.04)
 
     async def up_and_down() -> None:
         await run.move_flange(above, world.calibrated_deck())
@@ -86,6 +99,9 @@ def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     run_simulated(world.start_s, world.advance, up_and_down)
     assert world.guard.trip is None
     moved = world.arm.encoder_pose(world.world.time_s).translation - above.translation
+    assert len(arrivals.seen) == 2, "each move is recorded"
+    for sent, reached in arrivals.seen:
+        np.testing.assert_allclose(reached.translation, sent.translation, atol=1e-5)
     np.testing.assert_allclose(moved, [0, 0, -0.015], atol=1e-5)
 
 
