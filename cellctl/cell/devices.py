@@ -84,6 +84,8 @@ class Cell:
     @contextmanager
     def trips_awaited(self, sensor_name: str) -> Iterator[None]:
         """Inside, whoever moves deals with the trips of this guard; supervision leaves them."""
+        # A touch is a trip that a guarded move is made to find. Supervision would take it for a
+        # fault and abort the run.
         self._awaited_trips.add(sensor_name)
         try:
             yield
@@ -119,6 +121,8 @@ class Cell:
         }
         questions |= {name: gripper.state() for name, gripper in self.grippers.items()}
         questions |= {name: io.read() for name, io in self.digital_ios.items()}
+        # One device that hangs must not hide the answers of the others, so every question has its
+        # own time-out and no fault ends the round.
         asked = (_in_time(question) for question in questions.values())
         answers = await asyncio.gather(*asked, return_exceptions=True)
         self.unanswered = {}
@@ -126,6 +130,8 @@ class Cell:
             if isinstance(answer, CellError):
                 self.unanswered[name] = answer
             elif isinstance(answer, BaseException):
+                # Not a fault of a device but a defect or a cancellation: it must not look like a
+                # device that is silent.
                 raise answer
 
     async def connect(self) -> None:
@@ -139,8 +145,12 @@ class Cell:
                 | {path: device.connect() for path, device in self._by_path().items()}
             )
         except BaseException:
+            # Devices that did connect are let go again, because the next attempt connects all of
+            # them and has to find their ports free.
             await self.disconnect()
             raise
+        # Not cleared before every device has answered: until then an arm that did not confirm its
+        # stop may still move.
         self.connected, self.unanswered, self.unstopped = True, {}, {}
         _log.info("all devices connected", simulated=self.config.simulated)
 
@@ -152,6 +162,8 @@ class Cell:
             *(guard.stop() for guard in self.guards.values()),
             return_exceptions=True,
         )
+        # Whatever fails here is only logged. A link that cannot be closed in order is lost to the
+        # robot too, and it stops for that.
         for result in results:
             if isinstance(result, BaseException):
                 _log.warning("while disconnecting", error=str(result))
@@ -171,6 +183,8 @@ class Cell:
         stops = [asyncio.create_task(robot.stop()) for robot in self.robots.values()]
         second_stops = [asyncio.create_task(guard.stop_robot()) for guard in self.guards.values()]
         results = await asyncio.gather(*stops, return_exceptions=True)
+        # Set before anything is awaited again: the stop of a guard may hang, and the line must see
+        # that an arm may still move.
         self.unstopped = {
             name: result
             for name, result in zip(self.robots, results, strict=True)
@@ -183,6 +197,8 @@ class Cell:
                 _log.warning("guard did not take the stop", guard=name, fault=str(result))
         await self._disarm_where_robots_stand()
         failures = list(self.unstopped.values())
+        # One fault leads the machine, but whoever walks to the cell has to know of every arm that
+        # may still move.
         for second in failures[1:]:
             failures[0].add_note(f"beside it: {second}")
         if failures:
@@ -190,6 +206,7 @@ class Cell:
 
     async def _disarm_where_robots_stand(self) -> None:
         for name, guard in self.guards.items():
+            # The guard of such a robot is the only one that still asks it to stop.
             if self.config.force_sensors[name].mounted_on in self.unstopped:
                 continue
             try:
@@ -199,6 +216,8 @@ class Cell:
 
     async def rearm(self) -> None:
         """Release the stop latches of guards and robots; moves nothing."""
+        # The guards first: one that still wants a stop would ask again as soon as its robot is
+        # released.
         for guard in self.guards.values():
             await guard.acknowledge()
         # A cell without a robot has nothing to rearm, and gather needs at least one task.
@@ -260,6 +279,8 @@ async def _all(attempts: Mapping[str, Awaitable[None]]) -> None:
     }
     for name, error in failed.items():
         _log.error("device failed to connect", device=name, error=str(error))
+    # A defect goes before the faults of devices: its traceback would be lost in the text of a
+    # collected fault.
     unexpected = [error for error in failed.values() if not isinstance(error, CellError)]
     if unexpected:
         raise unexpected[0]

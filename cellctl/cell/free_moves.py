@@ -28,18 +28,25 @@ async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterato
     ``NotSettled`` and ``GuardRefused``: without a working guard nothing moves.
     """
     guard = arm.guard
+    # Frame and gravity compensation cannot be changed while armed.
     await guard.disarm()
     await guard.set_wrench_frame(RigidTransform.identity())
     weight_n = 0.0
     if not guard.gravity_compensated:
         await guard.set_gravity_compensation(GravityCompensation.none())
+        # A load that still swings would be tared with the force of its swing, and the limits would
+        # lie beside their middle by that.
         await settle(guard)
         tare = await guard.tare(TARE_S)
         weight_n = float(np.linalg.norm(tare.mean[:3]))
     force_n = tolerance.force_n + weight_n
+    # The tare holds for one orientation. Tilted, the whole weight may appear in any direction, and
+    # about the sensor on the lever of the load.
     moment_n_m = tolerance.moment_n_m + weight_n * LEVER_M
     filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
     await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+    # No disarming in a ``finally``: after a fault the arm may not stand yet, and the guard must go
+    # on until the stop of the run.
     yield
     await guard.disarm()
 
@@ -50,6 +57,8 @@ async def move_joint_free(cell: Cell, arm: GuardedRobot, joints_rad: Array) -> N
     motion = arm.robot.move_joint
     with cell.trips_awaited(arm.sensor_name):
         async with watched(arm, tolerance):
+            # ``free_force_n`` was chosen for this speed: faster, the inertia of the load alone
+            # would trip the guard.
             speed_ratio = arm.config.speed_percent / 100
             trip = await guarded(arm.robot, arm.guard, motion(joints_rad, speed_ratio=speed_ratio))
             if trip is not None:

@@ -24,6 +24,7 @@ async def gather_or_cancel(*work: Coroutine[Any, Any, T]) -> list[T]:
         for fault in _failures(tasks):
             raise fault from None
         raise
+    # Noted before the others are left: they then fail by being stopped, and that is a consequence.
     first = _failures(tasks)
     await _leave(tasks)
     if not first:

@@ -36,6 +36,8 @@ class Sensing:
     @property
     def rate_band_hz(self) -> tuple[float, float]:
         """Rate that counts as right; a silence that is no fault yet may fall to either side."""
+        # A gap of almost ``stale_s`` is allowed, and a window of the rate detector that contains it
+        # counts that many samples less. Without this share it would trip for the rate.
         slack = RATE_RATIO + self.stale_s / DEFAULT_RATE_WINDOW_S
         return max(0.0, 1.0 - slack) * self.rate_hz, (1.0 + slack) * self.rate_hz
 

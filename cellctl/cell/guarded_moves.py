@@ -53,6 +53,7 @@ async def guarded_moves(
         if trip is not None:
             raise trip.fault()
 
+    # Frame and tare cannot be changed while armed: the signal would jump against the limits.
     await guard.disarm()
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
@@ -61,6 +62,8 @@ async def guarded_moves(
     filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+        # After a fault the guard stays armed or latched: whoever handles the fault decides when
+        # watching may end.
         yield move
         await guard.disarm()
 
@@ -76,6 +79,8 @@ async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip |
     try:
         await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
         if watching.done():
+            # The guard's stop went over its own channel. The daemon's goes over another one, and
+            # returns only when the robot confirms that it stands.
             await _second_stop(robot, guard)
         return await _outcome(robot, guard, moving)
     finally:
@@ -89,12 +94,15 @@ async def _outcome(
 ) -> GuardTrip | None:
     try:
         await moving
+    # The robot may report its end before the guard's report of the trip has reached the daemon.
+    # Then the abort is the consequence and the trip is the reason.
     except (MotionAborted, NotRearmed):
         trip = await _late_trip(guard)
         if trip is None:
             raise
         await _second_stop(robot, guard)
         return trip
+    # Not None: the guard may have tripped in the moment in which the robot arrived.
     return guard.trip
 
 

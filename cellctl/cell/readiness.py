@@ -24,6 +24,7 @@ def require_full_speed(robot: Robot) -> None:
     nothing that is planned on times would hold.
     """
     percent = 100.0 * robot.state().speed_override_ratio
+    # Written so that a speed that is not a number is refused.
     if not abs(percent - 100.0) < OVERRIDE_BAND_PERCENT:
         raise SpeedOverridden(f"{robot.name}: {percent:.0f} %")
 

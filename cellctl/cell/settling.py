@@ -30,11 +30,13 @@ async def settle(guard: GuardClient) -> None:
     while loop.time() - begin_s < TIMEOUT_S:
         await asyncio.sleep(POLL_S)
         since_s = loop.time() - WINDOW_S
+        # Samples from before the call show the swing of the move, or the calm from before it.
         if since_s < begin_s:
             continue
         raw = guard.samples(since_s).raw
         scatter = block_scatter(raw)
         if (scatter < STILL).all():
+            # The guard looks for this only while it is armed, which it is not here.
             if not np.ptp(raw, axis=0).any():
                 raise SensorFrozen(f"{len(raw)} samples in a row are equal in all six channels")
             return

@@ -15,5 +15,6 @@ MOVED_RAD = np.radians(0.005)
 def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
     """Raise ``HeadMoved`` when a robot is not where it was."""
     distance_m, angle_rad = robot.state().distance_to(base_T_flange)
+    # Written so that a pose that is not a number counts as moved.
     if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):
         raise HeadMoved(f"{name} by {distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°")

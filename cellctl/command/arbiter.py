@@ -43,6 +43,8 @@ class CommandArbiter:
         self._disk_timeout_s = disk_timeout_s
         self._validator = CommandValidator(unit.machine, unit.factory, line_alive)
         self._tracker = CommandTracker(unit.machine, lambda: unit.jobs.result)
+        # Not taken while a command is validated: validation waits for the disk, and no other
+        # command should wait for that.
         self._turn = asyncio.Lock()
 
     @property

@@ -28,6 +28,8 @@ class CommandQueue(Generic[S]):
         dropped = None
         if submission.command.ends_motion:
             self._urgent.append(submission)
+            # Not forgotten but handed out: each of them gets its answer, so that the PLC does not
+            # wait for a number that is never acknowledged.
             self._overtaken.extend(self._waiting)
             self._waiting.clear()
         else:

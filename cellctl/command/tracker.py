@@ -71,11 +71,14 @@ class CommandTracker:
         code = await self._machine.command(number)
         if code is not RejectCode.NONE:
             self._pursued.pop(source, None)
+            # A refused command does not end the pursuit of the one before, which goes on as if
+            # nothing had been asked.
             if before is not None:
                 self._pursued[source] = before
         return code
 
     def _changed(self, before: State, after: State) -> None:
+        # Told also for a Hold that is only noted; no goal is reached by that.
         if before is after:
             return
         for source, submission in tuple(self._pursued.items()):

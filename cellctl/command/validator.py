@@ -63,6 +63,8 @@ def validate_authority(command: UnitCommand, mode: Mode, *, line_alive: bool) ->
     """
     if command.source is Source.LINE or not line_alive:
         return RejectCode.NONE
+    # A command may bring its mode with it: what would start Production counts as motion in
+    # Production.
     wanted = command.unit_mode or mode
     moves = command.cntrl_cmd in MAY_MOVE and Mode.PRODUCTION in (mode, wanted)
     leaves_production = line_in_control(mode, line_alive=line_alive) and wanted != mode

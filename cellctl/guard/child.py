@@ -39,6 +39,8 @@ class GuardChild:
         self._pending = PendingRequests(reply_timeout_s)
         self._loop = asyncio.get_running_loop()
         self._gone = asyncio.Event()
+        # SEQPACKET keeps the messages apart: each is read whole or not at all, also one of a
+        # process that is killed while it sends.
         self._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         memory = ring.create(ring_slots)
         self.reader = RingReader(memory)
@@ -50,8 +52,12 @@ class GuardChild:
                 stdin=subprocess.DEVNULL,
                 pass_fds=(theirs.fileno(), memory),
                 process_group=0,  # Ctrl-C is the daemon's to handle
+                # Should a driver load numpy after all, its linear algebra must not start threads
+                # beside the one that judges samples.
                 env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},
             )
+        # Reader and child have descriptors of their own. Left open, this one would keep the ring of
+        # a dead guard, about 18 MB, at every restart.
         os.close(memory)
         self._link.settimeout(0.0)
         # A descriptor of the process tells its end at once, without a thread that waits for it.
@@ -120,6 +126,8 @@ class GuardChild:
     def _reap(self) -> None:
         """The process has ended: take its last messages, then tell its death."""
         self._loop.remove_reader(self._pid_descriptor)
+        # The fault with which a guard gives up its start may still wait in the socket. Taken after
+        # the death, it would come too late: ``start`` would raise the death instead of its cause.
         self._read()
         code = self._process.wait()
         how = f"exit code {code}" if code >= 0 else f"killed by signal {-code}"

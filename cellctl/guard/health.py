@@ -74,6 +74,8 @@ class GuardHealth:
         """
         if not self.alive:
             return GuardDied(f"its status is more than {_HUNG_S:g} s old")
+        # A sensor that was given up comes before the channel: it needs Reset, whereas the channel
+        # is reconnected by the guard itself.
         if not self.sensor_open:
             return SensorSilent("the guard has given it up")
         if not self.stop_channel_up:

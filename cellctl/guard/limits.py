@@ -63,6 +63,8 @@ class GuardLimits:
         # Written so that NaN is refused as well: a limit of NaN would never be compared as passed.
         thresholds = (*self.raw, *self.filtered)
         durations = (self.filter_s, self.stale_s, self.flange_age_s, self.rate_window_s)
+        # A single sample is always equal to itself, so a count of one would trip at the first
+        # sample.
         counts = (self.frozen_samples - 1, self.bad_frames)
         if not all(value > 0.0 for value in (*thresholds, *durations, *counts)):
             raise ValueError("guard limits are positive numbers; at least two frozen samples")

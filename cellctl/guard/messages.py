@@ -44,6 +44,7 @@ def limits_to_json(limits: GuardLimits) -> Message:
 def limits_from_json(message: Message) -> GuardLimits:
     """Limits back; ``ValueError`` or ``TypeError`` for what are no limits."""
     fields = dict(message)
+    # JSON knows neither dataclasses nor tuples, and limits are frozen values made of both.
     if fields.get("touch") is not None:
         fields["touch"] = CusumTouch(**fields["touch"])
     for name in ("raw", "filtered", "rate_hz"):
@@ -70,6 +71,7 @@ def fault_from_json(message: Message) -> CellError:
     """The fault with that number; ``Unexpected`` for a number that nobody has."""
     kinds = {kind.number: kind for kind in catalogue()}
     number, detail = message["number"], message["detail"]
+    # The driver of a plug-in may raise a fault of its own, which the core's catalogue lacks.
     if number not in kinds:
         return Unexpected(f"the guard reports fault {number}: {detail}")
     return kinds[number](detail)

@@ -158,6 +158,8 @@ class PackMLMachine:
         async with self._turn:
             state, reaction = self.state, error.reaction
             on_the_way = state is State.EXECUTE or state in _BEFORE_EXECUTE
+            # On the way to Execute too: Starting and Unholding move robots, and the first safe
+            # point of Execute is the next place where they may stand.
             if reaction is Reaction.HOLD and on_the_way:
                 self._pause = Command.HOLD
                 self._latch(error)
@@ -248,6 +250,7 @@ class PackMLMachine:
         if self.state is State.ABORTING:
             return None  # nothing is stronger than Aborting: it ends in Aborted, fault latched
         allowed = (c for c in _LEADS_TO[fault.reaction] if (self.state, c) in ON_COMMAND)
+        # Abort is allowed from every state but Aborting and Aborted, so there always is one.
         return next(allowed)
 
     def _fault(self, error: BaseException) -> CellError:

@@ -8,6 +8,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.state import STATES, State
 
+# As in the standard: Stop is weaker than Abort, and from Aborted only Clear leads to Stopped.
 _NO_STOP = (State.STOPPED, State.STOPPING, State.CLEARING, State.ABORTING, State.ABORTED)
 _NO_ABORT = (State.ABORTING, State.ABORTED)
 

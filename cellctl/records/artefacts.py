@@ -15,6 +15,8 @@ class ArtefactFolder:
 
     def path(self, sha256: str) -> Path:
         """Where the bytes with this hash lie."""
+        # The first two digits spread the files over 256 folders, which stay small enough to be
+        # listed.
         return self._folder / sha256[:2] / sha256
 
     def put(self, data: bytes) -> str:
@@ -22,6 +24,8 @@ class ArtefactFolder:
         sha256 = hashlib.sha256(data).hexdigest()
         path = self.path(sha256)
         try:
+            # Written once: the same bytes have the same name. A file of another length is damaged
+            # and is written anew.
             if not (path.exists() and path.stat().st_size == len(data)):
                 write_durably(path, data)
         except OSError as error:
@@ -34,6 +38,8 @@ class ArtefactFolder:
             data = self.path(sha256).read_bytes()
         except OSError as error:
             raise ArtefactDamaged(f"{sha256[:12]}: {error.strerror}") from error
+        # Read back and compared, so that a damaged disk or a changed file is a fault and never a
+        # result.
         if hashlib.sha256(data).hexdigest() != sha256:
             raise ArtefactDamaged(f"{sha256[:12]}: content does not match its name")
         return data

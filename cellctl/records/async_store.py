@@ -29,6 +29,8 @@ class AsyncRunStore:
 
     def __init__(self, path: Path) -> None:
         """Open the store; raises ``StoreUnavailable``, ``StoreTooNew``."""
+        # One thread: SQLite takes one writer, and records must reach the disk in the order in which
+        # they were given.
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="run-store")
         try:
             self._store: RunStore = self._thread.submit(RunStore, path).result()
@@ -65,6 +67,7 @@ class AsyncRunStore:
         Returns at once: a run neither waits for its images nor ends because one was not kept.
         """
         task = asyncio.create_task(self._keep_image(run, name, image))
+        # The event loop holds only weak references to tasks.
         self._keeping.add(task)
         task.add_done_callback(self._keeping.discard)
 
@@ -81,6 +84,8 @@ class AsyncRunStore:
         try:
             data = await loop.run_in_executor(self._images, encode_and_put, image, files)
             await self.do(RunStore.add_artefact, run, name, data, MEDIA_TYPE)
+        # A raw image serves later questions. A run that made a good part must not end because one
+        # is missing.
         except RecordsError as error:
             _log.error("raw image not kept", run=run, image=name, fault=str(error))
 

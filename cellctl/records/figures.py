@@ -23,6 +23,7 @@ class Limit:
         """None without any limit; a value that is unknown or not finite fails every limit."""
         if self.lower is None and self.upper is None:
             return None
+        # A figure that could not be measured must not look like one that is within its limit.
         if value is None or not math.isfinite(value):
             return Verdict.FAIL
         above = self.lower is None or value >= self.lower
@@ -37,6 +38,7 @@ def figure(
     key: str, value: float | None, unit: str, *, label: str = "", limit: Limit = NO_LIMIT
 ) -> Figure:
     """A figure with its verdict; without a ``label`` the key says it in words."""
+    # Unknown is None everywhere in the store: JSON has neither NaN nor infinity.
     known = None if value is None or not math.isfinite(value) else float(value)
     return Figure(
         key=key,
@@ -87,6 +89,7 @@ def _split(
             ]
             kept = None if inner else value
         found += inner
+        # A mapping all of whose values became figures would be left behind empty.
         if not inner or kept:
             rest[key] = kept
     return found, rest
@@ -99,6 +102,7 @@ def _numbers(key: str, value: Any, outer_unit: str) -> Iterator[Number]:
         base = key.removesuffix(_SIX_MM_DEG)
         for (axis, axis_unit), number in zip(_SIX, value, strict=True):
             yield f"{base}.{axis}", number, axis_unit
+    # In Python a bool is an int, but a yes or no is no figure.
     elif isinstance(value, int | float) and not isinstance(value, bool):
         yield name, value, unit or outer_unit
     elif value is None and unit:

@@ -31,6 +31,8 @@ def part_verdict(record: RunRecord) -> str | None:
 
     The result of the run itself never changes: it says how the run ended.
     """
+    # Only the newest gauge of each hole: an earlier one may have been a mistake of whoever entered
+    # it.
     judged = {judge_gauge(record, gauge) for gauge in record.gauges}
     if record.head.result == RunResult.GOOD and Verdict.FAIL in judged:
         return RunResult.BAD
@@ -52,5 +54,6 @@ def require_gauge(record: RunRecord, hole: str) -> None:
     if head.result in _NO_PART:
         raise GaugeRefused(f"run {head.number} is {head.result}: it has no finished part")
     known = record.document(GAUGE_HOLES)
+    # Runs of earlier versions do not name their holes: any hole is taken then.
     if known and hole not in known:
         raise GaugeRefused(f"run {head.number} has no pin hole {hole}; it has {', '.join(known)}")

@@ -20,6 +20,8 @@ class Ownership:
             return
         file = self._path.open("w", encoding="ascii")
         try:
+            # The kernel releases it however the process ends, so no stale lock keeps the next start
+            # from its store.
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
             file.close()

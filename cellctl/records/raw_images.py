@@ -53,6 +53,7 @@ def decode(data: bytes) -> GreyImage:
         raise ArtefactDamaged("not a raw image")
     width, height = int(header[1]), int(header[2])
     pixels = np.frombuffer(plain, np.uint8, offset=header.end())
+    # An array over bytes cannot be written to, and it would keep the whole file in memory.
     return pixels.reshape(height, width).copy()
 
 

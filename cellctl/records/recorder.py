@@ -63,6 +63,8 @@ class RunRecorder:
                 parent=parent,
                 child=child,
                 pose_mm_deg=_six(pose_to_xyzabc(pose.pose)),
+                # Beside the covariance, although it follows from it: evaluation in SQL cannot take
+                # the root of a diagonal.
                 sigma_mm_deg=_six(in_mm_deg(pose.sigma)),
                 covariance_mm_deg=tuple(
                     _six(row) for row in covariance_to_written(pose.covariance)

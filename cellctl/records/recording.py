@@ -67,8 +67,10 @@ class CurveWriter:
     def add(self, time_s: float, travel_m: float, wrench: Array) -> None:
         """One sample; travel may be NaN."""
         values = {"time_s": round(time_s, 6)}
+        # Left out when it is unknown, because JSON has no NaN; the reader fills it in again.
         if np.isfinite(travel_m):
             values["travel_mm"] = round(travel_m / MM, 5)
+        # Four decimals are 0.1 mN, far below the noise of a sensor.
         values |= {name: round(float(v), 4) for name, v in zip(_FIELDS, wrench, strict=True)}
         time_ns = self._start_ns + int(time_s * 1e9)
         self._writer.add_message(self._channel, time_ns, json.dumps(values).encode(), time_ns)
@@ -89,6 +91,8 @@ def encode_curve(curve: ForceCurve, started: datetime, facts: Mapping[str, str])
     """A finished recording of a whole curve; its time starts at zero."""
     stream = io.BytesIO()
     with CurveWriter(stream, started, facts) as writer:
+        # From zero, because the monotonic clock of the guard means nothing outside of this run;
+        # ``started`` says when that was.
         begin_s = curve.time_s[0] if len(curve.time_s) else 0.0
         samples = zip(curve.time_s - begin_s, curve.travel_m, curve.wrench, strict=True)
         for time_s, travel_m, wrench in samples:
@@ -110,6 +114,8 @@ def read_recording(source: bytes | Path) -> Recording:
                 rows.append([values.get(name, np.nan) for name in names])
             elif isinstance(record, Metadata):
                 facts = dict(record.metadata)
+    # Whatever a cut off or damaged file raises in its middle: the samples before that are good,
+    # each chunk has a checksum of its own.
     except (McapError, ZstdError, ValueError, EOFError, struct.error) as error:
         complete = False
         if not rows:
@@ -121,5 +127,6 @@ def read_recording(source: bytes | Path) -> Recording:
 
 def _records(data: bytes) -> Iterator[Any]:
     stream = io.BytesIO(data)
+    # The limit keeps a damaged length from asking for all of the memory.
     reader = StreamReader(stream, validate_crcs=True, record_size_limit=_RECORD_LIMIT)
     yield from reader.records

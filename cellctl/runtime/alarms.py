@@ -31,6 +31,8 @@ class Alarms:
 
     def add(self, error: CellError, run: int | None) -> None:
         """A fault has come; written to the store in the background."""
+        # The list changes at once and the store later: the line must see the alarm also when the
+        # disk is what has failed.
         self._active.setdefault(error.number)
         text = "; ".join([str(error), *getattr(error, "__notes__", ())])
         self._background.start(self._archive.do(RunStore.add_alarm, run, error.number, text))
@@ -39,6 +41,7 @@ class Alarms:
         """Acknowledge every alarm with this number; False when none is active."""
         if number not in self._active:
             return False
+        # The disk first, so that an acknowledged alarm does not come back with the next start.
         await self._archive.do(RunStore.acknowledge_alarms, number, who)
         self._active.pop(number, None)
         return True

@@ -18,6 +18,8 @@ class Background:
     def start(self, work: Coroutine[Any, Any, object]) -> None:
         """Start ``work`` as a task; its errors are logged."""
         task = asyncio.create_task(work)
+        # The event loop holds only weak references to tasks: without this one the task could be
+        # collected before it has ended.
         self._tasks.add(task)
         task.add_done_callback(self._ended)
 

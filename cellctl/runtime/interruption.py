@@ -22,6 +22,7 @@ class Interruption:
 
     def interrupt(self, fault: CellError) -> bool:
         """End what runs by this fault; False when nothing runs that could be left."""
+        # The first reason counts; the caller of a second one stops the robots in the ordinary way.
         if self._wanted is None or self._wanted.done():
             return False
         self._wanted.set_result(fault)
@@ -36,10 +37,14 @@ class Interruption:
         working = asyncio.create_task(work)
         try:
             await asyncio.wait({working, wanted}, return_when=asyncio.FIRST_COMPLETED)
+            # The fault of the work itself says more than the interruption: it may be the trip that
+            # needs the retreat.
             if wanted.done() and not (working.done() and working.exception()):
                 raise wanted.result()
             return working.result()
         finally:
+            # Cleared first: whoever asks from here on must hear that nothing is left to be
+            # interrupted.
             self._wanted = None
             working.cancel()
             await asyncio.gather(working, return_exceptions=True)

@@ -43,6 +43,8 @@ class JobFactory:
 
         The state machine itself refuses modes without Start, in other states the whole command.
         """
+        # The order first: an unknown recipe is the caller's mistake and stays one when the devices
+        # are ready.
         return await self._validate_order(command, mode) or _refused(*self._validate_cell())
 
     def ready(self, mode: Mode) -> bool:

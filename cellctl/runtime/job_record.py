@@ -70,6 +70,8 @@ class JobRecord:
         except CellError:
             if not self.number:
                 return  # there is no record; this is the fault that has ended the run
+        # Images are written in the background and belong to the seal, which covers every file of
+        # the run at its closing.
         await self.store.images_kept()
         await self.store.do(
             RunStore.close_run,
@@ -81,6 +83,8 @@ class JobRecord:
         _log.info("run closed", run=self.number, result=outcome.value)
 
     async def _opened(self, opening: "asyncio.Task[None]") -> int:
+        # Waited for and not awaited: a time-out or a Stop must not cancel the task that is writing
+        # the row.
         await asyncio.wait({opening}, timeout=OPEN_TIMEOUT_S)
         if not opening.done():
             raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
@@ -93,6 +97,7 @@ class JobRecord:
         mode: str,
         stored: Sequence[StoredCalibration],
     ) -> None:
+        # The rows of the calibrations first: the run names them by their ids.
         for calibration in stored:
             await self.store.do(RunStore.add_calibration, calibration)
         cell = self._cell

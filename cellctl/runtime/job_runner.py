@@ -95,11 +95,15 @@ class JobRunner:
         """Close the record, once, however often it is asked for: an Abort may overtake a Stop."""
         if self._job is None:
             return
+        # A task of its own: an Abort cancels the Stop that waits here, and the record has to be
+        # closed all the same.
         if self._closing is None:
             self._closing = asyncio.create_task(self._close(self._job, outcome, fault))
         closing = self._closing  # it drops itself when it ends
         await asyncio.wait({closing}, timeout=CLOSE_TIMEOUT_S)
         if not closing.done():
+            # The line is told at once that this run is not good, and it cannot be told otherwise
+            # later.
             self._given_up = True
             self.result = Result.ABORTED
             raise RecordSilent(f"not closed within {CLOSE_TIMEOUT_S:g} s")
@@ -119,6 +123,8 @@ class JobRunner:
 
     @contextmanager
     def _at_work(self) -> Iterator[None]:
+        # Set again in the ``finally``, so that ``left`` waits for the clean-up of a cancelled job
+        # too, in which its robots are stopped.
         self._resting.clear()
         try:
             yield

@@ -60,6 +60,8 @@ class MaintenanceJob(Job):
 
         Raises ``ResultOutOfLimits`` when the verdict is bad.
         """
+        # From the beginning and not from where it was: boards, heads or payload may have been moved
+        # during the Hold.
         while True:
             try:
                 outcome = await self._procedure.run(self._context)
@@ -73,6 +75,8 @@ class MaintenanceJob(Job):
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """Close the record of the run, and say in the audit log how the procedure ended."""
+        # Before anything that can fail: the line must not see a contact step in a job that has
+        # ended.
         self._board.leave_step()
         await self._record.close(outcome, fault)
         ended = {
@@ -96,8 +100,12 @@ class MaintenanceJob(Job):
             _log.warning("calibration", item=outcome.kind.name, warning=warning)
         if not outcome.passed:
             reasons = "; ".join(_failed_checks(outcome)) or "see the record"
+            # Kept, so that somebody can see from its picture and residuals why it failed. A disk
+            # that refuses it must not hide the verdict.
             aside = await self._put_aside(outcome)
             raise ResultOutOfLimits(f"{outcome.kind.name}: {reasons}; {aside}")
+        # The folder is what production reads, so it comes before the run store, which only keeps
+        # the history.
         stored = await asyncio.to_thread(
             self._calibrations.store,
             outcome.kind,

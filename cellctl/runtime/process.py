@@ -164,6 +164,8 @@ def calibration_kinds(config: CellConfig) -> list[CalibrationKind[Any]]:
 
 def _process_class(name: str) -> type[Process[Any, Any, Any]]:
     definition = process_definition(name)
+    # A definition alone is enough for ``cellctl check``; only the daemon needs something that can
+    # run.
     if not issubclass(definition, Process):
         raise UnknownDriver(f"process '{name}' has checks but cannot run")
     return definition

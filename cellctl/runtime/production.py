@@ -70,8 +70,11 @@ class ProductionJob(Job):
 
         Raises what the process raises, and the faults of the records.
         """
+        # Before the record is opened: a run that lacks a calibration or a drawing has not begun and
+        # leaves no record.
         prepared = await self._process.prepare(self._recipe)
         mode = DRY_RUN if self._command.dry_run else PRODUCTION
+        # Before ``begin``, the first call that moves a robot: no motion without a record.
         await self._record.open(self._recipe, mode, prepared.stored)
         context = RunContext(self._recorder, self._safe_point, self._interruption)
         run = self._process.open(prepared, context)
@@ -103,6 +106,8 @@ class ProductionJob(Job):
 
     async def _require_figures_within(self) -> None:
         """Raise ``FigureBeyondLimit``: a run is good with all of its figures or not at all."""
+        # Read back from the store, so that the verdict is about what the record says and not about
+        # what a step remembers.
         record = await self._process.services.store.do(RunStore.run, self.run_number)
         if beyond := record.beyond_limits:
             raise FigureBeyondLimit(", ".join(f"{one.label} {one.value}" for one in beyond))
@@ -110,6 +115,8 @@ class ProductionJob(Job):
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """Close the run record; nothing to close when it could not be opened."""
         self._board.leave_step()
+        # These faults stop the run by their reaction, but they are a verdict on the part: the line
+        # has to sort it out.
         if isinstance(fault, (FigureBeyondLimit, *self._process.spoiled_by)):
             outcome = RunResult.BAD
         await self._record.close(outcome, fault)

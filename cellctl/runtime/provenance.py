@@ -60,6 +60,8 @@ def cell_artefact(config: CellConfig) -> tuple[str, bytes, str]:
 
 
 def _canonical(document: dict[str, Any]) -> bytes:
+    # Sorted, so that the hash depends on the content alone and not on the order in which the file
+    # was written.
     return json.dumps(document, sort_keys=True, indent=1).encode()
 
 

@@ -40,6 +40,8 @@ class StatusView:
         """Everything at this moment; ``job`` is the present or the last one."""
         machine, progress, time_s = self._machine, self._board.current, now_s()
         faults = machine.faults
+        # An alarm stays active when its fault was released, and a fault stays latched when its
+        # alarm was acknowledged: the line sees both.
         alarms = tuple(dict.fromkeys((*self._alarms.numbers, *(f.number for f in faults))))
         return CellStatus(
             state=machine.state,

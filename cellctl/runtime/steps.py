@@ -97,11 +97,15 @@ class StepRunner:
         """All steps from the first one; raises ``HeldMeanwhile`` when they must begin again."""
         value: Any = state
         for step in steps.specs:
+            # Before the step and not within it: between two steps nothing moves, so the robots
+            # stand wherever the Hold finds them.
             if step.restart is not Restart.NO_WAY_BACK:
                 await obey_hold(self.safe_point, hold=self._wants_hold(step))
             self.board.update(
                 step=step.number, step_label=step.label, contact=step.contact, message=""
             )
+            # On the disk before the step moves anything: after a crash the record names the step in
+            # which it happened.
             await self.recorder.phase(step.number, step.label)
             with log.bound(run=self.recorder.run, step=step.label):
                 _log.info("step begins")

@@ -90,6 +90,8 @@ class UnitController:
         Raises the faults of the store, and ``CalibrationNotStored`` while no procedure could keep
         its result.
         """
+        # Asked at the start: a procedure of ten minutes must not find out at its end that its
+        # result cannot be kept.
         await asyncio.to_thread(self.calibrations.require_writable)
         self._interrupted = await self._store.do(RunStore.mark_interrupted)
         if self._interrupted:
@@ -133,6 +135,8 @@ class UnitController:
         Nothing begins to move any more, whatever the line asks for. Gives up after a while: the
         links are dropped next, and robots without a link stop.
         """
+        # First of all, so that no command that is waiting for its turn can start a motion while the
+        # unit is being closed.
         self._ending = True
         try:
             async with asyncio.timeout(ABORT_TIMEOUT_S):
@@ -151,6 +155,8 @@ class UnitController:
     async def _lose_line(self) -> None:
         touches = self.machine.state is State.EXECUTE and self.board.current.contact
         action = self._jobs.line_lost_in_contact
+        # ``LineLost`` leads to Holding: Execute goes on to its next safe point, of which a contact
+        # step has none.
         if not touches or action is LineLostAction.FINISH:
             await self.machine.fail(LineLost())
             return
@@ -160,6 +166,8 @@ class UnitController:
             await self.machine.fail(fault)
 
     async def _clearing(self) -> None:
+        # Before the devices: a worker that has died is not found by connecting, and every
+        # measurement needs one.
         self._cell.workers.revive()
         # Whoever clears says that the robots stand: one that was given up gets its links back.
         if not self._cell.connected or self._cell.unstopped:
@@ -176,6 +184,8 @@ class UnitController:
             self.alarms.add(fault, run)
 
     async def _resetting(self) -> None:
+        # Clear has released the fault, the latches of robots and guards are released here: nothing
+        # moves before somebody has asked for a Reset.
         await self._cell.rearm()
         require_ready(self._cell.robots.values())
         for process in self._processes.values():
@@ -196,6 +206,7 @@ class UnitController:
             return
         assembled = self._jobs.makes_part and outcome is RunResult.GOOD
         await self._jobs.close(outcome, None)
+        # Counted only when the record is closed: a part without a record is not a good one.
         self.parts += assembled
 
     async def _stopping(self) -> None:
@@ -207,6 +218,8 @@ class UnitController:
     async def _halt(self, outcome: RunResult) -> None:
         """Stop everything that moves, then write down how the run ended, in this order."""
         error = await self._stop_motion()
+        # The job may still be cleaning up. Its last entries have to be in the record before it is
+        # sealed.
         await self._jobs.left()
         await self._jobs.close(outcome, self.machine.fault)
         if error is not None:
@@ -218,6 +231,8 @@ class UnitController:
         try:
             done, _ = await asyncio.wait({stopping}, timeout=STOP_TIMEOUT_S)
         finally:
+            # Nobody waits for a driver any more that has not come back; the state ends with a fault
+            # instead.
             stopping.cancel()
         if not done:
             return StopFailed(f"a driver has not come back from its stop in {STOP_TIMEOUT_S:g} s")
@@ -225,6 +240,8 @@ class UnitController:
 
     async def _safe_point(self, *, hold: bool = False) -> bool:
         if hold:
+            # Single step asks for its Hold like anybody else, so that state and line show it in the
+            # same way.
             await self.machine.command(Command.HOLD)
         return await self.machine.safe_point()
 
@@ -239,6 +256,8 @@ class UnitController:
     def _faulted(self, error: CellError) -> None:
         _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
         self.alarms.add(error, self._jobs.run_number)
+        # In the background, because observers of the machine must neither wait for the disk nor
+        # raise.
         self.background.start(self._invalidate_after(error))
 
     async def _invalidate_after(self, error: CellError) -> None:

@@ -61,6 +61,8 @@ def require_clock_after(newest: datetime, now: datetime, what: str) -> None:
 
 def content_id(content: Mapping[str, Any]) -> str:
     """SHA-256 of plain data in canonical JSON."""
+    # One text for one content, whatever the order of its keys. NaN is refused, because JSON of
+    # other programs could not read it.
     text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
 
@@ -102,6 +104,8 @@ def read_stored(folder: Path, kind: str) -> StoredCalibration:
     """
     path = folder / f"{kind}.json"
     content = read_content(path, kind)
+    # Before the fields are looked at: a file of the old form has its own remedy, which is to seal
+    # it anew.
     if isinstance(content, dict) and "id" in content and "format" not in content:
         raise CalibrationOfOldForm(f"{path}")
     stored, expected = parse_content(path, content)

@@ -29,6 +29,8 @@ def inventory(store: CalibrationStore, now: datetime) -> tuple[InventoryEntry, .
 
 def _kinds(store: CalibrationStore) -> Iterator[CalibrationKind[Any]]:
     required = {kind.name: kind for kind in store.kinds if kind.required and not kind.per_recipe}
+    # First those that production waits for, so that an operator sees what is missing before what is
+    # there besides.
     yield from required.values()
     for name in store.names():
         if name not in required:

@@ -94,4 +94,6 @@ def unparsed(name: str) -> CalibrationKind[Mapping[str, Any]]:
 
 def kinds_invalidated_by(fault: CellError, kinds: Kinds) -> list[CalibrationKind[Any]]:
     """Kinds that a fault makes worthless, in their order; mostly none."""
+    # By the exact class: a fault that is derived later from one of these must not invalidate
+    # anything without being named.
     return [kind for kind in kinds if type(fault) in kind.invalidated_by]

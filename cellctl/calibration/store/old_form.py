@@ -21,6 +21,8 @@ def seal_old_files(folder: Path) -> list[StoredCalibration]:
     ``CalibrationNotStored``.
     """
     paths = sorted(path for path in folder.glob("*.json") if not path.stem.endswith(SUFFIX))
+    # All are read and checked before the first one is written, so that a changed file leaves the
+    # folder as it was.
     found = [stored for path in paths if (stored := _old(path)) is not None]
     for stored in found:
         write_stored(folder, stored)

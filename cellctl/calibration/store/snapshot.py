@@ -67,6 +67,8 @@ class CalibrationSnapshot:
         """Raise ``HeadPoseChanged`` when the calibration holds for other joints of this role."""
         record = self.stored[kind.name].record
         made_at = record.get(kind.holds_for or "", {}).get(role)
+        # A record that does not say for which joints it holds may hold for others than the taught
+        # ones.
         if made_at is None:
             raise HeadPoseChanged(f"{role}: {kind.name} does not say for which joints")
         if len(made_at) != len(joints_deg) or not np.allclose(

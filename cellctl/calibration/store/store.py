@@ -114,6 +114,8 @@ class CalibrationStore:
         ``CalibrationNotStored``.
         """
         for tell in self.on_invalidated:
+            # Before the markers are written, so that nothing measured with a calibration is still
+            # combined while that becomes invalid.
             tell()
         names = self.names()
         found = [name for kind in kinds for name in names if kind.includes(name)]

@@ -41,6 +41,7 @@ class ValidityClock:
 
     def _usable(self, kind: CalibrationKind[Any]) -> StoredCalibration | None:
         files = (self._folder / f"{kind.name}.json", marker(self._folder, kind.name))
+        # Taken before the file is read: a change in between is then found the next time.
         stamp = tuple(_changed(file) for file in files)
         known = self._known.get(kind.name)
         if known is None or known[0] != stamp:

@@ -35,6 +35,8 @@ class ContactWrenchModel:
         self._sensor_R_flange = _transposed(flange_R_sensor)
         self._load: list[Sequence[float]] = [(0.0, 0.0, 0.0)] * 6
         self._offset: Sequence[float] = ZERO
+        # The direction for a robot that stands upright on the floor; a gravity compensation brings
+        # its own.
         self._base_down: Sequence[float] = (0.0, 0.0, -1.0)
         self._flange_R_base = _IDENTITY
         self._tare: Six = ZERO
@@ -153,6 +155,7 @@ class TareAverage:
             self._sums[index] += difference
             self._squares[index] += difference * difference
         self._count += 1
+        # With one sample the scatter would divide by zero.
         return self._result(self._origin) if time_s >= self._end_s and self._count > 1 else None
 
     def _result(self, origin: Six) -> TareSums:
@@ -160,6 +163,9 @@ class TareAverage:
         shifts = [total / count for total in self._sums]
         a, b, c, d, e, f = (value + shift for value, shift in zip(origin, shifts, strict=True))
         p, q, r, s, t, u = (
+            # Rounding can make the difference slightly negative when all samples are equal. The
+            # factor n/(n-1) makes the variance of a sample unbiased, since the mean is estimated
+            # from the same values.
             math.sqrt(max(0.0, square / count - shift * shift) * count / (count - 1))
             for square, shift in zip(self._squares, shifts, strict=True)
         )

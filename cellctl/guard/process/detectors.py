@@ -99,10 +99,14 @@ class BurstDetector:
     def __init__(self, events: int, window_s: float, start: int) -> None:
         self._events, self._window_s = events, window_s
         self._total = start
+        # As many times as events are needed: when the queue is full, its oldest entry alone tells
+        # whether they all lie within the window.
         self._times: deque[float] = deque(maxlen=events)
 
     def update(self, total: int, now_s: float) -> bool:
         """True when enough events fell into the window that ends now."""
+        # No more entries than the queue holds, so that a counter that jumps by millions costs no
+        # time.
         self._times.extend([now_s] * min(total - self._total, self._events))
         self._total = total
         full = len(self._times) == self._events
@@ -154,5 +158,7 @@ def beyond(wrench: Six, limits: Six) -> int | None:
         and -u <= f <= u
     ):
         return None
+    # The same form as above and not ``abs``, so that a NaN is found here too and ``next`` always
+    # has a component to give.
     outside = (not -limit <= value <= limit for value, limit in zip(wrench, limits, strict=True))
     return next(index for index, is_outside in enumerate(outside) if is_outside)

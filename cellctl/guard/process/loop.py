@@ -57,6 +57,8 @@ class GuardLoop:
         self._beat_s = beat_s
         self._requests = RequestHandler(monitor, supervisor, sensor.health)
         self._sensor_fault: CellError | None = None
+        # What is true at the beginning is not told, so the first event is the end of the first
+        # attempt to connect, for which ``GuardClient.start`` waits.
         self._reported_channel: tuple[bool, CellError | None] = (supervisor.up, None)
         self._trip_handled = False
         self._late_wakeups = 0
@@ -93,6 +95,8 @@ class GuardLoop:
         ``MOST_EXCUSED_S`` at most, however long or often the machine pauses.
         """
         due_s = self._next_beat_s
+        # Not armed, silence is no trip, so there is no reason to wake up five hundred times a
+        # second.
         if self._monitor.armed:
             due_s = min(due_s, now_s() + _TICK_S)
         waiting: list[int | socket.socket] = [*self._supervisor.filenos(), self._link]
@@ -115,6 +119,8 @@ class GuardLoop:
         if self._sensor_fault is not None:
             return
         try:
+            # No time-out: waiting is the business of ``select``, which also watches robot and
+            # daemon.
             samples = self._sensor.read(0.0)
         except CellError as fault:
             self._give_up_sensor(fault)
@@ -127,6 +133,8 @@ class GuardLoop:
                 self._stop()
             age_s = sample.receive_time_s - monitor.flange_time_s
             ring.publish(sample, wrench, age_s)
+        # After the samples of the same read, so that a touch among them is reported as the touch
+        # and not as the damaged frame that came with it.
         monitor.sensor_health(self._sensor.health(), now_s())
 
     def _give_up_sensor(self, fault: CellError) -> None:
@@ -188,6 +196,7 @@ class GuardLoop:
         monitor.tick(time_s)
         if monitor.trip is not None:
             self._stop()
+        # The trip was acknowledged, so that the next one is new and must be sent again.
         elif self._trip_handled:
             self._trip_handled = False
         answer = self._requests.late_answer(time_s)
@@ -215,6 +224,7 @@ class GuardLoop:
 
     def _publish_status(self, time_s: float) -> None:
         monitor = self._monitor
+        # Written out because a tuple made of a list has no fixed length for the type checker.
         a, b, c, d, e, f = monitor.peak_raw
         p, q, r, s, t, u = monitor.peak_filtered
         self._ring.publish_status(

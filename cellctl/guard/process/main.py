@@ -61,12 +61,16 @@ def run(
     supervisor = StopSupervisor(channel, set_up["stop_confirm_s"])
     monitor = WrenchMonitor(tuple(set_up["flange_R_sensor"]), has_channel=channel is not None)
     ring = RingWriter(memory)
+    # Only after the set-up was received, which may be waited for. From here on a socket that blocks
+    # would hold up the judgement of samples.
     link.settimeout(0.0)
     with sensor:
         loop = loop_type(sensor, supervisor, monitor, ring=ring, link=link, beat_s=set_up["beat_s"])
         signal.signal(signal.SIGTERM, lambda *_: setattr(loop, "ended", True))
         # A robot may take seconds to accept the connection, so a thread begins with that now.
         supervisor.open()
+        # Everything is allocated and loaded by this moment: locked memory then needs no further
+        # page from the disk, and starting up does not run before ordinary processes.
         degraded = realtime.enter(
             set_up["fifo_priority"], set_up["cpu"], lock_memory=set_up["lock_memory"]
         )

@@ -60,6 +60,8 @@ class WrenchMonitor:
         self._filter = LowPass(DEFAULT_FILTER_S)
         self._armed: ArmedDetectors | None = None
         self._tare: TareAverage | None = None
+        # Two excuses and not one: a sample that arrives ends the silence of the sensor, but says
+        # nothing about the robot.
         self._sample_excuse_s = self._flange_excuse_s = 0.0
 
     @property
@@ -75,6 +77,8 @@ class WrenchMonitor:
         wrench = self.contact.apply(raw)
         filtered = self._filter.update(wrench, sample.time_s)
         self.sample_time_s, self._sample_excuse_s = sample.receive_time_s, 0.0
+        # Before the judgement, so that the peak of the sample that trips is in the record of the
+        # run.
         _raise_peaks(self.peak_raw, wrench)
         _raise_peaks(self.peak_filtered, filtered)
         if self._tare is not None:
@@ -174,6 +178,8 @@ class WrenchMonitor:
         # The same filter goes on where it can: a new one would start at a single noisy sample.
         if self._filter.time_constant_s != limits.filter_s:
             self._filter = LowPass(limits.filter_s)
+        # Damaged frames that were counted before the arming belong to no motion and do not count
+        # here.
         self._armed = ArmedDetectors(limits, health.checksum_errors + health.invalid, now_s)
 
     def disarm(self) -> None:

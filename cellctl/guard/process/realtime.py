@@ -25,6 +25,8 @@ def enter(fifo_priority: int, cpu: int | None, *, lock_memory: bool) -> list[str
     collection would stop the loop for milliseconds, and what the loop allocates is freed by
     reference counts. ``fifo_priority`` 0 and ``cpu`` None leave scheduler and placement alone.
     """
+    # What exists now lives as long as the process. Frozen, it is left out of every later
+    # collection, also of one that a library asks for explicitly.
     gc.collect()
     gc.freeze()
     gc.disable()
@@ -68,6 +70,8 @@ def _attempt(words: str, action: Callable[[], None]) -> list[str]:
 
 def _fifo(priority: int) -> None:
     """Run before all ordinary processes. The threads that connect do not inherit it."""
+    # RESET_ON_FORK leaves threads ordinary: one that hangs in a connection attempt at real-time
+    # priority could keep the processor from the guard itself.
     policy = os.SCHED_FIFO | os.SCHED_RESET_ON_FORK
     os.sched_setscheduler(0, policy, os.sched_param(priority))
 

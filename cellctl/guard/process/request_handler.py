@@ -83,6 +83,8 @@ class RequestHandler:
     def _set_gravity_compensation(self, request: Message) -> None:
         self._monitor.require_unarmed()
         load, offset, base_down = request["load"], request["offset"], request["base_down"]
+        # Checked before anything changes: a wrong shape that shows halfway would leave a
+        # compensation that is half old and half new.
         if [len(row) for row in load] != [3] * 6 or len(offset) != 6 or len(base_down) != 3:
             raise ValueError("a load is 6x3, an offset 6, a direction 3 numbers")
         depends_on_pose = any(value != 0.0 for row in load for value in row)

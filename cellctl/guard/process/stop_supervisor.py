@@ -46,6 +46,8 @@ class StopSupervisor:
 
     def filenos(self) -> list[int]:
         """Descriptors to wait on: the robot's reports, and the end of an attempt to connect."""
+        # A channel that a thread is opening belongs to that thread, so its descriptor is not
+        # watched.
         descriptor = -1 if self._channel is None or not self.up else self._channel.fileno()
         return [self._bell] if descriptor < 0 else [self._bell, descriptor]
 

@@ -9,8 +9,12 @@ from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_pose
 async def to_the_beginning(opened: OpenRun) -> Ready:
     """Go to the beginning; nothing is measured yet. Raises the faults of guard and robots."""
     facts, cell = opened.facts, opened.facts.cell
+    # Before the first move: from here on the guard knows the weight, so that its limits hold
+    # however the arm is tilted.
     await cell.guard.set_gravity_compensation(facts.payload.gravity_compensation)
     opened.board.update(step=0, step_label="", iteration=0, message="to the beginning")
+    # The main robot first: home is clear of the heads wherever they stand, but a head on its way to
+    # its measuring pose may meet a deck that is low over the station.
     await main_to_home(cell)
     await heads_to_measuring_poses(cell)
     geometry = facts.geometry

@@ -42,8 +42,11 @@ async def read_facts(
     Raises the faults of calibrations and feature files, and ``SpeedOverridden``: better now than
     with the deck over its seat.
     """
+    # Stop latency and approach speed are planned for full speed; with an override nothing that is
+    # planned on times would hold.
     require_full_speed(cell.main)
     kinds = [kind.for_recipe(recipe.id) for kind in kinds]
+    # Looked at ahead of time, so that no calibration expires in the middle of the run.
     snapshot = await asyncio.to_thread(store.read_all, kinds, utc_now() + PLANNED)
     frame = read_features(cell.cell.folder / recipe.frame_features)
     deck = read_features(cell.cell.folder / recipe.deck_features)
@@ -62,6 +65,8 @@ async def read_facts(
 
 async def _require_same_cell(cell: DeckCell, snapshot: CalibrationSnapshot, kinds: Kinds) -> None:
     """Raise when a device was exchanged, or a head taught another pose, since a calibration."""
+    # Asked of the devices and not of the cell file: an exchanged head answers with its own number
+    # whatever the file says.
     serial_numbers = {
         HEAD_1: await cell.head_1.camera.serial_number(),
         HEAD_2: await cell.head_2.camera.serial_number(),

@@ -123,6 +123,8 @@ class Journal:
         entry = loop_pass(number, judgement, thresholds, measured, correction)
         residual = residual_figure(LOOP, measured)
         await self.recorder.add(entry, *error_figures(entry), residual)
+        # Only after the pass is in the record, so that a number is never used for a pass that
+        # nobody can look up.
         self.iterations = number
         await self._reported(f"iteration-{number}", measured)
         await self._images(f"iteration-{number}", measured)
@@ -167,9 +169,13 @@ class Journal:
         """Keep the curve of every attempt, also of one that failed."""
         while self._kept < len(self.curves):
             curve = self.curves[self._kept]
+            # Counted before it is written: a curve that the disk has refused is not tried again
+            # when the next one is kept.
             self._kept += 1
             if len(curve.time_s):
                 facts = {"attempt": str(self._kept)}
+                # In a worker: compressing a curve of a minute would hold the interpreter lock of
+                # the event loop, which beats for the line.
                 data = await self.workers.run(encode_curve, curve, utc_now(), facts)
                 await self.recorder.artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 
@@ -179,6 +185,8 @@ class Journal:
         name = kind if self._names[kind] == 1 else f"{kind}-again-{self._names[kind]}"
         if measured.predicted is not None:
             images = raw_images(name, measured.shots)
+            # The document names the images before they are written: an image that is late or lost
+            # shows as missing in a replay.
             source = measured_from(kind, measured, list(images))
             await self.recorder.document(MEASURED_FROM, {name: source})
             for file, image in images.items():

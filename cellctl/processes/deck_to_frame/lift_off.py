@@ -46,6 +46,7 @@ async def lift_off(cell: DeckCell) -> None:
     mating = recipe.mating
     # What a mating has left may go without a fault: never more than its own limits.
     tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
+    # The normal of the frame and not the axis of the flange: a deck on pins must leave along them.
     away = _frame_of(cell, recipe).rotation.apply([0.0, 0.0, 1.0])
     flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
     watched = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck, tolerance)

@@ -45,6 +45,8 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         super().__init__(services)
         self._memory = FrameMemory()
         self._waiting = WaitingPlacements()
+        # A board that was seen through the old calibration of a head must not be combined with one
+        # seen through the new.
         services.calibrations.on_stored.append(self._waiting.drop)
         services.calibrations.on_invalidated.append(self._waiting.clear)
 
@@ -146,5 +148,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         from cellctl.processes.deck_to_frame.stations import deck_recipes
 
         recipes = deck_recipes(self.services.cell.config)
+        # Two recipes that use the same devices share one arm: it is lifted off once, looking at all
+        # of their stations.
         bound = {tuple(recipe.device(role) for role in ROLES): recipe for recipe in recipes}
         return [self.cell(recipe) for recipe in bound.values()]

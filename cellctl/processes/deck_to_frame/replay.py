@@ -72,6 +72,8 @@ class Replay:
             wanted = source["images"]
             found_images = sum(image in there for image in wanted)
             yield Replayed(name, "raw images", "", len(wanted), found_images)
+            # Raw images are kept while the run goes on and may be late; a measurement without all
+            # of its images cannot come out the same.
             if found_images < len(wanted):
                 continue
             pose = self._measure(source)

@@ -138,6 +138,8 @@ class AssemblyRun:
         speed_mm_s: float,
         acceleration_mm_s2: float,
     ) -> None:
+        # docs/mating.md, "Over the station": 200 kg at 200 mm/s² swing with 80 N, and the limit of
+        # the recipe comes on top.
         inertia_n = SWING_RATIO * self.facts.payload.mass_kg * acceleration_mm_s2 * MM
         force_n = inertia_n + self.recipe.mating.limit_force_n
         tolerance = WrenchTolerance(force_n, force_n * LEVER_M)
@@ -149,5 +151,6 @@ class AssemblyRun:
                     acceleration_m_s2=acceleration_mm_s2 * MM,
                 )
             )
+        # Two exposures of a deck that swung differed by 0.13 mm (docs/decisions/0005).
         await settle(self.cell.guard)
         await self.journal.arrived(base_T_flange, self.cell.main.state().base_T_flange)

@@ -42,6 +42,7 @@ async def main_to_home(cell: DeckCell) -> None:
     home_rad = np.radians(cell.main_config.poses_deg[HOME])
     if _is_at(cell.main.state(), home_rad):
         return
+    # A joint move would swing a deck that is low over the station through whatever stands there.
     await lift_off(cell)
     await move_joint_free(cell.cell, cell.arm, home_rad)
 

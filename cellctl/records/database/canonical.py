@@ -10,6 +10,7 @@ from typing import Any
 
 def columns(row: Any) -> dict[str, Any]:
     """All columns of a row by their names."""
+    # Of the table and not of the object: SQLAlchemy keeps state of its own in the instance.
     return {column.key: getattr(row, column.key) for column in row.__table__.columns}
 
 

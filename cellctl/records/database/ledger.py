@@ -49,6 +49,7 @@ def _append(session: Session, kind: str, subject: Key, time: datetime) -> None:
     row.hash = _entry_hash(row)
     session.add(row)
     session.flush()
+    # In the same transaction as the entry: head and chain are on the disk together or not at all.
     session.merge(LedgerHeadRow(id=_HEAD, length=row.number, hash=row.hash))
 
 
@@ -83,12 +84,15 @@ def problems(session: Session, printed: LedgerHead | None = None) -> Iterator[st
         subject, kind = _subject(row), KINDS.get(row.kind)
         if kind is None:
             yield f"{_entry(row)} is of an unknown kind"
+        # The value that this entry sealed exists no longer; only the newest one can be compared.
         elif kind.superseded and newest[row.kind, subject] != row.number:
             continue
         elif row.content != _content(session, row.kind, subject):
             yield f"{row.kind} {subject} was changed after it was sealed"
     for name in KINDS:
         for key in _keys(session, name):
+            # Also in the other direction: a row that somebody has added with SQL is in no entry of
+            # the chain.
             if (name, key) not in newest:
                 what = "closed but " if name == RUN else ""
                 yield f"{name} {key} is {what}not sealed"
@@ -105,6 +109,8 @@ def _chain(rows: Any) -> Iterator[str]:
             yield f"{_entry(row)} does not follow the entry before it"
         if row.hash != _entry_hash(row):
             yield f"{_entry(row)} was changed"
+        # Go on from the hash that is written there, so that one change is reported once and not at
+        # every later entry.
         previous = row.hash
 
 

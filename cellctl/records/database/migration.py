@@ -30,6 +30,7 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
     Raises ``StoreTooNew``, ``OSError`` or ``sqlite3.Error``.
     """
     version = schema_version(connection)
+    # Never opened by guessing: a later version may mean other things by the same columns.
     if version > SCHEMA_VERSION:
         raise StoreTooNew(f"{file} has schema {version}, this version knows {SCHEMA_VERSION}")
     if version == SCHEMA_VERSION:
@@ -37,6 +38,7 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
     if version == 0:
         Base.metadata.create_all(connection)
     else:
+        # Before the first change, so that a step that goes wrong costs no run.
         _back_up(file, backup_of(file, version))
         for step in _STEPS[version - 1 :]:
             step(connection)
@@ -70,6 +72,8 @@ def _back_up(file: Path, target: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+    # Renamed only when it is whole and on the disk: a crash leaves a draft, which is removed next
+    # time, and never a backup that is cut off.
     draft.replace(target)
     sync_folder(target.parent)
 

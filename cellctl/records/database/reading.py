@@ -45,6 +45,8 @@ T = TypeVar("T")
 def read_run(session: Session, number: int) -> RunRecord:
     """One run with everything that belongs to it; raises ``RunUnknown``."""
     row = existing_run(session, number)
+    # Their tables are left as they are, because their seals were made over those
+    # (docs/decisions/0013).
     if row.record_schema == 1:
         details = schema_1.read_details(session, number)
     else:
@@ -62,6 +64,8 @@ def read_run(session: Session, number: int) -> RunRecord:
         documents=details.documents,
         artefacts=_entries(session, ArtefactRow, Artefact, number),
         alarms=_entries(session, AlarmRow, Alarm, number),
+        # By hole, so that the later entry of a hole takes the place of the earlier one; the history
+        # keeps both.
         gauges=tuple({gauge.hole: gauge for gauge in gauges}.values()),
         gauge_history=gauges,
         seal=None if sealed is None else to_entry(sealed, Seal),

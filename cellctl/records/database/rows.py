@@ -41,6 +41,7 @@ ROW_OF: dict[type[RunDetail], type[FigureRow | PoseRow | PassRow | DocumentRow]]
 
 def to_row(entry: RunDetail, run: int, phase: int | None) -> Base:
     """The row of a detail of a run that is in a phase."""
+    # By name, so that a column which is added to an entry and its table needs no line here.
     values = {item.name: getattr(entry, item.name) for item in fields(entry)}
     return ROW_OF[type(entry)](**values | {"run": run, "phase": phase})
 

@@ -58,6 +58,7 @@ class SealedKind:
 
 def _run(session: Session, row: RunRow) -> Content | None:
     """A closed run with its details, in the tables of the schema that wrote it."""
+    # An open run still changes. What it began with is sealed by the entry of its opening.
     if row.ended is None:
         return None
     if row.record_schema == 1:

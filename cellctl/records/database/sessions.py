@@ -72,10 +72,14 @@ class Database:
         try:
             with Session(self._engine, expire_on_commit=False) as session, session.begin():
                 yield session
+        # A refused row is a mistake of the caller and says nothing about the disk: the store goes
+        # on.
         except IntegrityError as error:
             fault = RunUnknown if "FOREIGN KEY" in _reason(error) else RecordNotWritten
             raise fault(_reason(error)) from error
         except DBAPIError as error:
+            # A second fsync may report success for data that are lost (docs/decisions/0011), so
+            # nothing is written until the store has been opened anew.
             self._failed = _reason(error)
             raise RecordNotWritten(self._failed) from error
 
@@ -97,11 +101,16 @@ def _engine(file: Path) -> Engine:
     @event.listens_for(engine, "connect")
     def _settings(connection: Any, _record: Any) -> None:
         connection.isolation_level = None  # BEGIN is ours, see below
+        # FULL, because in WAL mode NORMAL may lose the last commits in a power cut
+        # (docs/decisions/0011). Foreign keys are off in SQLite unless they are asked for at every
+        # connection.
         for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON"):
             connection.execute(f"PRAGMA {pragma}")
 
     @event.listens_for(engine, "begin")
     def _begin(connection: Any) -> None:
+        # IMMEDIATE takes the write lock at once: a transaction that reads first and writes later
+        # could fail with "database is locked" in its middle, without waiting.
         reads = connection.get_execution_options().get(_READS, False)
         connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")
 

@@ -114,6 +114,7 @@ def _pose_line(parent: str, child: str, pose: Mapping[str, Any]) -> PoseLine:
 def _head_line(kind: str, record: Mapping[str, Any]) -> HeadLine:
     cameras = [np.array(record[side]["camera_matrix"]) for side in ("left", "right")]
     rotation = np.array(record["rotation"])
+    # Rounding can bring the cosine a little above one, where arccos is not a number.
     toe_in_deg = np.degrees(np.arccos(np.clip((np.trace(rotation) - 1) / 2, -1, 1)))
     return HeadLine(
         name=kind.replace("_", " "),

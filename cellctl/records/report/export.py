@@ -37,10 +37,13 @@ def export_run(
     addresses: dict[str, str] = {}
     for artefact in record.artefacts:
         data = store.artefacts.get(artefact.sha256)
+        # Names come from the record of a process: one with ``..`` would be written outside of the
+        # folder.
         name = _safe(artefact.name)
         if not single_file:
             _write(folder / name, data)
         if artefact.media_type.startswith("image/"):
+            # So that a report can be sent as one file.
             inline = f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
             addresses[artefact.name] = inline if single_file else name.as_posix()
     calibrations = {stored.id: stored for stored in store.calibrations()}

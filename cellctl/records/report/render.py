@@ -17,6 +17,7 @@ def render(view: ReportView) -> str:
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
+        # A name that the template has wrong must fail in the tests and not print nothing.
         undefined=StrictUndefined,
     )
     environment.filters |= {

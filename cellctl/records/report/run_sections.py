@@ -59,6 +59,8 @@ def further_figures(record: RunRecord) -> ReportSection:
         for entry in record.newest_figures.values()
         if entry.verdict is None
     )
+    # Each key once, in the order in which it was recorded first; ``record.document`` merges what
+    # came later.
     keys = dict.fromkeys(
         entry.key for entry in record.documents if not entry.key.endswith(REPLAY_INPUT)
     )

@@ -52,6 +52,7 @@ def number(value: float) -> str:
     if not math.isfinite(value):
         return MISSING
     magnitude = abs(value)
+    # Outside of this range zeros would hide the figures, so the exponent form reads better.
     if magnitude == 0 or 1e-5 <= magnitude < 1e7:
         decimals = 0 if magnitude >= 1000 else 3 - math.floor(math.log10(magnitude or 1.0))
         text = f"{value:.{max(0, min(8, decimals))}f}"

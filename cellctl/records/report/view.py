@@ -57,6 +57,8 @@ def build_view(
 ) -> ReportView:
     """Calibrations by identity, what the process brings, and addresses of pictures by name."""
     verdict, verdict_class = _verdict(record)
+    # A calibration that the run names but that this store does not hold is listed all the same, in
+    # ``calibration_lines``.
     used = [calibrations[i] for i in record.head.calibration_ids.values() if i in calibrations]
     return ReportView(
         record=record,
@@ -85,6 +87,7 @@ def _verdict(record: RunRecord) -> tuple[str, str]:
     result = record.head.result
     if result is None:
         return "Not closed", "bad"
+    # The measuring room has the last word on a part that its run called good.
     if part_verdict(record) != result:
         return "Bad part: plug gauge beyond its limit", "bad"
     return _VERDICTS[RunResult(result)]

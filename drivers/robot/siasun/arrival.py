@@ -19,6 +19,7 @@ class Arrival:
         """Distance of the reported flange from its target."""
         distance_m, angle_rad = state.distance_to(base_T_flange)
         distance_mm, angle_deg = distance_m / MM, float(np.degrees(angle_rad))
+        # Written so that a pose that is not a number has not arrived.
         if distance_mm <= self._tolerance_mm and angle_deg <= self._tolerance_deg:
             return None
         return f"{distance_mm:.3f} mm and {angle_deg:.3f} deg"

@@ -43,6 +43,9 @@ class Bounds:
         limit = self._config.max_joint_speed_percent
         if not 0.0 < speed_ratio * 100.0 <= limit:
             self._refuse(f"joint speed {speed_ratio * 100.0:g} %, allowed (0, {limit}]")
+        # MOVJ takes whole percents from 1 on (docs/protocols/sjl-1.md, section 4). Rounded down, so
+        # that no move is faster than was asked for; the small term keeps 0.29 * 100 from becoming
+        # 28.
         return joints_deg, max(1, math.floor(speed_ratio * 100.0 + 1e-9))
 
     @property
@@ -60,12 +63,15 @@ class Bounds:
         if kinematics is None:
             return
         distance_m, angle_rad = state.distance_to(kinematics.base_T_flange(state.joints_rad))
+        # Written so that a table that gives no number is refused.
         if not (distance_m / MM <= DH_FITS_MM and math.degrees(angle_rad) <= DH_FITS_DEG):
             self._refuse(
                 f"the dh table puts the flange {distance_m / MM:.2f} mm and "
                 f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it"
             )
         lower, upper = self._config.joint_workspace_mm
+        # The joint with the longest way sets the number of points, because all joints arrive
+        # together.
         greatest_rad = float(np.abs(joints_rad - state.joints_rad).max())
         points = max(2, math.ceil(greatest_rad / WAY_STEP_RAD) + 1)
         for joints in np.linspace(state.joints_rad, joints_rad, points):
@@ -97,6 +103,8 @@ class Bounds:
     def step(self, state: RobotState, base_T_flange: RigidTransform, step_max_mm: float) -> None:
         """A step's length and angle from where the robot is; ``step_max_mm`` is the job's."""
         distance_m, angle_rad = state.distance_to(base_T_flange)
+        # The lower of both: the site may allow less than the job program, and the job program
+        # rejects what is more than its own.
         limit_mm = min(self._config.max_step_mm, step_max_mm)
         if not distance_m / MM <= limit_mm:
             self._refuse(f"step of {distance_m / MM:.4f} mm, allowed {limit_mm:g}")
@@ -165,6 +173,8 @@ class Bounds:
             )
 
     def _limited(self, what: str, value: float, limit: float, unit: str) -> float:
+        # 1e-4 is the last decimal of a speed in a record (docs/protocols/sjl-1.md, section 2): less
+        # could be sent as zero.
         if not 1e-4 <= value <= limit:
             self._refuse(f"{what} {value:g} {unit}, allowed (0, {limit:g}]")
         return value

@@ -60,6 +60,8 @@ class CommandChannel:
         try:
             self._seq += 1
             self.channel.send(build(command.session, command.seq))
+            # A rejection comes at once. Waiting for it before the long wait for the end tells a
+            # robot that refuses from one that is slow.
             await command.acknowledged(self._reply_timeout_s)
             yield command
         finally:
@@ -71,6 +73,7 @@ class CommandChannel:
             self._running.take(fault)
 
     def _up(self) -> None:
+        # The protocol counts from 1 in each session (section 4).
         self._seq = 0
 
     def _take(self, record: Record) -> None:
@@ -81,6 +84,8 @@ class CommandChannel:
             return
         if not isinstance(record, Answer):
             raise ProtocolViolation(f"{self.channel}: {type(record).__name__} on this channel")
+        # No answer to anything that was sent in this session: the two ends no longer agree, and
+        # nothing else on this channel can be believed.
         if not 1 <= record.seq <= self._seq:
             raise ProtocolViolation(f"{self.channel}: {record} to a command that was never sent")
         if self._running is not None and record.seq == self._running.seq:

@@ -28,6 +28,8 @@ class _Section(BaseModel):
     @model_validator(mode="after")
     def _robot_is_known(self) -> Self:
         if self.robot_address:
+            # Only parsed here, so that a wrong address is found by ``cellctl check`` and not when
+            # the robot calls.
             ip_network(self.robot_address, strict=False)
         elif not _is_loopback(self.listen_host):
             # The protocol has no password, so a name alone would let anybody be the robot.
@@ -85,6 +87,7 @@ class SiasunConfig(_Section):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
+        # Each channel has a listener of its own; the second one would find its port in use.
         if self.command_port == self.state_port:
             raise ValueError("command_port and state_port must differ")
         pairs = {

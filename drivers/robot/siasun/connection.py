@@ -131,6 +131,8 @@ class SjlChannel:
         if not is_robot(caller, self._robot_address):
             self._refuse(caller)
             return False
+        # The first one stays: a second caller could otherwise take a moving robot away from its
+        # link.
         if self._client is not None or self._server is None:
             _log.warning("%s: second connection refused", self)
             return False
@@ -163,7 +165,10 @@ class SjlChannel:
             self._ended(VersionMismatch(f"{self}: {facts}"))
             return
         self.hello = hello
+        # A new number for each session, so that a record of the old one that is still under way is
+        # told from one of the new.
         self.session = self.session % SESSIONS + 1
+        # Before ``on_up``, which may send a heartbeat: the robot takes nothing before its OK.
         self._client.send(protocol.accept_hello(self.session))
         self._client.greeted()
         self._accepted = True
@@ -174,6 +179,7 @@ class SjlChannel:
     def _ended(self, fault: LinkError) -> None:
         """The present client is gone or going."""
         _log.warning("%s: %s", self, fault)
+        # Cleared before anybody is told: whoever hears of the loss must find the channel closed.
         accepted, self._accepted, self._client = self._accepted, False, None
         if accepted:
             self._on_lost(fault)
@@ -182,6 +188,7 @@ class SjlChannel:
         self._changed.set()
 
     def _gone(self, client: "_Client", error: Exception | None) -> None:
+        # A client that was dropped before is closed later, when the next one may stand already.
         if client is self._client:
             self._ended(LinkLost(f"{self}: {error or 'closed by the robot'}"))
 
@@ -198,11 +205,15 @@ class _Client(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
+        # A stranger is dropped before a word is exchanged, so that it cannot take the place of the
+        # robot.
         if not self._channel._admit(self, transport.get_extra_info("peername")[0]):
             transport.abort()
             return
         self._transport = transport
         sock = transport.get_extra_info("socket")
+        # Without it a small record waits for the acknowledgement of the one before: 42 ms were
+        # measured for a stop (docs/decisions/0003).
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         loop = asyncio.get_running_loop()
         fault = ConnectTimeout(f"{self._channel}: no HELLO within {HELLO_TIMEOUT_S:g} s")
@@ -212,6 +223,7 @@ class _Client(asyncio.Protocol):
         _log.debug("%s <- %r", self._channel, data)
         self._reader.feed(data)
         try:
+            # A record may have led to the end of the session; those behind it belong to nobody.
             while self._transport is not None and (record := self._reader.next()) is not None:
                 self._channel._record(record)
         except ProtocolViolation as fault:

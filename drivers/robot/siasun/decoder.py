@@ -64,6 +64,7 @@ class RecordReader:
 def decode(line: bytes) -> Record:
     """One line without its LF; ``ProtocolViolation`` when it is no valid record."""
     body, star, tail = line.removesuffix(b"\r").rpartition(b"*")
+    # The sum before the fields: a digit that changes on the way still parses (docs/decisions/0002).
     if not star or tail != b"%02X" % (sum(body) & 0xFF):
         raise ProtocolViolation(f"wrong sum: {line[:80]!r}")
     word, *fields = body.decode("ascii", "replace").split(",")
@@ -93,6 +94,8 @@ def _count(fields: list[str], expected: int) -> None:
 
 
 def _integer(text: str) -> int:
+    # By a pattern, because Python's own ``int`` also takes spaces, signs and underscores, which no
+    # job program of this protocol sends.
     return int(_match(_INTEGER, text))
 
 
@@ -117,6 +120,8 @@ def _keyed(text: str, key: str) -> str:
 def _hello(fields: list[str]) -> Hello:
     if len(fields) < 2 or fields[0] != "SJL":
         raise ValueError("not a hello of SJL")
+    # Nothing behind the version is read: another version may order its fields in another way, and
+    # the handshake refuses it anyway.
     if fields[1] != VERSION:
         return Hello(version=fields[1])
     _count(fields[:_HELLO_FIELDS], _HELLO_FIELDS)

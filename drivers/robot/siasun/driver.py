@@ -73,6 +73,7 @@ class SiasunRobot(StreamingRobot):
     async def _connect(self) -> None:
         host, timeout_s = self._config.listen_host, self._config.connect_timeout_s
         try:
+            # Both ports before any wait, because the job programs of a robot connect in any order.
             await self._command.channel.listen(host, self._config.command_port)
             await self._state.channel.listen(host, self._config.state_port)
             async with asyncio.timeout(timeout_s):
@@ -84,6 +85,7 @@ class SiasunRobot(StreamingRobot):
             missing = state if command.connected else command
             await self._close()
             raise missing.timeout(timeout_s) from None
+        # Also after a cancellation: a port that stays open would be in use at the next attempt.
         except BaseException:
             await self._close()
             raise
@@ -103,6 +105,8 @@ class SiasunRobot(StreamingRobot):
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report. ``stop_latched`` includes this driver's own latch."""
         state = self._state.newest(max_age_s)
+        # The latch of this driver counts like that of the controller: whoever asks for readiness
+        # must see that a move would be refused.
         return replace(state, stop_latched=True) if self._latch else state
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
@@ -186,6 +190,7 @@ class SiasunRobot(StreamingRobot):
         """ABORT on STA; returns after STOPD. Without it both channels are closed until ``connect``:
         no heartbeat and no link, so that the controller's dead man and its watch over the links
         stop the arm, which do not depend on the part of the job program that did not answer."""
+        # Before anything is sent or awaited, so that no move can begin while the stop is under way.
         self._latch = NotRearmed(f"{self.name}: a stop was requested")
         try:
             await self._state.stop(self._config.stop_timeout_s)
@@ -199,6 +204,7 @@ class SiasunRobot(StreamingRobot):
         if self._command.running:
             raise MotionRejected(f"{self.name}: cannot rearm while a motion runs")
         self._check_link()
+        # Remembered, so that a stop that comes during the release is not released with it.
         latch = self._latch
         await self._command.run(protocol.rearm, self._config.reply_timeout_s)
         await self._state.wait(lambda status: not status.latched, self._config.reply_timeout_s)
@@ -213,6 +219,7 @@ class SiasunRobot(StreamingRobot):
         self._check_ready()
         try:
             end_xyzabc = await self._command.run(build, self._config.move_timeout_s)
+        # Nobody knows whether the arm still moves, and nobody waits for its end any more.
         except (asyncio.CancelledError, ReplyTimeout):
             await self._stop_before_leaving()
             raise
@@ -221,7 +228,10 @@ class SiasunRobot(StreamingRobot):
             raise
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
         state = self.state(self._config.stale_s)
+        # The pose of DONE is the encoder pose at standstill, and newer than the last report.
         end = replace(state, base_T_flange=pose_from_xyzabc(end_xyzabc))
+        # A controller that says DONE elsewhere has another idea of the target, such as another
+        # Euler order; the next move would be wrong as well.
         if off := off_target(end):
             self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
             raise self._latch

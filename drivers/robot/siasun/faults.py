@@ -52,6 +52,8 @@ _ABORTS: dict[str, tuple[type[CellError], str]] = {
 
 def rejection(robot: str, reason: str) -> CellError:
     """Fault of ``REJ,<seq>,<reason>``."""
+    # A job program may know more reasons than this driver; an unknown one is still a refusal, with
+    # its word in the text.
     fault, words = _REJECTIONS.get(reason, (MotionRejected, "reason unknown to this driver"))
     return fault(f"{robot}: {words} ({reason})")
 

@@ -14,6 +14,7 @@ def is_robot(caller: str, robot_address: str) -> bool:
     if not robot_address:
         return True
     address = ip_address(caller)
+    # A listener on an IPv6 address sees IPv4 callers as ``::ffff:a.b.c.d``.
     mapped = address.ipv4_mapped if isinstance(address, IPv6Address) else None
     return (mapped or address) in ip_network(robot_address, strict=False)
 
@@ -21,6 +22,8 @@ def is_robot(caller: str, robot_address: str) -> bool:
 def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tuple[str, str] | None:
     """Why a hello cannot be accepted: the word for the robot and the facts; None when it can."""
     deadman_ok = 0 < hello.deadman_ms <= max_deadman_s * 1000.0
+    # In the order in which they make sense: of another version the other fields mean nothing, and
+    # on a wrong port the name may be right.
     checks = (
         (hello.version == VERSION, "VERSION", f"job program speaks SJL/{hello.version}"),
         (hello.channel == channel, "CHANNEL", f"channel {hello.channel} on the port of {channel}"),

@@ -79,5 +79,7 @@ def _encode(*fields: str) -> bytes:
 
 
 def _fixed(value: float, decimals: int) -> str:
+    # A small negative number would be written as ``-0.0000``, which the protocol does not allow
+    # (section 2).
     text = f"{value:.{decimals}f}"
     return text.removeprefix("-") if float(text) == 0.0 else text

@@ -78,6 +78,8 @@ class RunningCommand:
             fault = ReplyTimeout(
                 f"{self._robot}: no {kind.__name__.upper()} within {timeout_s:g} s"
             )
+            # Before it is raised: the answer may come later and would be taken for one to the next
+            # command.
             self._give_up(fault)
             raise fault from None
         if isinstance(answer, kind):

@@ -82,6 +82,9 @@ class StateChannel:
         self._stops[future] = abort_id
         try:
             async with asyncio.timeout(timeout_s):
+                # Repeated with the same number, which the protocol allows (section 6): a robot that
+                # overheard the first one stops at a later one, and one that has taken it is not
+                # confused.
                 while not future.done():
                     self.channel.send(protocol.abort(self.channel.session, abort_id))
                     await asyncio.wait({future}, timeout=REPEAT_STOP_S)
@@ -101,6 +104,8 @@ class StateChannel:
         self._fail(LinkLost(f"{self.channel} was disconnected"))
 
     def _up(self) -> None:
+        # A report of the session before says nothing about a controller that may have been
+        # restarted.
         self._status = None
         self._time_s = now_s()
         self._beat()
@@ -116,6 +121,8 @@ class StateChannel:
     def _take_status(self, status: Status) -> None:
         """A report that repeats its predecessor's count or clock is not news."""
         last = self._status
+        # A job that hangs in a loop may send the same report for ever; it would look fresh by its
+        # time of arrival.
         if last is not None and (status.count <= last.count or status.robot_ms == last.robot_ms):
             return
         self._status, self._time_s = status, now_s()
@@ -127,6 +134,7 @@ class StateChannel:
         if not 1 <= record.id <= self._abort_id:
             raise ProtocolViolation(f"{self.channel}: STOPD {record.id} was never asked for")
         for future, abort_id in self._stops.items():
+            # STOPD of a later stop confirms the earlier ones too: the robot stands.
             if not future.done() and abort_id <= record.id:
                 future.set_result(None)
         self._on_stopped()
@@ -144,6 +152,8 @@ class StateChannel:
     def _beat(self) -> None:
         """Heartbeat, and the watchdog over the robot's reports; calls itself again."""
         silent_s = now_s() - self._time_s
+        # Checked together with the beat: a robot that does not report may not move on, and without
+        # the link it stops by itself.
         if silent_s > self._silence_s:
             self.channel.drop(LinkLost(f"{self.channel}: no report for {silent_s:.2f} s"))
             return

@@ -56,6 +56,7 @@ class SiasunStopChannel(StopChannel):
             listener = socket.create_server((host, port), backlog=1)
         except OSError as error:
             raise faults.cannot_listen(host, port, error) from error
+        # Closed when the robot is connected: while the guard works nobody else may call.
         with listener:
             while self._socket is None:
                 self._accept(listener, deadline_s)
@@ -72,6 +73,8 @@ class SiasunStopChannel(StopChannel):
 
     def request_stop(self) -> None:
         """Send ABORT now; a full or broken socket is ``LinkLost``."""
+        # Sent first and packed for the next time afterwards: nothing is computed before a stop
+        # leaves.
         self._send(self._stop_record)
         self._pack_stop()
 
@@ -85,6 +88,7 @@ class SiasunStopChannel(StopChannel):
         if self._socket is None:
             raise self._lost("not connected")
         newest: Status | None = None
+        # Bounded, so that a robot that floods the channel cannot keep the guard from its samples.
         for _ in range(_READS_PER_POLL):
             try:
                 data = self._socket.recv(_CHUNK_BYTES)
@@ -121,6 +125,8 @@ class SiasunStopChannel(StopChannel):
                 return
             try:
                 self._greet(client, min(deadline_s, now_s() + HELLO_TIMEOUT_S))
+            # Raised and not passed over: a robot with a wrong job program calls again and again,
+            # and only a person can change that.
             except VersionMismatch:
                 client.close()
                 raise
@@ -146,6 +152,7 @@ class SiasunStopChannel(StopChannel):
             raise VersionMismatch(f"{config.robot_name} GRD: {facts}")
         self._session = self._session % SESSIONS + 1
         client.sendall(protocol.accept_hello(self._session))
+        # From here on the guard's loop owns it, and nothing may block there.
         client.settimeout(0.0)
         self._socket, self._reader, self._last = client, reader, None
         self._stops = self._beats = 0
@@ -162,6 +169,8 @@ class SiasunStopChannel(StopChannel):
             sent = self._socket.send(record)
         except OSError as error:
             raise self._lost(str(error)) from error
+        # A robot that reads nothing has filled the socket. Half a record would also damage the one
+        # behind it.
         if sent < len(record):
             raise self._lost("the robot does not read")
 

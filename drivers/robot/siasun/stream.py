@@ -67,6 +67,8 @@ class SiasunStream(PoseStream):
         """The newest tick, once there is one after a number."""
         command = self._command
         try:
+            # The same time in which the robot ends a stream without setpoints: neither end waits
+            # longer for the other.
             async with asyncio.timeout(self.limits.loss_s):
                 while command.tick is None or command.tick.number <= number:
                     command.news.clear()

@@ -33,6 +33,7 @@ def _unmeasurable(features: FeatureFile) -> str:
     for key, names in (("head_1", features.head_1), ("head_2", features.head_2)):
         if not names:
             return f"{key} must list the holes that this head sees"
+    # Together, because the pose is fitted to the holes of both heads.
     seen = {hole.name: hole for head in (1, 2) for hole in features.seen_by(head)}
     if on_a_line(np.array([hole.position_m for hole in seen.values()])):
         return "head_1 and head_2 together need three holes that are not on a line"

@@ -68,6 +68,8 @@ class Attempt:
 
         Raises the fault of a trip that happens meanwhile, ``SensorSilent`` or ``SensorFrozen``.
         """
+        # By the clock of the samples and not by a sleep: what counts is when a sample was taken,
+        # not when somebody looks at it.
         begin_s = loop_time_s() + settle_s
         end_s = begin_s + duration_s
         while self.guard.latest().time_s < end_s:
@@ -77,9 +79,13 @@ class Attempt:
             await asyncio.sleep(POLL_S)
         self.raise_trip()
         curve = self.guard.samples(begin_s)
+        # Samples that came while this waited are left out, so that every reading averages over the
+        # same time.
         inside = curve.time_s <= end_s
         self.require_alive(curve.raw[inside])
         wrench = curve.wrench[inside]
+        # The reported pose and not the commanded one: no move is exactly as long as commanded, and
+        # the stiffness is taken from travel and force.
         travel_m = self.plan.travel_of(self.robot.state().base_T_flange)
         return Reading(end_s, travel_m, wrench.mean(axis=0), wrench.std(axis=0))
 

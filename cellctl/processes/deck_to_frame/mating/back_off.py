@@ -38,13 +38,18 @@ async def _leave(
 ) -> None:
     plan, settings = attempt.plan, attempt.plan.settings
     attempt.raise_trip()
+    # At the stand-off there is nothing to leave.
     if back_m <= settings.smallest_step_m:
         await attempt.guard.disarm()
         return
+    # The limits of leaving start from what presses at this moment. A sensor without live readings
+    # raises here, before anything moves.
     reading = await attempt.read(settings.reading_s, settings.step_settle_s)
     attempt.tell(MatingPhase.BACK_OFF)
     await attempt.guard.arm(leaving_limits(settings, reading.wrench))
     first_m = min(FIRST_LIFT_M, back_m)
+    # From where the arm stands and not from a planned travel: a stop has left it anywhere, and pins
+    # may have moved it aside.
     pose = advance(here, plan.flange_T_deck, -first_m)
     await _move(attempt, attempt.robot.step(pose, speed_m_s=first_speed_m_s(settings)))
     if back_m > first_m:

@@ -37,6 +37,7 @@ async def measure_contact_stiffness(
     results, estimates = [], []
     for _ in range(contacts):
         result = await mate(robot, guard, plan, report)
+        # On a chamfer or on dirt the stiffness of something else would be measured.
         if result.outcome is not MatingOutcome.SEATED:
             gap_mm = result.verdict.gap_m * 1e3
             raise FalseSeat(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)

@@ -21,6 +21,8 @@ async def comply(attempt: Attempt, reading: Reading) -> Reading:
     settings, law = attempt.plan.settings, attempt.plan.compliance
     if law is None:
         return reading
+    # Bounded: a side force that no move takes away, such as friction, is left to the limits of the
+    # seat.
     for _ in range(settings.max_creep_steps):
         move = next_move(law, attempt.offset, reading.wrench)
         if move is None:
@@ -45,6 +47,7 @@ async def check_lateral_load(attempt: Attempt) -> None:
     if not len(wrench) or not pressed(law, np.asarray(wrench.mean(axis=0))):
         return
     settings = attempt.plan.settings
+    # Moves across the approach may make forces that the touch detector would take for the seat.
     await attempt.guard.arm(contact_limits(settings))
     await comply(attempt, await attempt.read(settings.reading_s, settings.step_settle_s))
     await attempt.guard.arm(touch_limits(settings))
@@ -60,6 +63,8 @@ async def resolve_early_contact(attempt: Attempt) -> float:
     reading = await attempt.read(settings.reading_s, settings.step_settle_s)
     reading = await comply(attempt, reading)
     attempt.touches_above += 1
+    # Below the drift of the detector the next move can begin as if in free air (docs/mating.md,
+    # "What if the stop is not obeyed").
     stays = reading.force_n > settings.touch.drift_n
     if stays or attempt.touches_above > settings.max_creep_steps:
         raise ContactEarly(

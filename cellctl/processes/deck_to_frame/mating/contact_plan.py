@@ -28,6 +28,8 @@ def contact_plan(corrected: Corrected, commissioned: Commissioned) -> MatingPlan
     """
     run = corrected.run
     cell, recipe = run.cell, run.recipe
+    # The plan counts the travel from the pose that was measured. An arm that has moved since then
+    # would meet the frame earlier or later than expected.
     require_unmoved("the main robot", cell.main, corrected.measured_at)
     require_full_speed(cell.main)
     return plan_mating(
@@ -62,6 +64,8 @@ def mating_settings(
         abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
         release_low_n=mating.release_force_n - RELEASE_BAND_N,
         release_high_n=mating.release_force_n + RELEASE_BAND_N,
+        # The drift of a CUSUM is half of the shift that it is made to find: less would add up
+        # noise, more would be blind to a soft contact.
         touch=Cusum(mating.touch_force_n / 2, touch_threshold_n(rate_hz)),
         sample_period_s=1.0 / rate_hz,
         stale_s=sensor.stale_ms / 1e3,

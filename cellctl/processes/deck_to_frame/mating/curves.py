@@ -24,6 +24,8 @@ async def curves_kept(run: AssemblyRun) -> AsyncIterator[Callable[[MatingProgres
 
     try:
         yield report
+    # Also after a cancellation: the curve of a contact that somebody has stopped is what they want
+    # to see.
     except BaseException as reason:
         try:
             await _keep(run)

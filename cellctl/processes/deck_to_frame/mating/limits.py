@@ -15,6 +15,7 @@ _ALONG = 2
 
 def travel_limits(settings: MatingSettings) -> GuardLimits:
     """Fast travel: nothing but inertia may be felt, in any direction."""
+    # Never beyond the limits of contact, whatever a recipe gives for inertia.
     along_n = min(settings.fast_limit_n, settings.abort_force_n)
     return _limits(settings, along_n, min(along_n, settings.max_lateral_n))
 
@@ -37,6 +38,7 @@ def leaving_limits(settings: MatingSettings, wrench: Array) -> GuardLimits:
     """
     growth = np.repeat([settings.fast_limit_n, settings.max_moment_n_m], 3)
     fx, fy, fz, mx, my, mz = (float(value) for value in np.abs(wrench) + growth)
+    # The zero is that of the stand-off, so a force of the other sign can only be a pull.
     pull = CusumTouch(settings.fast_limit_n, settings.touch.threshold_n, axis=_ALONG, sign=-1.0)
     return guard_limits(
         (fx, fy, fz, mx, my, mz),
@@ -48,6 +50,8 @@ def leaving_limits(settings: MatingSettings, wrench: Array) -> GuardLimits:
 
 def fault_of(trip: GuardTrip, settings: MatingSettings) -> CellError:
     """The fault of a trip that ends an attempt."""
+    # Along the approach the figures of the plan were wrong, which costs calibrations
+    # (``calibrations.py``); across it the parts do not fit.
     if trip.force and trip.component == _ALONG:
         return MatingOverforce(f"abort limit {settings.abort_force_n:.0f} N: {trip}")
     if trip.force:

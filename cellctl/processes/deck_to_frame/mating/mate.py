@@ -50,12 +50,16 @@ async def mate(
     its own fault; a ``ForceError`` carries the force curve, and ``report`` gets it in any case.
     An ``interruption`` ends it like a violation, without one only cancelling does.
     """
+    # Before the recorder and outside of ``try``: an arm that stands elsewhere has no contact from
+    # which it could retreat.
     require_stand_off(robot, plan)
     async with Recorder(robot, guard, plan) as recorder:
         attempt = Attempt(robot, guard, plan, recorder, report)
         try:
             return await (interruption or Interruption()).unless(_run(attempt))
         except CellError as fault:
+            # Only after faults. A Stop or an Abort cancels, and what is cancelled must not begin
+            # another move.
             await retreat(attempt, fault)
             raise
         finally:
@@ -107,8 +111,10 @@ async def _run(attempt: Attempt) -> MatingResult:
         segment_m=plan.segment_m,
         tare=tare,
         touch_travel_m=touch_travel_m,
+        # The first reading of the creep is the one after the touch stop.
         touch_force_n=readings[0].force_n,
         creep=readings,
+        # With the readings of relaxing: they reach down to 10 N and lengthen the line.
         stiffness=stiffness_of((*readings, *relaxing)),
         hold=held,
         verdict=verdict,

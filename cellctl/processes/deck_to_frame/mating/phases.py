@@ -47,11 +47,14 @@ async def settle_and_tare(attempt: Attempt) -> Tare:
     plan, settings = attempt.plan, attempt.plan.settings
     attempt.tell(MatingPhase.TARE)
     sensor_T_deck = plan.flange_T_sensor.inv() * plan.flange_T_deck
+    # The wrench frame and the tare cannot be changed while armed.
     await attempt.guard.disarm()
     await attempt.guard.set_wrench_frame(sensor_T_deck)
     await _steady(attempt)
     tare = await attempt.guard.tare(settings.tare_s)
     mean, sigma = np.asarray(tare.mean), np.asarray(tare.sigma)
+    # What is taken as zero is not seen any more: a deck that already touches would begin the mating
+    # with a hidden force.
     _require_plausible(mean, settings.plausible)
     return Tare(mean, sigma)
 
@@ -70,6 +73,8 @@ async def travel_clear(attempt: Attempt) -> None:
     )
     if trip is None:
         return
+    # Contact where vision excludes it. Other trips are faults of sensor or links and keep their own
+    # number.
     if trip.force or trip.touch:
         raise _early(attempt, trip)
     raise fault_of(trip, attempt.plan.settings)
@@ -82,9 +87,13 @@ async def travel_to_touch(attempt: Attempt) -> float:
     force limit. Raises ``ContactEarly``, ``ContactLate`` or the fault of another trip.
     """
     plan, settings = attempt.plan, attempt.plan.settings
+    # The fast travel has just ended and the deck swings. Armed at once, the detector would sum up
+    # the swing to a touch.
     await attempt.read(settings.reading_s / 2.0, settings.step_settle_s)
     await attempt.guard.arm(touch_limits(settings))
     commanded_m = plan.window.clear_m
+    # The margin is far below what the arm can move; without it rounding could ask for one more move
+    # of no length.
     while commanded_m < plan.window.latest_m - 1e-9:
         attempt.tell(MatingPhase.SLOW)
         begin_s = loop_time_s()
@@ -92,6 +101,8 @@ async def travel_to_touch(attempt: Attempt) -> float:
         pose = attempt.pose_at(commanded_m)
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=plan.speed.speed_m_s))
         if trip is None:
+            # A sensor that repeats its values feels no touch. The guard looks for that as well;
+            # this check does not depend on its limits.
             attempt.require_alive(attempt.guard.samples(begin_s).raw)
             await check_lateral_load(attempt)
         elif _at_pins(attempt, trip):
@@ -104,6 +115,8 @@ async def travel_to_touch(attempt: Attempt) -> float:
 
 async def take_over(attempt: Attempt) -> None:
     """After the touch stop: release the latches and watch the force of the creep instead."""
+    # The guard first, and armed before the robot can move again: no motion without somebody who
+    # watches.
     await attempt.guard.acknowledge()
     await attempt.guard.arm(contact_limits(attempt.plan.settings))
     await attempt.robot.rearm()
@@ -121,6 +134,8 @@ async def _touch_at_standstill(attempt: Attempt) -> float:
     reading = await _reading_or_touch(attempt)
     if reading is None:
         return attempt.recorder.travel_at(loop_time_s())
+    # A force up to the drift does not count for the detector, and three standard deviations keep
+    # noise from looking like contact.
     if reading.force_n < settings.touch.drift_n + 3.0 * settings.force_sigma_n:
         window = attempt.plan.window
         raise ContactLate(
@@ -136,6 +151,8 @@ async def _reading_or_touch(attempt: Attempt) -> Reading | None:
         return await attempt.read(settings.reading_s, settings.step_settle_s)
     except ForceError:
         trip = attempt.guard.trip
+        # A touch that comes while the arm stands at the end of its window is the contact that was
+        # looked for.
         if trip is not None and trip.touch:
             return None
         raise
@@ -145,6 +162,8 @@ def _touched(attempt: Attempt, trip: GuardTrip) -> float:
     if not (trip.touch or trip.force):
         raise fault_of(trip, attempt.plan.settings)
     travel_m = attempt.recorder.travel_at(trip.time_s)
+    # Early comes before overforce: a limit that is reached above the window says that something is
+    # in the way, and not that the mating pressed too hard.
     if travel_m < attempt.plan.window.earliest_m:
         raise _early(attempt, trip)
     if trip.force:

@@ -82,6 +82,8 @@ def plan_mating(
             f"the guard would stop at {settings.abort_force_n:.0f} N, at or above the limit of "
             f"{settings.limit_force_n:.0f} N"
         )
+    # D3 is the hard end of travel in the paper (eq. 17); here it only bounds the recipe, because
+    # nobody commands a pose 25 mm past contact (docs/mating.md, "The commanded target").
     if settings.greatest_past_m > over_travel_m:
         raise MatingPlanInvalid("targets may not lie further past contact than D3")
     figures = ApproachFigures(
@@ -97,6 +99,8 @@ def plan_mating(
         tare_uncertainty_n=settings.tare_uncertainty_n,
         step_sigma_m=settings.step_sigma_m,
     )
+    # Against the guard's limit and not the allowed peak: a robot that obeys no stop runs the whole
+    # segment.
     segment_m = segment_length(figures, limit_n=settings.abort_force_n)
     return MatingPlan(
         base_T_flange=base_T_flange,
@@ -117,6 +121,8 @@ def _window(
 ) -> ContactWindow:
     half_x, half_y = settings.half_size_m
     sigma = M_T_D.sigma
+    # The tilt about x lifts the edges along y, hence the crossed indices (docs/mating.md, formula
+    # of sigma).
     sigma_m = contact_sigma(
         sigma[2],
         settings.thickness_sigma_m,
@@ -131,6 +137,7 @@ def _window(
         coverage=settings.coverage,
         least_half_m=settings.least_window_m,
         greatest_half_m=min(settings.window_m, settings.greatest_past_m),
+        # The lower edge of a tilted deck touches this much sooner.
         tilt_m=float(half_x * ry + half_y * rx),
         margin_m=settings.clear_margin_m,
         engaged_m=settings.pins.engagement_m if settings.pins else 0.0,
@@ -139,6 +146,8 @@ def _window(
 
 def _creep(settings: MatingSettings) -> CreepLaw:
     low = settings.target_force_n + READING_BAND_N
+    # One band below the bound that no step may pass (``abort_n`` in ``_law``), so that the creep
+    # ends before it gets there.
     high = settings.abort_force_n - 2.0 * NOISE_BAND_N
     if high - low < NOISE_BAND_N:
         raise MatingPlanInvalid(
@@ -149,6 +158,7 @@ def _creep(settings: MatingSettings) -> CreepLaw:
 
 
 def _release(settings: MatingSettings) -> CreepLaw:
+    # A quarter from each side leaves at least half of the window, however narrow a recipe makes it.
     band = min(NOISE_BAND_N, (settings.release_high_n - settings.release_low_n) / 4.0)
     return _law(settings, settings.release_low_n + band, settings.release_high_n - band)
 
@@ -183,6 +193,7 @@ def _law(settings: MatingSettings, low_n: float, high_n: float) -> CreepLaw:
         greatest_step_m=settings.greatest_step_m,
         smallest_step_m=settings.smallest_step_m,
         force_sigma_n=settings.force_sigma_n,
+        # A mean at this force may read the guard's limit for a moment.
         abort_n=settings.abort_force_n - NOISE_BAND_N,
         step_sigma_m=settings.step_sigma_m,
     )

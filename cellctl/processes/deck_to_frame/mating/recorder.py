@@ -73,6 +73,7 @@ class Recorder:
             state = self._robot.state()
         except CellError:
             return  # The motion that runs meets the same fault and raises it.
+        # ``interp`` needs rising times, and a report that was read twice says nothing new.
         if not self._times or state.time_s > self._times[-1]:
             self._times.append(state.time_s)
             self._travels.append(self._plan.travel_of(state.base_T_flange))

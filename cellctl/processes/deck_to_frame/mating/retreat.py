@@ -51,6 +51,8 @@ async def retreat(attempt: Attempt, fault: CellError) -> None:
     try:
         await _stop(attempt, fault)
         if isinstance(fault, _PRESSES_ON) and _healthy(attempt):
+            # The guard must be released first: as long as it wants a stop, it asks for one again at
+            # the next beat.
             await attempt.guard.acknowledge()
             await attempt.robot.rearm()
             await back_off(attempt)
@@ -71,5 +73,7 @@ async def _stop(attempt: Attempt, fault: CellError) -> None:
 def _healthy(attempt: Attempt) -> bool:
     """The robot lacks nothing but the release of its latch, the guard could stop it again."""
     robot, guard = attempt.robot.state(), attempt.guard.health()
+    # The latch is what the stop has just set and what rearming will release; everything else that
+    # makes a robot not ready needs a person.
     able = replace(robot, stop_latched=False).ready
     return able and guard.alive and guard.stop_channel_up

@@ -34,6 +34,8 @@ async def creep_to(
     while not done(law, state):
         attempt.tell(phase, reading)
         target_m = state.travel_m + next_step(law, state)
+        # A soft or missing contact never reaches the force. Without this bound the creep would
+        # follow it past every measured figure.
         if target_m > plan.end_of_travel_m or state.steps >= settings.max_creep_steps:
             raise CreepNotConverged(
                 f"{state.force_n:.1f} N after {state.steps} steps at {state.travel_m / MM:.3f} mm, "
@@ -70,10 +72,13 @@ async def hold(attempt: Attempt, readings: tuple[Reading, ...]) -> tuple[Reading
             stiffness_n_m=stiffness_n_m,
             limits=settings.seat,
         )
+        # Before the force: with a side load the force along the approach proves nothing.
         if SeatFinding.LATERAL in verdict.findings or SeatFinding.MOMENT in verdict.findings:
             raise LateralLoad(
                 f"side force {verdict.lateral_n:.1f} N, moment {verdict.moment_n_m:.1f} N·m"
             )
+        # A false seat is a result and no fault: the caller measures again. Only a force that has
+        # relaxed is worth another creep.
         if SeatFinding.FORCE_LOW not in verdict.findings:
             return reading, verdict
         await creep_to(attempt, attempt.plan.creep, MatingPhase.CREEP, reading)

@@ -38,6 +38,8 @@ class MatingSettings:
     """Upper bound from the stop-latency procedure."""
     stiffness_n_m: float
     """Arm and contact in series, upper bound."""
+    # Upper end of the range in which the mating is tried out (1e5 to 1e7 N/m, docs/mating.md, "How
+    # it is tested").
     contact_stiffness_n_m: float = 1e7
     """Deck on frame alone, upper bound: only the impact term needs it."""
     moving_mass_kg: float = 200.0
@@ -71,6 +73,7 @@ class MatingSettings:
     window_m: float = 3e-4
     """Greatest half width of the contact window."""
     least_window_m: float = 1e-4
+    # With 3 sigma, about one good contact in 400 would lie outside and be a fault.
     coverage: float = 4.0
     """Half width of the contact window in standard deviations."""
     clear_margin_m: float = 2e-4
@@ -80,6 +83,7 @@ class MatingSettings:
     thickness_sigma_m: float = 1.2e-5
     half_size_m: tuple[float, float] = (0.5, 0.25)
     """Half length and half width of the mating face: tilt makes an edge touch first."""
+    # The job programs offer steps of 0.5 mm (STEPMAX in docs/protocols/sjl-1.md).
     greatest_segment_m: float = 4e-4
     """Below the step limit of the controller."""
 
@@ -92,8 +96,11 @@ class MatingSettings:
     """Untared force (N) and moment (N·m) at the stand-off that compensation can leave."""
     tare_s: float = 0.5
 
+    # Backward Euler converges with this damping up to twice the expected stiffness; explicit Euler
+    # would need S > T k / 2, about 2.7e5 N·s/m (docs/mating.md, "The creep").
     creep_damping_n_s_m: float = 5e4
     creep_mass_kg: float = 20.0
+    # A move takes effect once in this time (docs/mating.md, "The creep").
     step_period_s: float = 0.6
     step_speed_m_s: float = 2e-4
     step_settle_s: float = 0.15
@@ -111,6 +118,7 @@ class MatingSettings:
     pins: PinSettings | None = None
     max_lateral_n: float = 25.0
     max_moment_n_m: float = 25.0
+    # Out of contact also where it is soft: at 1e5 N/m, 50 N are 0.5 mm.
     back_off_m: float = 2e-3
     back_off_speed_m_s: float = 1e-3
     stand_off_tolerance: tuple[float, float] = (2e-4, float(np.deg2rad(0.02)))

@@ -71,6 +71,7 @@ def next_target(
     ``(target · measured⁻¹) · commanded``. Paper: components of the error in X, Y, Z, A, B, C are
     added to the last command's, R(k) = Δ(k) + R(k-1).
     """
+    # From the left: the correction is in the axes of the frame, in which it was measured.
     if method == "default":
         return target * measured.inv() * commanded
     return _add_components(commanded, target, measured)
@@ -163,6 +164,8 @@ def check_correction(error: Array, limits: CorrectionLimits) -> None:
     """Raise ``CorrectionImplausible`` when one correction is larger than can be needed."""
     sizes = np.array([np.linalg.norm(error[:3]), np.linalg.norm(error[3:])])
     allowed = np.array([limits.translation_m, limits.rotation_rad])
+    # A correction that is not a number would pass every comparison that asks whether it is too
+    # great.
     if not np.isfinite(sizes).all() or (sizes > allowed).any():
         raise CorrectionImplausible(
             f"{sizes[0] / MM:.3f} mm, {np.degrees(sizes[1]):.4f}°; allowed "
@@ -179,10 +182,15 @@ def check_progress(
     ``NoProgress`` when two corrections brought nothing, ``CorrectionLimitReached`` when there were
     too many. Nothing is raised once the last measurement converged.
     """
+    # Success comes before every bound: a last allowed correction that converged is no failure.
     if not history or history[-1].converged:
         return
     sizes = [_size(item, thresholds) for item in history]
+    # In parts of the threshold, like the sizes it is added to. Without it a loop at the level of
+    # its noise would count as diverging.
     noise = 3.0 * float((history[-1].sigma / thresholds.vector).max())
+    # Within the threshold (1.0) growth is of no interest: there only the uncertainty keeps the loop
+    # from ending.
     if len(sizes) >= 2 and sizes[-1] > limits.growth_ratio * sizes[-2] + noise and sizes[-1] > 1.0:
         raise CorrectionDiverging(_history_text(history))
     if len(sizes) >= 3 and sizes[-1] > limits.progress_ratio * sizes[-3] + noise:

@@ -43,6 +43,7 @@ def require_clearance(recipe: DeckRecipe, features: FeatureFile, M_T_D: RigidTra
     corners_m = [[x, y, under_m] for x in (-half_x_m, half_x_m) for y in (-half_y_m, half_y_m)]
     clearance_m = float(M_T_D.apply(corners_m)[:, 2].min())
     least_m = LEAST_CLEARANCE * recipe.stand_off_mm * MM
+    # Written so that a clearance that is not a number is refused.
     if not clearance_m >= least_m:
         raise TargetOutOfBounds(
             f"deck {clearance_m / MM:.2f} mm above the frame, at least {least_m / MM:.2f} mm "

@@ -23,6 +23,7 @@ class SeatError:
     @property
     def gap_mm(self) -> float:
         """Between deck and frame in the middle of the face; positive when the deck stands off."""
+        # The error is seat minus measured, so a deck that stands too high has a negative z.
         return -float(self.error[2]) / MM
 
     @property

@@ -41,6 +41,8 @@ async def measure_contact_stiffness_on_cell(
     Planned with the bounds of the chosen recipe, as if nothing had been commissioned. Everything
     goes into a run of its own, with all force curves. Raises what the steps raise.
     """
+    # Not the optional ones: a stiffness must not be measured with a plan that its own earlier
+    # result has made faster.
     kinds = [kind for kind in CALIBRATIONS if kind.required]
     facts = await read_facts(cell, recipe, services.calibrations, kinds)
     number = await context.record.open(recipe, MODE, facts.calibrations.records)
@@ -55,6 +57,7 @@ async def measure_contact_stiffness_on_cell(
             break
         except HeldMeanwhile:
             _log.info("held meanwhile: everything is measured again")
+    # After the last contact the deck stands at its stand-off, low over the station.
     await main_to_home(cell)
     checks = stiffness_checks(measured, recipe.mating)
     return ProcedureOutcome(
@@ -70,6 +73,7 @@ async def measure_contact_stiffness_on_cell(
 async def _touch(corrected: Corrected) -> ContactStiffness:
     run = corrected.run
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
+    # The bounds of the recipe alone, for the same reason.
     plan = contact_plan(corrected, Commissioned())
     await run.journal.mating_plan(plan)
     async with curves_kept(run) as report:

@@ -160,6 +160,7 @@ class _OnCell:
         """107."""
         cell = self._cell
         await clear_the_cell(cell, context.board)
+        # A result must fit every recipe that it will be used for, so the least bound decides.
         bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.recipes)
         async with watched(cell.arm, free_tolerance(cell.arm)):
             return await measure_stop_latency_on_cell(

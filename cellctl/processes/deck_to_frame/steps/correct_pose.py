@@ -37,14 +37,18 @@ async def correct_pose(stand_off: AtStandOff) -> Corrected:
     limits = _limits(run.recipe.pose_correction)
     history: list[Judgement] = []
     while True:
+        # Before each measurement, because a Hold makes the earlier ones worthless.
         await run.obey_hold()
         iteration = run.journal.iterations + 1
         judgement, measurement, M_T_D = await _measure(stand_off, iteration)
         history.append(judgement)
         correction = None if judgement.converged else judgement.error
+        # Written before the checks, so that the pass that fails is in the record too.
         await run.journal.iteration(iteration, judgement, run.thresholds, measurement, correction)
         if correction is None:
             return _corrected(stand_off, measurement, M_T_D)
+        # Uncertainty first: a measurement that knows too little must not be judged for progress,
+        # nor be corrected by.
         check_uncertainty(judgement, run.thresholds, measurement.frames)
         check_progress(history, run.thresholds, limits)
         check_correction(correction, limits)

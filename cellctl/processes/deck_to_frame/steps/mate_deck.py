@@ -24,6 +24,8 @@ async def mate_deck(corrected: Corrected) -> Seated:
             latest = await correct_pose(latest)
             run.board.update(step=mating.step, step_label=mating.step_label, contact=True)
             await phase(mating.step, mating.step_label)
+        # A plan for each attempt: window and speed follow from the uncertainty of the latest
+        # measurement.
         plan = contact_plan(latest, run.facts.commissioned)
         await run.journal.mating_plan(plan)
         return plan

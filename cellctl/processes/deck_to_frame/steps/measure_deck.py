@@ -20,6 +20,7 @@ async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     await move_joint_free(run.cell.cell, run.cell.arm, above_rad)
     await settle(run.cell.guard)
     nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
+    # From where the robot says it is, because a joint move ends only within its tolerance.
     predicted = run.base_T_c1.inv() * main.state().base_T_flange * nominal
     measurement = await run.measure(run.facts.deck_features, predicted)
     flange_T_deck = deck_on_flange(

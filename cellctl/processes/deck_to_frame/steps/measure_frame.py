@@ -13,6 +13,8 @@ async def measure_frame(ready: Ready) -> FrameMeasured:
     measurement = await run.measure(run.facts.frame_features, predicted)
     measured = run.base_T_c1 * measurement.c1_T_part
     require_near("frame", run.recipe, base_T_frame, measured)
+    # Kept beyond the run: the lift-off of the next Reset leaves along the frame as it really
+    # stands.
     run.cell.memory.base_T_frame = measured
     await run.journal.measurement("frame", measurement)
     return FrameMeasured(run, c1_T_M=measurement.own)

@@ -18,6 +18,7 @@ async def verify(seat: Seated) -> Verified:
     the arm; the cameras do not depend on that.
     """
     run = seat.run
+    # The arm still holds the deck, so its pose says where the holes are to be looked for.
     flange = run.cell.main.state().base_T_flange
     measurement = await run.measure(
         run.facts.deck_features, run.base_T_c1.inv() * flange * seat.flange_T_deck
@@ -25,6 +26,7 @@ async def verify(seat: Seated) -> Verified:
     M_T_D = deck_in_frame(seat.c1_T_M.pose, measurement.c1_T_part)
     holes = run.facts.deck_features.holes
     found = seat_error(M_T_D, run.recipe.deck_thickness_mm * MM, holes)
+    # Recorded before it is judged: a part beyond its limits needs its figures more than a good one.
     await run.journal.verification(found, run.recipe, measurement)
     if pins := pin_holes(holes):
         await run.journal.gauge_holes(pins, run.recipe)
