@@ -34,6 +34,8 @@ PATIENCE_S = 120.0
 CHECK_S = 20.0
 SOLVE_S = 900.0
 """For the long solves of calibrations."""
+JOIN_S = 1.0
+"""For a process that was killed to be gone."""
 CLOSE_S = 5.0
 """At the end of the daemon, for work that has begun."""
 
@@ -112,7 +114,9 @@ class _Pool:
         for process in self._processes:
             process.kill()
         for process in self._processes:
-            process.join()  # a killed process lasts for moments, a suspended one too
+            # A killed process lasts for moments, a suspended one too. One that the kernel does not
+            # let go, in a call to a dead disk, is left behind: the event loop must not wait for it.
+            process.join(JOIN_S)
 
     def close(self) -> None:
         """Let them end what they have begun, for ``CLOSE_S`` altogether."""

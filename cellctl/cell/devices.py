@@ -8,13 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from cellctl import log, plugins
-from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.config import CellConfig
 from cellctl.config.devices import GROUPS, DeviceConfig, ForceSensorConfig
 from cellctl.errors import CellError
-from cellctl.errors.link import ConnectTimeout, ReplyTimeout
+from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
@@ -137,10 +138,11 @@ class Cell:
     async def connect(self) -> None:
         """Connect everything at once, or nothing; raises one fault that names every failing device.
 
-        May be tried again.
+        Raises ``StopFailed``, with the links open, while an arm that did not confirm its last stop
+        reports that it moves. May be tried again.
         """
         try:
-            await _all(
+            await gather_named(
                 {f"force_sensors.{name}": guard.start() for name, guard in self.guards.items()}
                 | {path: device.connect() for path, device in self._by_path().items()}
             )
@@ -151,7 +153,15 @@ class Cell:
             raise
         # Not cleared before every device has answered: until then an arm that did not confirm its
         # stop may still move.
-        self.connected, self.unanswered, self.unstopped = True, {}, {}
+        self.connected, self.unanswered = True, {}
+        # Whoever clears says that the arms stand. Their controllers know it, and are asked too.
+        self.unstopped = {
+            name: StopFailed(f"{name} still moves")
+            for name in self.unstopped
+            if self.robots[name].state().moving
+        }
+        for fault in self.unstopped.values():
+            raise fault
         _log.info("all devices connected", simulated=self.config.simulated)
 
     async def disconnect(self) -> None:
@@ -182,14 +192,19 @@ class Cell:
         # All requests leave in the first turn of these tasks, those of the robots first.
         stops = [asyncio.create_task(robot.stop()) for robot in self.robots.values()]
         second_stops = [asyncio.create_task(guard.stop_robot()) for guard in self.guards.values()]
-        results = await asyncio.gather(*stops, return_exceptions=True)
-        # Set before anything is awaited again: the stop of a guard may hang, and the line must see
-        # that an arm may still move.
-        self.unstopped = {
-            name: result
-            for name, result in zip(self.robots, results, strict=True)
-            if isinstance(result, BaseException)
-        }
+        try:
+            if stops:
+                await asyncio.wait(stops)
+        finally:
+            # Set before anything is awaited again, and also when the caller gives up a driver that
+            # hangs: the line must see that an arm may still move.
+            self.unstopped = {
+                name: fault
+                for name, stop in zip(self.robots, stops, strict=True)
+                if (fault := _unconfirmed(name, stop)) is not None
+            }
+            for stop in stops:
+                stop.cancel()
         for name, result in zip(
             self.guards, await asyncio.gather(*second_stops, return_exceptions=True), strict=True
         ):
@@ -262,29 +277,15 @@ def _guard(sensor: ForceSensorConfig) -> GuardClient:
     )
 
 
+def _unconfirmed(name: str, stop: "asyncio.Task[None]") -> BaseException | None:
+    if not stop.done() or stop.cancelled():
+        return StopFailed(f"{name}: its driver has not come back from the stop")
+    return stop.exception()
+
+
 async def _in_time(question: Awaitable[object]) -> object:
     try:
         async with asyncio.timeout(ASK_TIMEOUT_S):
             return await question
     except TimeoutError:
         raise ReplyTimeout(f"its driver has not come back in {ASK_TIMEOUT_S:g} s") from None
-
-
-async def _all(attempts: Mapping[str, Awaitable[None]]) -> None:
-    results = await asyncio.gather(*attempts.values(), return_exceptions=True)
-    failed = {
-        name: result
-        for name, result in zip(attempts, results, strict=True)
-        if isinstance(result, BaseException)
-    }
-    for name, error in failed.items():
-        _log.error("device failed to connect", device=name, error=str(error))
-    # A defect goes before the faults of devices: its traceback would be lost in the text of a
-    # collected fault.
-    unexpected = [error for error in failed.values() if not isinstance(error, CellError)]
-    if unexpected:
-        raise unexpected[0]
-    if len(failed) == 1:
-        raise next(iter(failed.values()))
-    if failed:
-        raise ConnectTimeout("; ".join(f"{name}: {error}" for name, error in failed.items()))

@@ -1,10 +1,14 @@
-"""Several things at once, all or nothing: no motion goes on behind the back of a failed run."""
+"""Several things at once: all or nothing for motion, every one with its name for connecting."""
 
 import asyncio
-from collections.abc import Coroutine, Sequence
+from collections.abc import Awaitable, Coroutine, Mapping, Sequence
 from typing import Any, TypeVar
 
+from cellctl import log
 from cellctl.errors import CellError
+from cellctl.errors.link import ConnectTimeout
+
+_log = log.get(__name__)
 
 T = TypeVar("T")
 
@@ -33,6 +37,27 @@ async def gather_or_cancel(*work: Coroutine[Any, Any, T]) -> list[T]:
         if second is not first[0] and isinstance(second, CellError):
             first[0].add_note(f"beside it: {second}")
     raise first[0]
+
+
+async def gather_named(attempts: Mapping[str, Awaitable[None]]) -> None:
+    """Try to connect all of them; raises one fault that names each device that failed."""
+    results = await asyncio.gather(*attempts.values(), return_exceptions=True)
+    failed = {
+        name: result
+        for name, result in zip(attempts, results, strict=True)
+        if isinstance(result, BaseException)
+    }
+    for name, error in failed.items():
+        _log.error("device failed to connect", device=name, error=str(error))
+    # A defect goes before the faults of devices: its traceback would be lost in the text of a
+    # collected fault.
+    unexpected = [error for error in failed.values() if not isinstance(error, CellError)]
+    if unexpected:
+        raise unexpected[0]
+    if len(failed) == 1:
+        raise next(iter(failed.values()))
+    if failed:
+        raise ConnectTimeout("; ".join(f"{name}: {error}" for name, error in failed.items()))
 
 
 async def _leave(tasks: Sequence[asyncio.Task[T]]) -> None:

@@ -34,7 +34,8 @@ def _reasons(robot: Robot) -> list[str]:
         state = robot.state()
     except CellError as error:
         return [str(error)]
-    return [] if state.ready else _why_not(state)
+    moves = ["it still moves"] if state.moving else []
+    return moves if state.ready else moves + _why_not(state)
 
 
 def _why_not(state: RobotState) -> list[str]:

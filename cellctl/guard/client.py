@@ -57,7 +57,6 @@ class GuardClient:
         """Why the guard could not start, or gave up its sensor."""
         self._serial = ""
         self._degraded: tuple[str, ...] = ()
-        # What a new guard is given again after the old one has died.
         self._gravity_compensation: Message | None = None
         self._wrench_frame: Message | None = None
 
@@ -85,6 +84,7 @@ class GuardClient:
         try:
             self._child.send(self._set_up())
             await self._until_started(self._started)
+            await self._restore()
         except BaseException as error:
             await self.stop()
             self._fault = error if isinstance(error, CellError) else None
@@ -100,6 +100,14 @@ class GuardClient:
             child, self._child = self._child, None
             await child.quit()
         self._settle_start(GuardDied("the guard was stopped"))
+
+    async def _restore(self) -> None:
+        """Give a new process what callers take for known; no tare, whose moment is theirs."""
+        load, frame = self._gravity_compensation, self._wrench_frame
+        if load is not None:
+            await self._request("gravity_compensation", **load)
+        if frame is not None:
+            await self._request("wrench_frame", **frame)
 
     @property
     def running(self) -> bool:
@@ -165,9 +173,7 @@ class GuardClient:
     async def acknowledge(self) -> None:
         """Release the latch and a stop that was asked for; disarms.
 
-        A guard that has died, hangs or has given up its sensor is replaced by a new one, which
-        gets the last gravity compensation and wrench frame. It gets no tare: a zero must be taken
-        at a moment that somebody has chosen. Raises as ``start`` does when the new one fails.
+        A guard that has died, hangs or has given up its sensor is replaced; raises as ``start``.
         """
         health = self.health()
         if health.alive and health.sensor_open:
@@ -175,10 +181,6 @@ class GuardClient:
         else:
             await self.stop()
             await self.start()
-            if self._gravity_compensation is not None:
-                await self._request("gravity_compensation", **self._gravity_compensation)
-            if self._wrench_frame is not None:
-                await self._request("wrench_frame", **self._wrench_frame)
         self._trip = None
 
     # --- what the guard has seen

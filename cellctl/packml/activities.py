@@ -12,6 +12,8 @@ Action = Callable[[], Awaitable[None]]
 Task = asyncio.Task[None]
 
 _PAUSE = frozenset({State.HOLDING, State.SUSPENDING})
+_STOPPING = frozenset({State.STOPPING, State.COMPLETING, State.ABORTING})
+"""States that begin with the stop of all motion, unless nothing was left in its midst."""
 _PAUSED = _PAUSE | {State.HELD, State.UNHOLDING, State.SUSPENDED, State.UNSUSPENDING}
 
 
@@ -20,7 +22,7 @@ class Activities:
 
     Execute is parked, not cancelled, when it pauses at a safe point, and goes on after Unholding
     or Unsuspending. A cancelled coroutine gets ``leave_timeout_s`` to clean up; the next state
-    waits for it, except Aborting, which acts at once and waits afterwards.
+    waits for it, except those that stop the motion: they act at once and wait afterwards.
     """
 
     def __init__(
@@ -91,15 +93,23 @@ class Activities:
     async def _run(self, state: State) -> None:
         settle = partial(self._settle, tuple(self._leaving))
         # What was left may still be stopping its robots. Two coroutines must not command the same
-        # device, so the new one waits; Aborting must not wait, and stopping twice does no harm.
-        if state is not State.ABORTING:
+        # device, so the new one waits. A stop must not wait: what was left may hang, or ask a robot
+        # that does not listen again and again, while the second stop channel lies idle. Stopping
+        # twice does no harm.
+        if state not in _STOPPING:
             await settle()
         try:
             if state in self._actions:
                 await self._actions[state]()
-        finally:
-            if state is State.ABORTING:
-                await settle()
+        except Exception as error:
+            if state in _STOPPING:
+                # The fault of the stop itself must not be lost to one of what was left.
+                for left in await asyncio.gather(settle(), return_exceptions=True):
+                    if left is not None:
+                        error.add_note(f"beside it: {left}")
+            raise
+        if state in _STOPPING:
+            await settle()
 
     async def _settle(self, left: tuple[Task, ...]) -> None:
         """Wait until left coroutines have ended; raises what went wrong in their clean-up."""

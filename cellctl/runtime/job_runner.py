@@ -70,7 +70,9 @@ class JobRunner:
         return self._job.outcome if self._job and self._finished else None
 
     async def start(self, job: Job) -> None:
-        """Starting."""
+        """Starting; raises ``RecordSilent`` while the disk has not closed the record before."""
+        if self._closing is not None:
+            raise RecordSilent("the record of the run before is still being closed")
         self._job = self._shown = job
         self._finished, self._given_up, self.result = False, False, Result.NONE
         with self._at_work():

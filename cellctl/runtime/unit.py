@@ -173,9 +173,10 @@ class UnitController:
         if not self._cell.connected or self._cell.unstopped:
             await self._cell.connect()
         # Once the devices are there, whenever that is: before, nobody knows where an arm stands.
-        runs, self._interrupted = self._interrupted, []
-        if runs:
-            await self._tell_of(runs)
+        if self._interrupted:
+            await self._tell_of(self._interrupted)
+            # Emptied last: a Clear that is cut short here has told nobody, and the next one does.
+            self._interrupted = []
 
     async def _tell_of(self, runs: list[int]) -> None:
         processes = self._processes.values()
@@ -221,7 +222,13 @@ class UnitController:
         # The job may still be cleaning up. Its last entries have to be in the record before it is
         # sealed.
         await self._jobs.left()
-        await self._jobs.close(outcome, self.machine.fault)
+        try:
+            await self._jobs.close(outcome, self.machine.fault)
+        except CellError as unrecorded:
+            if error is None:
+                raise
+            # An arm that may still move matters more than its record; this is an alarm beside it.
+            self._faulted(unrecorded)
         if error is not None:
             raise error
 

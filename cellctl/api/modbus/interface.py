@@ -130,9 +130,6 @@ class PlcInterface:
         committed = self._latch.commit(self._registers.holding)
         if committed is not None:
             seq, command = committed
-            if not command.only_halts:
-                # Anybody may halt the unit, and whoever does so takes nothing over from the PLC.
-                self._line_heartbeat.commanded(client)
             dropped = self._queue.add(self._submission(seq, command, client))
             if dropped is not None:
                 self._supersede(dropped)
@@ -145,6 +142,7 @@ class PlcInterface:
             alive=partial(self._line_heartbeat.alive_of, client),
             remember_seq=self._remember_seq,
             stop_waits=self._queue.urgent,
+            on_command=partial(self._line_heartbeat.commanded, client),
             on_end=self.finish,
         )
 

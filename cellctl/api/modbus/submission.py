@@ -18,6 +18,8 @@ class LineSubmission(Submission):
     """Whether the client that gave the command has a heartbeat."""
     remember_seq: Callable[[int], Awaitable[object]]
     stop_waits: Callable[[], Awaitable[None]]
+    on_command: Callable[[], object]
+    """Called when this client takes the unit over: from then on its heartbeat is the line's."""
     on_end: Callable[[int, Result], object]
 
     @property
@@ -36,6 +38,12 @@ class LineSubmission(Submission):
     async def overtaken(self) -> None:
         """Return when a Stop or an Abort is in the queue behind this command."""
         await self.stop_waits()
+
+    def taken(self) -> None:
+        """Anybody may halt the unit or acknowledge an alarm, and takes nothing over by that."""
+        asks_for_more = self.command.cntrl_cmd or self.command.unit_mode
+        if asks_for_more and not self.command.only_halts:
+            self.on_command()
 
     def ended(self, result: Result) -> None:
         """Show ``done_seq`` and ``result`` to the PLC."""

@@ -22,6 +22,8 @@ async def mate_deck(corrected: Corrected) -> Seated:
             run.board.update(step=NUMBER, step_label=LABEL, contact=False)
             await phase(NUMBER, LABEL)
             latest = await correct_pose(latest)
+            # The last chance for a Hold, or for a line that was lost meanwhile, before contact.
+            await run.obey_hold()
             run.board.update(step=mating.step, step_label=mating.step_label, contact=True)
             await phase(mating.step, mating.step_label)
         # A plan for each attempt: window and speed follow from the uncertainty of the latest
