@@ -1,4 +1,4 @@
-"""Several things at once, all or nothing: no motion goes on behind the back of a failed run."""
+"""Runs several tasks at once; when one of them fails, all others have ended before it is told."""
 
 import asyncio
 from collections.abc import Coroutine, Sequence
