@@ -1,4 +1,4 @@
-"""Moves where nothing should be touched, under the force guard: home, measuring, procedures."""
+"""Moves through free air under the force guard: to home, to measuring poses, in procedures."""
 
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -34,8 +34,8 @@ async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterato
     weight_n = 0.0
     if not guard.gravity_compensated:
         await guard.set_gravity_compensation(GravityCompensation.none())
-        # A load that still swings would be tared with the force of its swing, and the limits would
-        # lie beside their middle by that.
+        # A load that still swings would be tared with the force of its swing, and that force would
+        # be missing from the limit on one side.
         await settle(guard)
         tare = await guard.tare(TARE_S)
         weight_n = float(np.linalg.norm(tare.mean[:3]))
@@ -52,7 +52,7 @@ async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterato
 
 
 async def move_joint_free(cell: Cell, arm: GuardedRobot, joints_rad: Array) -> None:
-    """To taught joints, shape (6,), at the robot's taught speed; raises the fault of a trip."""
+    """Move to taught joints, shape (6,), at the taught speed; raises the fault of a trip."""
     tolerance = free_tolerance(arm)
     motion = arm.robot.move_joint
     with cell.trips_awaited(arm.sensor_name):

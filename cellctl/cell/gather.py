@@ -1,4 +1,4 @@
-"""Several things at once: all or nothing for motion, every one with its name for connecting."""
+"""Runs several tasks at once: all or nothing for motion, each by its name for connecting."""
 
 import asyncio
 from collections.abc import Awaitable, Coroutine, Mapping, Sequence

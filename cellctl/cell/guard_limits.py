@@ -1,4 +1,4 @@
-"""Limits for the guard from filtered ones, with what noise and sample rate call for."""
+"""Makes the guard's limits from filtered ones: adds the margins for noise and sample rate."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -30,7 +30,7 @@ class Sensing:
 
     @classmethod
     def of(cls, sensor: ForceSensorConfig) -> Self:
-        """As the cell file has it."""
+        """The rate and the waiting times that the cell file gives for a sensor."""
         return cls(sensor_rate_hz(sensor), sensor.stale_ms / 1e3, sensor.flange_age_ms / 1e3)
 
     @property

@@ -1,4 +1,4 @@
-"""What mating needs from the guard: the part of its client that this step uses."""
+"""The part of the guard's client that the mating uses, as an interface."""
 
 from typing import Protocol
 
@@ -30,7 +30,7 @@ class GuardPort(Protocol):
         ...
 
     async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
-        """From now on give wrenches in this frame."""
+        """Give wrenches in this frame from now on; drops the tare."""
         ...
 
     async def tare(self, duration_s: float) -> TareResult:

@@ -1,4 +1,4 @@
-"""Moves of the main robot under the eyes of the force guard: a trip ends the move."""
+"""Moves of a robot while its force guard is armed: a trip ends the move."""
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine

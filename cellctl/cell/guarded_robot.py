@@ -17,11 +17,11 @@ class GuardedRobot:
     robot: Robot
     config: RobotConfig
     sensor_name: str
-    """Of the force sensor; its guard is known by the same name."""
+    """Name of the force sensor in the cell file; its guard has the same name."""
     guard: GuardClient
     sensor: ForceSensorConfig
 
     @property
     def flange_T_sensor(self) -> RigidTransform:
-        """The frame of the sensor on the flange."""
+        """Pose of the sensor in the flange, as the cell file has it."""
         return pose_from_xyzabc(self.sensor.flange_T_sensor)

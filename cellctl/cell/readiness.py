@@ -1,4 +1,4 @@
-"""Are the devices ready for a run? Asked before every run, answered with all reasons at once."""
+"""Checks before every run whether the devices are ready, and reports all reasons at once."""
 
 from collections.abc import Iterable
 

@@ -1,4 +1,4 @@
-"""Wait until what hangs on the main robot has stopped swinging; the force sensor feels it."""
+"""Waits until the load of a robot has stopped swinging, as measured by its force sensor."""
 
 import asyncio
 

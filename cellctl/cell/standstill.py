@@ -1,4 +1,4 @@
-"""Whether a robot still stands where it stood: what was measured then holds for there only."""
+"""Checks that a robot has not moved: what was measured holds only for the place where it stood."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -13,7 +13,7 @@ MOVED_RAD = np.radians(0.005)
 
 
 def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:
-    """Raise ``HeadMoved`` when a robot is not where it was."""
+    """Raise ``HeadMoved`` when the robot ``name`` no longer stands at ``base_T_flange``."""
     distance_m, angle_rad = robot.state().distance_to(base_T_flange)
     # Written so that a pose that is not a number counts as moved.
     if not (distance_m <= MOVED_M and angle_rad <= MOVED_RAD):

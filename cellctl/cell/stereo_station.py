@@ -14,12 +14,12 @@ class StereoStation:
     """What a measurement or a calibration of one head works with."""
 
     name: str
-    """Of the head."""
+    """Name of the head in the cell file."""
     camera: StereoCamera
     camera_config: StereoCameraConfig
     robot: Robot
     config: RobotConfig
-    """Of the robot."""
+    """Section of the robot in the cell file."""
 
     @property
     def flange_T_head(self) -> RigidTransform:

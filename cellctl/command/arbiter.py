@@ -73,7 +73,7 @@ class CommandArbiter:
         return code
 
     async def _validate(self, submission: Submission) -> RejectCode:
-        """Everything that may wait for the disk; a disk that does not answer is a fault."""
+        """Carry out what may wait for the disk; a disk that does not answer is a fault."""
         command = submission.command
         try:
             async with asyncio.timeout(self._disk_timeout_s):

@@ -1,4 +1,4 @@
-"""The messages between daemon and guard: JSON objects, one in each packet of a local socket pair.
+"""The messages between daemon and guard: each is one JSON object in one packet of a socket pair.
 
 Requests have an ``id`` and a ``do``; answers repeat the id with ``result`` or ``refused``; events
 have an ``event``. The socket keeps the packets apart, so there is no framing to get out of step.
@@ -23,7 +23,7 @@ _LONGEST_BYTES = 65_536
 
 
 def encode(message: Message) -> bytes:
-    """One packet."""
+    """The bytes of a message, for one packet."""
     return json.dumps(message, separators=(",", ":")).encode()
 
 
@@ -37,12 +37,12 @@ def receive(link: socket.socket) -> Message | None:
 
 
 def limits_to_json(limits: GuardLimits) -> Message:
-    """Limits as a message."""
+    """Limits in the form of a message."""
     return asdict(limits)
 
 
 def limits_from_json(message: Message) -> GuardLimits:
-    """Limits back; ``ValueError`` or ``TypeError`` for what are no limits."""
+    """The limits that a message holds; ``ValueError`` or ``TypeError`` when it holds none."""
     fields = dict(message)
     # JSON knows neither dataclasses nor tuples, and limits are frozen values made of both.
     if fields.get("touch") is not None:
@@ -53,17 +53,17 @@ def limits_from_json(message: Message) -> GuardLimits:
 
 
 def trip_to_json(trip: GuardTrip) -> Message:
-    """A trip as a message."""
+    """A trip in the form of a message."""
     return {**asdict(trip), "reason": trip.reason.value}
 
 
 def trip_from_json(message: Message) -> GuardTrip:
-    """A trip back."""
+    """The trip that a message holds."""
     return GuardTrip(**{**message, "reason": TripReason(message["reason"])})
 
 
 def fault_to_json(fault: CellError) -> Message:
-    """A fault as number and facts."""
+    """A fault in the form of a message: its number and its facts."""
     return {"number": fault.number, "detail": fault.detail}
 
 

@@ -119,6 +119,6 @@ class RingWriter:
         self._words[STATUS_NUMBER] = self._status_number
 
     def close(self) -> None:
-        """Unmap."""
+        """Unmap the memory."""
         self._words.release()
         self._memory.close()

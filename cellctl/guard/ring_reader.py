@@ -21,7 +21,7 @@ _STATUS_TRIES = 1000
 
 
 class RingReader:
-    """Reads without disturbing the writer."""
+    """Reads samples and status without making the writer wait."""
 
     def __init__(self, descriptor: int) -> None:
         self._memory, self._slots = ring.attach(descriptor)
@@ -29,7 +29,7 @@ class RingReader:
         self._ring = np.frombuffer(self._memory, _SLOT, self._slots, ring.HEADER_BYTES)
 
     def close(self) -> None:
-        """Unmap; nothing handed out keeps a view."""
+        """Unmap the memory. All that was handed out are copies, so nobody still refers to it."""
         del self._words, self._ring
         self._memory.close()
 

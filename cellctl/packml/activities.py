@@ -32,6 +32,7 @@ class Activities:
         leave_timeout_s: float,
     ) -> None:
         unknown = set(actions) - set(WHEN_DONE)
+        # A coroutine of a state that waits for a command would end at once and has nowhere to lead.
         if unknown:
             raise ValueError(f"these states only wait: {sorted(state.name for state in unknown)}")
         self._actions = dict(actions)
@@ -78,6 +79,7 @@ class Activities:
         self._task = self._parked = None
         for task in current:
             self._leave(task)
+        # With a limit: a device that never answers must not keep the daemon from ending.
         if self._leaving:
             await asyncio.wait(self._leaving, timeout=self._leave_timeout_s)
 

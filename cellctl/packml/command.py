@@ -20,4 +20,4 @@ class Command(IntEnum):
 
 
 COMMANDS = tuple(command for command in Command if command is not Command.UNDEFINED)
-"""The 10 commands."""
+"""The 10 commands of the standard, without UNDEFINED."""

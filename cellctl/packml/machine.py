@@ -1,4 +1,4 @@
-"""The PackML state machine of the unit: one command or fault at a time changes its state."""
+"""The PackML state machine of the unit; one command or fault at a time changes its state."""
 
 import asyncio
 from collections import deque
@@ -129,6 +129,8 @@ class PackMLMachine:
         async with self._turn:
             code = validate_mode(self.state, mode)
             if code is RejectCode.NONE:
+                # Asking for the mode that is set already must not start its time anew:
+                # ModeTimeCurrent is shown to the line.
                 if mode != self._mode:
                     self.mode_since_s = now_s()
                 self._mode = Mode(mode)
@@ -144,6 +146,8 @@ class PackMLMachine:
         longer be true; False at once when nothing is pending.
         """
         paused = False
+        # A loop, because a second Hold may be noted while Execute was parked or waited for its
+        # turn.
         while self._pause is not None and self.state is State.EXECUTE:
             async with self._turn:
                 if self._pause is None or self.state is not State.EXECUTE:
@@ -243,6 +247,8 @@ class PackMLMachine:
                 return
             fault = self._fault(error)
             self._faults.append(fault)
+            # The state first and the observers afterwards: what they do may fail, and a stop must
+            # not wait for it.
             self._fire(self._reaction_to(fault))
             self._report(fault)
 
@@ -257,6 +263,7 @@ class PackMLMachine:
         if isinstance(error, CellError):
             return error
         fault = Unexpected(f"{type(error).__name__} in {self.state.name}: {error}")
+        # The traceback of the original exception stays in the log; the line sees only the number.
         fault.__cause__ = error
         return fault
 

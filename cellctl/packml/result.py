@@ -1,4 +1,4 @@
-"""How a command ended: the number that the line PLC reads in `result`."""
+"""The result of a command: the number that the line PLC reads in `result`."""
 
 from enum import IntEnum
 

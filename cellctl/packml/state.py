@@ -4,7 +4,7 @@ from enum import IntEnum
 
 
 class State(IntEnum):
-    """Never to be renumbered; OPC 30060 uses the same names with other numbers."""
+    """The numbers must never change. OPC 30060 uses the same names with other numbers."""
 
     UNDEFINED = 0
     CLEARING = 1

@@ -1,4 +1,4 @@
-"""Run store, files, recordings, report."""
+"""What the cell records: the run store, its files, recordings of force, and the report."""
 
 from cellctl.records.entries import RunRecord, RunResult
 from cellctl.records.store import RunStore

@@ -14,7 +14,7 @@ class ArtefactFolder:
         self._folder = folder
 
     def path(self, sha256: str) -> Path:
-        """Where the bytes with this hash lie."""
+        """Path of the file whose bytes have this hash."""
         # The first two digits spread the files over 256 folders, which stay small enough to be
         # listed.
         return self._folder / sha256[:2] / sha256

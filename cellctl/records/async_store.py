@@ -1,4 +1,4 @@
-"""The run store behind one thread: writes keep their order and never block the event loop."""
+"""The run store in a thread of its own: writes keep their order and do not block the event loop."""
 
 import asyncio
 from collections.abc import Callable

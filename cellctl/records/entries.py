@@ -1,4 +1,4 @@
-"""What the store takes and gives back: frozen values.
+"""The values that the store takes and gives back; all of them are frozen.
 
 Fields have the names of the columns in ``schema.py``. ``time`` is UTC; ``phase`` is the ``id`` of a
 ``Phase`` and is filled in by the store with the phase that the run is in.

@@ -27,7 +27,7 @@ def judge_gauge(record: RunRecord, gauge: Gauge) -> Verdict | None:
 
 
 def part_verdict(record: RunRecord) -> str | None:
-    """What the part is, with what the measuring room found: a gauge can make a good part bad.
+    """Verdict on the part with its plug gauges, which can turn a good part into a bad one.
 
     The result of the run itself never changes: it says how the run ended.
     """

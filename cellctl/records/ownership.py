@@ -1,4 +1,4 @@
-"""One daemon owns a store: a lock that ends with its process."""
+"""A lock by which one daemon owns a store; it ends with the daemon's process."""
 
 import fcntl
 from pathlib import Path
@@ -29,7 +29,7 @@ class Ownership:
         self._file = file
 
     def release(self) -> None:
-        """Let go. Idempotent."""
+        """Give the store up. Idempotent."""
         if self._file is not None:
             self._file.close()
             self._file = None

@@ -1,4 +1,4 @@
-"""Images as the cameras gave them: coded without loss by a thread of low priority."""
+"""Images as the cameras gave them, coded without loss by a thread of low priority."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""How a process records its run: figures, poses, passes, phases and files, and no process known."""
+"""The way in which any process records its run: figures, poses, passes, phases and files."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from cellctl.records.store import RunStore
 
 @dataclass(frozen=True, slots=True)
 class RunRecorder:
-    """The way of one open run into the store.
+    """Writes the entries of one open run into the store.
 
     Every call returns when its record is on the disk. All of them raise ``RecordNotWritten``,
     ``RunUnknown`` or ``RunClosed``. What is recorded belongs to the phase that was begun last.

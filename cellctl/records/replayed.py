@@ -1,4 +1,4 @@
-"""What a run's record says, beside what the code of today computes from the same data."""
+"""Compares what the record of a run says with what the code of today computes from its data."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Replayed:
-    """One number of one measurement."""
+    """One number of one measurement, as it was recorded and as it was computed again."""
 
     measurement: str
     name: str
@@ -15,7 +15,7 @@ class Replayed:
     recorded: float | None
     computed: float | None
     resolution: float = 0.0
-    """Of the recording that it was computed from: less is no difference."""
+    """Resolution of the recording: a smaller difference counts as none."""
 
     @property
     def difference(self) -> float:

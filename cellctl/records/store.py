@@ -1,4 +1,4 @@
-"""The run store: what the cell did, to whom, with what, and how it ended.
+"""The run store: what the cell did, with which part, with which figures, and how it ended.
 
 A folder with ``store.sqlite`` and ``files/``. All methods block, belong to one thread and raise the
 8xx faults. A call that returns is on the disk.
@@ -252,7 +252,7 @@ class RunStore:
             ledger.seal(session, sealed.AUDIT, row, row.time)
 
     def audit_log(self) -> list[AuditEntry]:
-        """Everything that was ever appended, oldest first."""
+        """Every entry of the audit log, oldest first."""
         with self._database.read() as session:
             rows = session.scalars(select(AuditRow).order_by(AuditRow.id))
             return [to_entry(row, AuditEntry) for row in rows]

@@ -1,4 +1,4 @@
-"""Alarms stay active until somebody acknowledges them, over restarts too."""
+"""The active alarms: each stays active, over restarts too, until somebody acknowledges it."""
 
 from cellctl import log
 from cellctl.errors import CellError

@@ -1,4 +1,4 @@
-"""After a start that found an interrupted run: where the arms stand, and under what force."""
+"""Reports, after a start that found an interrupted run, where the arms stand and what they feel."""
 
 import asyncio
 from collections.abc import Iterable, Sequence

@@ -1,4 +1,4 @@
-"""How a step in contact is ended from outside without being cancelled: it leaves in its own way."""
+"""A way to end a step in contact from outside that lets the step leave the contact itself."""
 
 import asyncio
 from collections.abc import Coroutine

@@ -1,4 +1,4 @@
-"""What a fault does to calibrations: those that it may have spoilt are invalid from then on."""
+"""Invalidates, durably, the calibrations that a fault may have made wrong."""
 
 import asyncio
 

@@ -17,17 +17,17 @@ class Job(ABC):
     """Recipe or procedure, for the line."""
     serial: str
     makes_part: bool = False
-    """Its good end is one more part."""
+    """True for a job whose good end counts as one more part."""
     line_lost_in_contact: LineLostAction = LineLostAction.KEEP
 
     @property
     def run_number(self) -> int:
-        """Of its record; 0 while there is none."""
+        """Number of the run in its record; 0 while there is none."""
         return 0
 
     @property
     def outcome(self) -> RunResult:
-        """What a run is that came to its end without a fault."""
+        """Result of a run that came to its end without a fault."""
         return RunResult.GOOD
 
     def interrupt(self, fault: CellError) -> bool:  # noqa: ARG002 - for jobs that can be

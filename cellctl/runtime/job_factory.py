@@ -1,4 +1,4 @@
-"""What Start asks for: checked before it is taken, turned into a job when the unit starts."""
+"""Validates what a Start asks for, and makes the job when the unit starts."""
 
 import asyncio
 from collections.abc import Mapping

@@ -27,7 +27,7 @@ MAINTENANCE = "maintenance"
 
 
 class JobRecord:
-    """At most one run row."""
+    """Opens and closes the record of one job; a job has at most one."""
 
     def __init__(self, cell: Cell, store: AsyncRunStore, command: UnitCommand) -> None:
         self.store = store
@@ -62,7 +62,7 @@ class JobRecord:
         return await self._opened(self._opening)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:
-        """Close it; nothing to close when it was not or could not be opened."""
+        """Close the record; does nothing when it was never opened or could not be opened."""
         if self._opening is None:
             return
         try:

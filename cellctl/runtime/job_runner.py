@@ -1,4 +1,4 @@
-"""The job that the unit works on: from its start to the one closing of its record."""
+"""Runs the job of the unit from its start until its record has been closed, once."""
 
 import asyncio
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ _TO_THE_LINE = {
 
 
 class JobRunner:
-    """Present and last job. Belongs to one event loop."""
+    """Holds the present job and remembers the last one. Belongs to one event loop."""
 
     def __init__(self) -> None:
         self._job: Job | None = None
@@ -52,7 +52,7 @@ class JobRunner:
 
     @property
     def line_lost_in_contact(self) -> LineLostAction:
-        """What the present job wants to be done."""
+        """What the present job wants to happen when the line is lost while it is in contact."""
         return self._job.line_lost_in_contact if self._job else LineLostAction.KEEP
 
     def interrupt(self, fault: CellError) -> bool:
@@ -70,7 +70,7 @@ class JobRunner:
         return self._job.outcome if self._job and self._finished else None
 
     async def start(self, job: Job) -> None:
-        """Starting; raises ``RecordSilent`` while the disk has not closed the record before."""
+        """Do what the job does in Starting; ``RecordSilent`` while the last record is not closed."""
         if self._closing is not None:
             raise RecordSilent("the record of the run before is still being closed")
         self._job = self._shown = job
@@ -79,7 +79,7 @@ class JobRunner:
             await job.start()
 
     async def execute(self) -> None:
-        """Execute."""
+        """Do what the job does in Execute."""
         assert self._job is not None
         with self._at_work():
             await self._job.execute()

@@ -40,7 +40,7 @@ class MaintenanceJob(Job):
 
     @property
     def run_number(self) -> int:
-        """Of its record."""
+        """Number of the run in its record; 0 while there is none."""
         return self._record.number
 
     async def start(self) -> None:

@@ -55,8 +55,8 @@ class Procedure:
     """As the line sees it in its step register."""
     label: str
     run: Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
-    """None when it waits for its counterpart."""
+    """Its result is None when the procedure waits for its counterpart, such as 104 for 105."""
     valid_for: timedelta
-    """Of a result that passes."""
+    """How long a result that passes stays valid."""
     contact: bool = False
     """Touches the part, so that it deals with trips of the guard itself."""

@@ -1,4 +1,4 @@
-"""The seam that processes plug into: everything that differs from one process to another.
+"""The interface of a process: everything in which one process differs from another.
 
 A process is a class behind the entry point ``cellctl.process``. Its static half
 (``ProcessDefinition``) tells the cell file's models, roles and checks; the daemon makes one object
@@ -57,10 +57,10 @@ class Prepared(Generic[P]):
 
 @dataclass(frozen=True, slots=True)
 class RunContext:
-    """One open run."""
+    """What a process is given for one open run."""
 
     recorder: RunRecorder
-    """Into its record."""
+    """Writes into the record of this run."""
     safe_point: SafePoint
     """Obeys a pending Hold; a step that waits long or repeats itself calls it in between."""
     interruption: Interruption = field(default_factory=Interruption)

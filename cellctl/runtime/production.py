@@ -49,7 +49,7 @@ class ProductionJob(Job):
 
     @property
     def run_number(self) -> int:
-        """Of its record; 0 while there is none."""
+        """Number of the run in its record; 0 while there is none."""
         return self._record.number
 
     @property

@@ -1,4 +1,4 @@
-"""What the cell is doing now: written by steps, read by the daemon for the line and the log."""
+"""What the cell is doing at this moment: steps write it, the daemon reads it for line and log."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""What a run was made with, in full: each hash of its record is that of one of these files."""
+"""The files that say what a run was made with; the hashes in its record are theirs."""
 
 import json
 from dataclasses import dataclass
@@ -44,7 +44,10 @@ class Provenance:
 
 
 def provenance(config: CellConfig, folder: Path, recipe: Recipe) -> Provenance:
-    """Of a run with a recipe; ``folder`` holds the cell file. Raises ``FeatureFileInvalid``."""
+    """The files behind a run with a recipe; ``folder`` holds the cell file.
+
+    Raises ``FeatureFileInvalid``.
+    """
     files = {name: _read(folder / path) for name, path in recipe.files().items()}
     hashes = {name: sha256(data).hexdigest() for name, data in files.items()}
     return Provenance(

@@ -37,7 +37,7 @@ class StatusView:
         self._alarms = alarms
 
     def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
-        """Everything at this moment; ``job`` is the present or the last one."""
+        """The state of the cell at this moment; ``job`` is the present or the last one."""
         machine, progress, time_s = self._machine, self._board.current, now_s()
         faults = machine.faults
         # An alarm stays active when its fault was released, and a fault stays latched when its
@@ -94,7 +94,7 @@ class StatusView:
         return False
 
     def _force_z_n(self) -> float:
-        """Of the first force sensor in the cell file: the register has room for one."""
+        """Fz of the first force sensor in the cell file: the register has room for one sensor."""
         guard = next(iter(self._cell.guards.values()), None)
         sample = None if guard is None else guard.newest()
         return NO_VALUE if sample is None else float(sample.wrench[2])

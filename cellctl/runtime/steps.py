@@ -33,7 +33,7 @@ class SafePoint(Protocol):
 
 
 class HeldMeanwhile(Exception):
-    """Measured values are no longer to be trusted after a Hold; never leaves a job."""
+    """Raised inside a job when a Hold has made its measurements worthless; no job lets it out."""
 
 
 class Restart(Enum):
@@ -47,7 +47,7 @@ class Restart(Enum):
 
 @dataclass(frozen=True, slots=True)
 class StepSpec(Generic[A, B]):
-    """One step."""
+    """One step of a run: a function from one state to the next, with what line and Hold need."""
 
     number: int
     """As the line sees it in its step register."""

@@ -1,4 +1,4 @@
-"""The unit: what the cell does in each PackML state."""
+"""The unit controller: it carries out what the cell does in each PackML state."""
 
 import asyncio
 

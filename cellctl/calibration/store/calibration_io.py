@@ -1,4 +1,4 @@
-"""Writing into the folder of calibrations: a failure of the disk becomes a numbered fault."""
+"""Writes files of the calibration folder; a failure of the disk becomes a numbered fault."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -1,4 +1,4 @@
-"""What the folder of calibrations holds, for operators: names, dates, and what is wrong."""
+"""Lists for operators what the folder of calibrations holds: names, dates and problems."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

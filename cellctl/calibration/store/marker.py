@@ -16,7 +16,7 @@ SUFFIX = ".invalidated"
 
 
 def marker(folder: Path, kind: str) -> Path:
-    """Where the marker of a kind lies, if it was invalidated."""
+    """Path of the marker that says that a kind was invalidated."""
     return folder / f"{kind}{SUFFIX}.json"
 
 

@@ -1,4 +1,4 @@
-"""Files of format 1: their id is that of the record alone, dates and serial number unprotected."""
+"""Files of format 1, whose id covers the record alone and not the dates and the serial number."""
 
 from pathlib import Path
 

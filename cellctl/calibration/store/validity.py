@@ -1,4 +1,4 @@
-"""How many hours calibrations stay valid, cheap enough to be asked at every update of the PLC."""
+"""Hours for which calibrations stay valid, cheap enough for every update of the PLC."""
 
 from collections.abc import Callable
 from datetime import datetime

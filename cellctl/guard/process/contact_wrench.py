@@ -81,7 +81,7 @@ class ContactWrenchModel:
         self._update_bias()
 
     def untared(self, wrench: Six) -> Six:
-        """The same wrench before the tare was subtracted."""
+        """A wrench as it was before the tare was subtracted from it."""
         a, b, c, d, e, f = (value + tare for value, tare in zip(wrench, self._tare, strict=True))
         return a, b, c, d, e, f
 

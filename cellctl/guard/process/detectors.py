@@ -118,7 +118,7 @@ class RateDetector:
 
     def __init__(self, band_hz: tuple[float, float], window_s: float, now_s: float) -> None:
         self.rate_hz = 0.0
-        """Of the window that ended last."""
+        """Rate in the window that ended last."""
         self._lowest_hz, self._highest_hz = band_hz
         self._window_s = window_s
         self._since_s = now_s

@@ -65,7 +65,7 @@ class GuardLoop:
         self._next_beat_s = 0.0
 
     def run(self) -> None:
-        """Guard until the end."""
+        """Guard until the daemon asks for the end, is gone, or ``ended`` is set."""
         try:
             while not (self.ended or self._requests.quit):
                 ready = self._wait()

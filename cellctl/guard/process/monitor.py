@@ -159,7 +159,8 @@ class WrenchMonitor:
     def arm(self, limits: GuardLimits, health: FtHealth, now_s: float) -> None:
         """Watch these limits from the next sample on; they replace those watched before.
 
-        Refused unless everything that the limits rely on is there: armed means protected.
+        Refused unless everything that the limits rely on is there: every move that follows relies
+        on the armed guard.
         """
         if self.trip is not None:
             raise GuardRefused(f"a trip is latched: {self.trip}")

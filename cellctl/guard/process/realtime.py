@@ -1,4 +1,4 @@
-"""What Linux offers a process that must not be late.
+"""The real-time measures that Linux offers to a process which must react in time.
 
 Each measure may be refused, by missing rights or by a container. That is reported and not fatal: a
 guard that is late now and then protects more than a guard that does not start.

@@ -12,7 +12,7 @@ _RETRY_S = 0.5
 
 
 class StopSupervisor:
-    """Sees to it that a stop, once wanted, happens, and that the robot knows the guard lives.
+    """Repeats a wanted stop until it is confirmed, and tells the robot that the guard lives.
 
     A request that was sent is not yet a robot that stands: the message can be lost with its
     connection, and a robot program can ignore it. So the request is repeated at every beat until

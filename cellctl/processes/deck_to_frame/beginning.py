@@ -1,4 +1,4 @@
-"""Where every run over the station begins: the deck clear of it, the heads over it."""
+"""Brings the cell to where every run begins: the deck clear of the station, the heads over it."""
 
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun

@@ -1,4 +1,4 @@
-"""What commissioning has measured about contact: it makes matings faster, never less careful.
+"""What commissioning has measured about contact; it makes matings faster within the same limits.
 
 A recipe states bounds that are safe without any measurement. A commissioned figure replaces its
 bound while its record is there, passed and valid; otherwise the bound counts.

@@ -1,4 +1,4 @@
-"""Everything that is read and checked before a run; nothing has moved yet."""
+"""Reads and checks everything that a run needs before anything moves."""
 
 import asyncio
 from dataclasses import dataclass

@@ -99,7 +99,7 @@ class Journal:
         await self.recorder.measurement(FLANGE_T_DECK, FLANGE, DECK, flange_T_deck)
 
     async def commanded(self, base_T_flange: RigidTransform) -> None:
-        """Where the main robot is sent to bring the deck to its target."""
+        """Record where the main robot is sent to bring the deck to its target."""
         await self.recorder.pose("target", PoseOrigin.COMMANDED, BASE, FLANGE, base_T_flange)
 
     async def arrived(self, commanded: RigidTransform, reported: RigidTransform) -> None:
@@ -174,8 +174,8 @@ class Journal:
             self._kept += 1
             if len(curve.time_s):
                 facts = {"attempt": str(self._kept)}
-                # In a worker: compressing a curve of a minute would hold the interpreter lock of
-                # the event loop, which beats for the line.
+                # In a worker: compressing a curve of a minute would hold the interpreter lock,
+                # which the event loop needs for its heartbeats.
                 data = await self.workers.run(encode_curve, curve, utc_now(), facts)
                 await self.recorder.artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 

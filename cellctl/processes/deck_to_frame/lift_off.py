@@ -1,4 +1,4 @@
-"""Off the station on a straight way, whatever a run has left there."""
+"""Lifts the deck straight off the station, wherever the last run has left it."""
 
 from functools import partial
 
@@ -82,7 +82,7 @@ def _above(base_T_flange: RigidTransform, way_m: Array) -> RigidTransform:
 
 
 def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
-    """Of the first stretch, from the recipe's bounds."""
+    """Speed of the first stretch in m/s, from the recipe's bounds."""
     delay_s = (mating.stop_latency_ms + force.stale_ms) / 1e3 + DEFAULT_FILTER_S
     stiffness_n_m = mating.stiffness_n_per_mm / MM
     return leaving_speed_m_s(mating.limit_force_n, stiffness_n_m, delay_s, SLOW_SPEED_M_S)
@@ -98,7 +98,7 @@ def _recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe |
 
 
 def _frame_of(cell: DeckCell, recipe: DeckRecipe) -> RigidTransform:
-    """As measured last where that can be this recipe's frame, else nominal."""
+    """The frame as it was measured last, if that can be this recipe's frame; else nominal."""
     nominal, measured = pose_from_xyzabc(recipe.base_T_frame), cell.memory.base_T_frame
     return measured if measured is not None and is_near(recipe, nominal, measured) else nominal
 

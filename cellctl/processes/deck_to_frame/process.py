@@ -1,4 +1,4 @@
-"""The process itself: one deck onto one frame (the paper's section 1.2), as cellctl sees it."""
+"""The process: one deck is put onto one frame (paper, section 1.2)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -105,7 +105,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
             await lift_off(cell)
 
     async def show_contact_force(self) -> None:
-        """With the payload that was identified last."""
+        """Subtract the weight of the payload that was identified last."""
         from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 
         payload = self.services.calibrations.read(PAYLOAD)

@@ -1,4 +1,4 @@
-"""What to assemble and within which bounds (mission A2-A4)."""
+"""The recipe of this process: what is assembled and within which bounds (mission A2-A4)."""
 
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
@@ -51,7 +51,7 @@ class Mating(Section):
     target_force_n: Annotated[float, Field(ge=5, le=200)] = 35.0
     """F_t of the paper: also the predicted peak of the touch and the least force of a seat."""
     limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
-    """Never to be exceeded."""
+    """Force along the approach that must never be exceeded."""
     touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
     release_force_n: Annotated[float, Field(ge=6, le=100)] = 15.0
     """Left on the joint for fastening after the hold."""

@@ -1,4 +1,4 @@
-"""An assembly computed anew from its record: every measurement, pass, seat and force peak."""
+"""Computes an assembly again from its record: measurements, passes, seat and force peaks."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -66,7 +66,7 @@ class Replay:
     _images: dict[str, str] = field(default_factory=dict)
 
     def lines(self) -> Iterator[Replayed]:
-        """Everything in the order in which it was measured."""
+        """Compare every number of the run, in the order in which it was measured."""
         for name, source in self.record.document(MEASURED_FROM).items():
             there = {artefact.name for artefact in self.record.artefacts}
             wanted = source["images"]

@@ -1,4 +1,4 @@
-"""One deck on one frame: what every step of the run works with."""
+"""What every step of one assembly works with: devices, facts, measuring, moving, recording."""
 
 from dataclasses import dataclass
 from typing import Self
@@ -62,12 +62,12 @@ class AssemblyRun:
 
     @property
     def board(self) -> ProgressBoard:
-        """Where progress is shown."""
+        """The board on which progress is shown."""
         return self.opened.board
 
     @property
     def journal(self) -> Journal:
-        """Where results are written down."""
+        """The journal in which results are written down."""
         return self.opened.journal
 
     @property
@@ -126,7 +126,10 @@ class AssemblyRun:
     async def lower_flange(
         self, base_T_flange: RigidTransform, flange_T_deck: RigidTransform
     ) -> None:
-        """The same at the pace of the mating's fast travel, with limits as tight as that allows."""
+        """Move like ``move_flange``, but as slowly as the fast travel of the mating.
+
+        Its lower acceleration allows tighter limits.
+        """
         mating = self.recipe.mating
         speeds = mating.fast_speed_mm_s, mating.acceleration_mm_s2
         await self._move(base_T_flange, flange_T_deck, *speeds)

@@ -70,22 +70,22 @@ class DeckCell:
 
     @property
     def main_config(self) -> RobotConfig:
-        """Of that robot."""
+        """Section of that robot in the cell file."""
         return self.arm.config
 
     @property
     def guard(self) -> GuardClient:
-        """Of the force sensor between flange and deck."""
+        """The guard of the force sensor between flange and deck."""
         return self.arm.guard
 
     @property
     def force_config(self) -> ForceSensorConfig:
-        """Of that sensor."""
+        """Section of that sensor in the cell file."""
         return self.arm.sensor
 
     @property
     def workers(self) -> VisionWorkers:
-        """For images and long solves."""
+        """The vision workers, for images and long solves."""
         return self.cell.workers
 
 

@@ -1,4 +1,4 @@
-"""Bringing robots to where a run begins."""
+"""Brings the robots to the taught poses from which a run begins."""
 
 import numpy as np
 

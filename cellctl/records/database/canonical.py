@@ -1,4 +1,4 @@
-"""One text for one content, so that its hash can be compared years later."""
+"""Writes equal contents as equal text, so that their hashes can be compared years later."""
 
 import hashlib
 import json

@@ -19,13 +19,13 @@ class Utc(TypeDecorator[datetime]):
     cache_ok = True
 
     def process_bind_param(self, value: datetime | None, _dialect: Dialect) -> datetime | None:
-        """To the database."""
+        """Convert a value of Python to what the database keeps."""
         # Converted before the zone is dropped: a local time would otherwise be stored as if it were
         # UTC.
         return None if value is None else value.astimezone(UTC).replace(tzinfo=None)
 
     def process_result_value(self, value: datetime | None, _dialect: Dialect) -> datetime | None:
-        """From the database."""
+        """Convert what the database keeps to a value of Python."""
         return None if value is None else value.replace(tzinfo=UTC)
 
 
@@ -40,11 +40,11 @@ class PlainJson(TypeDecorator[Any]):
     cache_ok = True
 
     def process_bind_param(self, value: Any, _dialect: Dialect) -> Any:
-        """To the database."""
+        """Convert a value of Python to what the database keeps."""
         return plain(value)
 
     def process_result_value(self, value: Any, _dialect: Dialect) -> Any:
-        """From the database."""
+        """Convert what the database keeps to a value of Python."""
         return _frozen(value)
 
 
@@ -57,11 +57,11 @@ class PassComponents(TypeDecorator[tuple[PassComponent, ...]]):
     def process_bind_param(
         self, value: Sequence[PassComponent] | None, _dialect: Dialect
     ) -> list[Any]:
-        """To the database."""
+        """Convert a value of Python to what the database keeps."""
         return [plain(asdict(component)) for component in value or ()]
 
     def process_result_value(self, value: Any, _dialect: Dialect) -> tuple[PassComponent, ...]:
-        """From the database."""
+        """Convert what the database keeps to a value of Python."""
         return tuple(PassComponent(**component) for component in value)
 
 

@@ -1,4 +1,4 @@
-"""The hash chain: what is sealed can be proved unchanged.
+"""The hash chain, which shows whether anything that was sealed has been changed.
 
 Each entry hashes the content it seals together with the entry before it, so a change, a removal
 or an insertion breaks every later hash. The head, length and newest hash, lies in a table of its
@@ -73,7 +73,7 @@ def seal_all(session: Session, time: datetime) -> None:
 
 
 def problems(session: Session, printed: LedgerHead | None = None) -> Iterator[str]:
-    """Every place where the chain does not fit; nothing when all is as it was sealed.
+    """Every place where the chain does not fit; empty when all is as it was sealed.
 
     ``printed`` is a head that was printed on a report: the chain must still contain it.
     """

@@ -51,7 +51,7 @@ def schema_version(connection: Connection) -> int:
 
 
 def backup_of(file: Path, version: int) -> Path:
-    """Where the store lies as it was before it was migrated from a version."""
+    """Path of the copy that is made of a store before it is migrated from this version."""
     return file.with_name(f"{file.stem}-schema-{version}.sqlite")
 
 

@@ -1,4 +1,4 @@
-"""Whole runs from the tables."""
+"""Reads whole runs from the tables."""
 
 from collections.abc import Iterator
 from datetime import datetime

@@ -1,4 +1,4 @@
-"""Rows and entries: each is made of the other by the names of the fields."""
+"""Makes rows of entries and entries of rows, by the names of their fields."""
 
 from dataclasses import fields
 from typing import Any, TypeVar

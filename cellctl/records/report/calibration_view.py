@@ -1,4 +1,4 @@
-"""The calibrations behind a run as tables (paper, tables 1 and 2)."""
+"""The calibrations that a run used, as tables (paper, tables 1 and 2)."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Pictures of a run in groups."""
+"""Sorts the pictures of a run into groups."""
 
 import re
 from collections.abc import Mapping

@@ -11,7 +11,7 @@ from cellctl.records.report.view import ReportView
 
 
 def render(view: ReportView) -> str:
-    """The page."""
+    """The report as one HTML page."""
     environment = Environment(
         loader=PackageLoader("cellctl.records.report", "."),
         autoescape=True,

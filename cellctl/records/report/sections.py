@@ -125,5 +125,5 @@ ended before its first figure."""
 
 
 def no_pages(_record: RunRecord, _read: ReadArtefact) -> ProcessPages:
-    """For a run whose process is not installed."""
+    """No pages, for the report of a run whose process is not installed."""
     return ProcessPages()

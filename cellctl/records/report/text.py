@@ -1,4 +1,4 @@
-"""Numbers and keys of the record as words for people."""
+"""Writes numbers and keys of the record as words for people."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -74,12 +74,12 @@ def decimals(unit: str) -> int:
 
 
 def when(time: datetime | None) -> str:
-    """UTC to the second."""
+    """A time in UTC, to the second; a dash where it is unknown."""
     return MISSING if time is None else f"{time:%Y-%m-%d %H:%M:%S} UTC"
 
 
 def duration(start: datetime, end: datetime | None) -> str:
-    """Minutes and seconds."""
+    """Time between two moments, in seconds or in minutes and seconds; "open" without an end."""
     if end is None:
         return "open"
     seconds = (end - start).total_seconds()

@@ -1,4 +1,4 @@
-"""Whether a robot that stands still after a move stands where it was sent."""
+"""Checks that a robot which stands still after a move stands where it was sent."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform

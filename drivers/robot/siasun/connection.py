@@ -85,7 +85,7 @@ class SjlChannel:
             raise faults.cannot_listen(host, port, error) from error
 
     async def wait_connected(self) -> None:
-        """Until a session stands; raises at once when the wrong robot or job program calls, and
+        """Wait for a session; raises at once when the wrong robot or job program calls, and
         when the channel is closed meanwhile."""
         while not self._accepted:
             if self._server is None:

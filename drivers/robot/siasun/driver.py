@@ -123,7 +123,7 @@ class SiasunRobot(StreamingRobot):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """MOVL."""
+        """MOVL: straight move of the flange, ends at standstill."""
         xyzabc = self._bounds.pose(base_T_flange).tolist()
         speed = self._bounds.speed_mm_s(speed_m_s)
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
@@ -154,7 +154,7 @@ class SiasunRobot(StreamingRobot):
 
     @asynccontextmanager
     async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
-        """STREAM, a SET for each tick, FINISH."""
+        """STREAM, then a SET for each tick, then FINISH; stops the arm when it is left early."""
         offer = self.stream_offer()
         figures = self._bounds.stream(limits, offer)
         self._check_ready()

@@ -1,4 +1,4 @@
-"""Where the controller's words and the sockets' errors become numbered faults of the cell."""
+"""Turns the controller's words and the errors of sockets into numbered faults of the cell."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""What both ends of an SJL/1 channel must agree on before anything else is said."""
+"""What both ends of an SJL/1 channel must agree on before any other record."""
 
 from ipaddress import IPv6Address, ip_address, ip_network
 

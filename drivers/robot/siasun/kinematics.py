@@ -1,4 +1,4 @@
-"""Where the flange is at given joints: forward kinematics by standard (distal) Denavit-Hartenberg.
+"""Forward kinematics of an arm by its standard (distal) Denavit-Hartenberg table.
 
 Each joint is Rz(theta) Tz(d) Tx(a) Rx(alpha), with theta the joint's angle and a fixed offset
 (Denavit and Hartenberg, J. Appl. Mech. 22 (1955) 215; Siciliano et al., Robotics, section 2.8.2).

@@ -12,7 +12,7 @@ VERSION = "1"
 
 
 def accept_hello(session: int) -> bytes:
-    """OK,HELLO."""
+    """OK,HELLO: accept a robot and give it the number of its session."""
     return _encode("OK", "HELLO", VERSION, str(session))
 
 
@@ -22,7 +22,7 @@ def refuse_hello(reason: str) -> bytes:
 
 
 def move_joint(session: int, seq: int, joints_deg: Sequence[float], percent: int) -> bytes:
-    """MOVJ."""
+    """MOVJ: move to joint angles in degrees, J1 to J6, at a percentage of the rated speed."""
     joints = [_fixed(value, 5) for value in joints_deg]
     return _encode("MOVJ", str(session), str(seq), *joints, str(percent))
 
@@ -30,46 +30,46 @@ def move_joint(session: int, seq: int, joints_deg: Sequence[float], percent: int
 def move_linear(
     session: int, seq: int, xyzabc: Sequence[float], speed_mm_s: float, acceleration_mm_s2: float
 ) -> bytes:
-    """MOVL."""
+    """MOVL: straight move to a flange pose in mm and degrees; ends at standstill."""
     numbers = [_fixed(value, 4) for value in (*xyzabc, speed_mm_s, acceleration_mm_s2)]
     return _encode("MOVL", str(session), str(seq), *numbers)
 
 
 def step(session: int, seq: int, xyzabc: Sequence[float], speed_mm_s: float) -> bytes:
-    """STEP."""
+    """STEP: like MOVL, but refused by the controller when it is longer than its greatest step."""
     numbers = [_fixed(value, 4) for value in (*xyzabc, speed_mm_s)]
     return _encode("STEP", str(session), str(seq), *numbers)
 
 
 def rearm(session: int, seq: int) -> bytes:
-    """REARM."""
+    """REARM: release the controller's stop latch; moves nothing."""
     return _encode("REARM", str(session), str(seq))
 
 
 def begin_stream(session: int, seq: int, figures: StreamFigures) -> bytes:
-    """STREAM."""
+    """STREAM: begin a stream of setpoints with these limits."""
     lengths = (figures.step_mm, figures.step_deg, figures.travel_mm, figures.travel_deg)
     numbers = [_fixed(value, 4) for value in lengths]
     return _encode("STREAM", str(session), str(seq), *numbers, str(figures.loss_ms))
 
 
 def set_point(session: int, number: int, xyzabc: Sequence[float]) -> bytes:
-    """SET."""
+    """SET: the setpoint for tick ``number``, in mm and degrees."""
     return _encode("SET", str(session), str(number), *(_fixed(value, 4) for value in xyzabc))
 
 
 def finish_stream(session: int, seq: int) -> bytes:
-    """FINISH."""
+    """FINISH: end the stream that has this number, at standstill."""
     return _encode("FINISH", str(session), str(seq))
 
 
 def beat(session: int, count: int) -> bytes:
-    """BEAT."""
+    """BEAT: heartbeat, without which the controller's dead man stops the arm."""
     return _encode("BEAT", str(session), str(count))
 
 
 def abort(session: int, abort_id: int) -> bytes:
-    """ABORT."""
+    """ABORT: stop now and latch; the same ``abort_id`` may be repeated."""
     return _encode("ABORT", str(session), str(abort_id))
 
 

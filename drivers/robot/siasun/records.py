@@ -1,4 +1,4 @@
-"""What an SJL/1 controller says, as values.
+"""The records that an SJL/1 controller sends, as values.
 
 Poses stay in their written form here: X, Y, Z in mm, A, B, C in degrees, plain floats.
 """

@@ -57,11 +57,14 @@ class RunningCommand:
             self.news.set()
 
     async def acknowledged(self, timeout_s: float) -> None:
-        """Until the controller accepts the command; raises its refusal, or ``ReplyTimeout``."""
+        """Wait until the controller accepts it; raises its refusal, or ``ReplyTimeout``."""
         await self._expect(Ack, timeout_s)
 
     async def done(self, timeout_s: float) -> Six:
-        """The flange's pose at the end; raises what ended it early, or ``ReplyTimeout``."""
+        """Wait for the end and return the flange's pose there, in mm and degrees.
+
+        Raises what ended the command early, or ``ReplyTimeout``.
+        """
         return (await self._expect(Done, timeout_s)).flange_xyzabc
 
     def raise_end(self) -> None:

@@ -62,7 +62,7 @@ class StateChannel:
         return _to_state(self._status, self._time_s)
 
     async def wait(self, condition: Callable[[Status], bool], timeout_s: float) -> None:
-        """Until a report that arrives from now on meets a condition; else ``StaleData``."""
+        """Wait until a report that arrives from now on meets a condition; else ``StaleData``."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._waiters[future] = condition
         try:

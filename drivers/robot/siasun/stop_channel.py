@@ -79,7 +79,7 @@ class SiasunStopChannel(StopChannel):
         self._pack_stop()
 
     def heartbeat(self) -> None:
-        """Send BEAT."""
+        """Send BEAT, without which the controller's dead man stops the arm."""
         self._beats += 1
         self._send(protocol.beat(self._session, self._beats))
 

@@ -41,7 +41,7 @@ class SiasunStream(PoseStream):
         return self._report
 
     async def begin(self) -> None:
-        """Until the first tick, whose pose is the start of the stream."""
+        """Wait for the first tick, whose pose is the start of the stream."""
         report = await self._after(0)
         self._start = self._last = report.base_T_flange
 

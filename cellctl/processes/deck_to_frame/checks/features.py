@@ -1,4 +1,4 @@
-"""Can a part be measured with the feature files that a recipe names?"""
+"""Checks that a part can be measured with the feature files that a recipe names."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Would a recipe's figures give a mating plan? Asked before anything moves."""
+"""Checks that a mating can be planned from a recipe's figures, before anything moves."""
 
 from collections.abc import Iterator
 
@@ -22,7 +22,7 @@ ASSUMED_PAYLOAD_KG = 200.0
 
 
 def plan_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
-    """Ends a recipe in ``MatingPlanInvalid`` even where all is measured exactly?"""
+    """An issue for a recipe from which no mating can be planned, even with exact measurements."""
     sensor = cell.force_sensors[recipe.device(FORCE)]
     try:
         _plan_at_the_stand_off(sensor, recipe)

@@ -1,4 +1,4 @@
-"""Whatever is wrong with a recipe beyond its own keys; touches no hardware."""
+"""Finds what is wrong with a recipe beyond its own keys; touches no hardware."""
 
 from collections.abc import Iterator
 from pathlib import Path

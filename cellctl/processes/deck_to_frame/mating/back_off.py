@@ -1,4 +1,4 @@
-"""Away from the frame after a fault or a false seat, watched for whatever holds the deck."""
+"""Backs off from the frame after a fault or a false seat; the guard notices a deck that is held."""
 
 from scipy.spatial.transform import RigidTransform
 
@@ -28,7 +28,7 @@ async def back_off(attempt: Attempt) -> None:
 
 
 async def return_to_stand_off(attempt: Attempt) -> None:
-    """The same, but all the way to the stand-off of the plan."""
+    """Move back like ``back_off``, but all the way to the stand-off of the plan."""
     here, plan = attempt.robot.state().base_T_flange, attempt.plan
     await _leave(attempt, here, plan.base_T_flange, plan.travel_of(here))
 
@@ -63,7 +63,7 @@ async def _leave(
 
 
 def first_speed_m_s(settings: MatingSettings) -> float:
-    """Of the first stretch."""
+    """Speed of the first stretch, m/s."""
     delay_s = settings.stop_latency_s + settings.stale_s + settings.filter_delay_s
     return leaving_speed_m_s(
         settings.limit_force_n, settings.stiffness_n_m, delay_s, settings.back_off_speed_m_s

@@ -1,4 +1,4 @@
-"""Contact stiffness of the cell, measured by touching the frame a few times."""
+"""Measures the contact stiffness of the cell by touching the frame a few times."""
 
 from dataclasses import dataclass
 
@@ -16,12 +16,12 @@ from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingR
 
 @dataclass(frozen=True, slots=True)
 class ContactStiffness:
-    """The measurement with its data."""
+    """A measured contact stiffness with the contacts that it was measured in."""
 
     estimate: StiffnessEstimate
     """Arm and contact in series, of all contacts together."""
     single: tuple[StiffnessEstimate, ...]
-    """Of each contact."""
+    """The estimate of each single contact."""
     contacts: tuple[MatingResult, ...]
 
 

@@ -1,4 +1,4 @@
-"""Pins on the way to the seat: the deck gives way to them at standstill."""
+"""Lets the deck give way, at standstill, to pins that it meets on the way to its seat."""
 
 import numpy as np
 

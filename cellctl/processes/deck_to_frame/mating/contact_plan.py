@@ -21,7 +21,7 @@ RELEASE_BAND_N = 5.0
 
 
 def contact_plan(corrected: Corrected, commissioned: Commissioned) -> MatingPlan:
-    """From the pose that was measured, which must still be the present one.
+    """Plan the mating from the pose that was measured, which must still be the present one.
 
     Raises ``HeadMoved`` when it is not, ``SpeedOverridden`` when the robot would not move as
     planned, ``MatingPlanInvalid`` when no plan is safe.
@@ -64,8 +64,8 @@ def mating_settings(
         abort_force_n=mating.limit_force_n - ABORT_MARGIN_N,
         release_low_n=mating.release_force_n - RELEASE_BAND_N,
         release_high_n=mating.release_force_n + RELEASE_BAND_N,
-        # The drift of a CUSUM is half of the shift that it is made to find: less would add up
-        # noise, more would be blind to a soft contact.
+        # The usual choice for the drift of a CUSUM is half of the shift that it has to find: less
+        # would add up noise, more would be blind to a soft contact.
         touch=Cusum(mating.touch_force_n / 2, touch_threshold_n(rate_hz)),
         sample_period_s=1.0 / rate_hz,
         stale_s=sensor.stale_ms / 1e3,

@@ -1,4 +1,4 @@
-"""The force curves of a contact go into the record, whatever becomes of it."""
+"""Keeps the force curves of a contact in the record, however the contact ends."""
 
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager

@@ -1,4 +1,4 @@
-"""What the guard watches in each phase, and which fault a trip is."""
+"""The limits that the guard watches in each phase, and the fault that belongs to each trip."""
 
 import numpy as np
 
@@ -27,7 +27,7 @@ def touch_limits(settings: MatingSettings) -> GuardLimits:
 
 
 def contact_limits(settings: MatingSettings) -> GuardLimits:
-    """Creep, hold and relaxing."""
+    """Limits while creeping, holding and relaxing."""
     return _limits(settings, settings.abort_force_n, settings.max_lateral_n)
 
 

@@ -57,7 +57,7 @@ class MatingPlan:
 
     @property
     def end_of_travel_m(self) -> float:
-        """No commanded target lies beyond."""
+        """Travel (m) beyond which no target is commanded."""
         return self.window.expected_m + self.settings.greatest_past_m
 
 

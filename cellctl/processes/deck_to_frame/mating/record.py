@@ -1,4 +1,4 @@
-"""A mating as plain data for the record: mm, mm/s, N, N·m."""
+"""Writes plan and result of a mating as plain data for the record, in mm, mm/s, N and N·m."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Keeps force and travel of a mating while it runs."""
+"""Records force and travel while a mating runs."""
 
 import asyncio
 from types import TracebackType

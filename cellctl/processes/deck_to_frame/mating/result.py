@@ -75,7 +75,7 @@ class Tare:
 
 
 class MatingOutcome(Enum):
-    """How an attempt ended that raised no fault."""
+    """The two ways in which an attempt ends without a fault."""
 
     SEATED = "seated"
     FALSE_SEAT = "false seat"

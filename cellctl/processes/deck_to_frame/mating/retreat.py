@@ -1,4 +1,4 @@
-"""After a fault of the mating: stop, and where that is right take the deck off the frame."""
+"""After a fault of the mating: stops the arm and, where that is right, backs off from the frame."""
 
 from dataclasses import replace
 

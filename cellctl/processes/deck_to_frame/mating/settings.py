@@ -1,4 +1,4 @@
-"""What a recipe and the commissioning say about mating, in SI."""
+"""All figures of a mating in SI, from the recipe and from commissioning."""
 
 from dataclasses import dataclass, field
 

@@ -1,4 +1,4 @@
-"""What the calibrations of this process say: where heads, base and large-field head are."""
+"""Where heads, base and large-field head are, according to the calibrations of this process."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Measure a part with both heads: grab, find holes, average, fit, until it is certain enough."""
+"""Measures a part with both heads: takes images until the pose is certain enough."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

@@ -118,7 +118,7 @@ class Judgement:
 
     @property
     def converged(self) -> bool:
-        """Within, and known to be."""
+        """The error is within its thresholds, and the measurement is certain enough to say so."""
         return self.within and self.certain
 
 

@@ -1,4 +1,4 @@
-"""What a measurement says must be about what the recipe says before anything moves by it."""
+"""Refuses measurements and targets that are too far from what the recipe says."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform

@@ -33,12 +33,12 @@ class SeatError:
 
 
 def pin_holes(holes: Sequence[Hole]) -> list[Hole]:
-    """Those that a pin enters, and that a person can gauge."""
+    """The holes that a pin enters and that a person can gauge."""
     return [hole for hole in holes if hole.kind == "pin"]
 
 
 def seat_error(M_T_D: RigidTransform, thickness_m: float, holes: Sequence[Hole]) -> SeatError:
-    """Of a deck of that thickness, judged at its pin holes, at every hole where it has none."""
+    """Error of a seated deck, judged at its pin holes, or at every hole where it has none."""
     seat = RigidTransform.from_translation([0.0, 0.0, thickness_m])
     offsets_mm = {
         hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM

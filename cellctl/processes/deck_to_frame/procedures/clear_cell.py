@@ -1,4 +1,4 @@
-"""Where every procedure begins: nothing stands in the way of what it will move."""
+"""Clears the way for a procedure: every procedure begins with this."""
 
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation

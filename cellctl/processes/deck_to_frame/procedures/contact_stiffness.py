@@ -1,4 +1,4 @@
-"""Procedure 108: how stiff arm and contact are together, by touching the frame a few times."""
+"""Procedure 108: measures the stiffness of arm and contact by touching the frame a few times."""
 
 from cellctl import log
 from cellctl.calibration.checks import all_passed

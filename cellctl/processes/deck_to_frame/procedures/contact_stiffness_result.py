@@ -1,4 +1,4 @@
-"""A contact stiffness against its limits, and as plain data: N/mm, mm, N."""
+"""Judges a contact stiffness and writes it as plain data, in N/mm, mm and N."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The holes of a measurement as a table."""
+"""The holes of one measurement, as a table of the report."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The pages of an assembly."""
+"""The pages that an assembly adds to the report of its run."""
 
 from cellctl.processes.deck_to_frame.report.force_section import force_section, recordings
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM, plug_gauges

@@ -11,7 +11,7 @@ from cellctl.records.report.text import decimals, number
 
 
 def tiles(record: RunRecord, curves: Iterable[Recording]) -> tuple[Tile, ...]:
-    """Those for which the run has figures."""
+    """The headline figures that the record of this run can fill."""
     return (
         *_errors(record.passes),
         *_peak_force(curves, record.value(LIMIT_FORCE)),

@@ -1,4 +1,4 @@
-"""Step 20: how the deck is gripped (paper 2.1.3, eq. 4)."""
+"""Step 20: measure how the gripper holds the deck (paper 2.1.3, eq. 4)."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Step 10: where the frame stands (paper 2.2.1)."""
+"""Step 10: measure where the frame stands (paper 2.2.1)."""
 
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.poses.pose_limits import require_near

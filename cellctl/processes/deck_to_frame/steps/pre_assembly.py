@@ -1,4 +1,4 @@
-"""Step 30: the deck to its stand-off above the frame (paper 2.2.2, eq. 5 to 7)."""
+"""Step 30: bring the deck to its stand-off above the frame (paper 2.2.2, eq. 5 to 7)."""
 
 from scipy.spatial.transform import RigidTransform
 

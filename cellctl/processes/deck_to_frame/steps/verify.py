@@ -1,4 +1,4 @@
-"""Step 60: measure the seated deck against the frame: offset at the pin holes, gap, rotation."""
+"""Step 60: measure the seated deck against the frame (offset at the pin holes, gap, rotation)."""
 
 from collections.abc import Iterator
 
