@@ -44,9 +44,8 @@ class GuardClient:
         module: str = "cellctl.guard.process.main",
     ) -> None:
         self._sensor = {"name": sensor_plugin, "config": sensor_config}
-        self._stop = None
-        if stop_plugin is not None:
-            self._stop = {"name": stop_plugin, "config": stop_config or {}}
+        stop = {"name": stop_plugin, "config": stop_config or {}}
+        self._stop = None if stop_plugin is None else stop
         self._settings = settings
         self._module = module
         self._child: GuardChild | None = None

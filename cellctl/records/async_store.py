@@ -12,7 +12,7 @@ from cellctl.records.raw_images import (
     MEDIA_TYPE,
     GreyImage,
     encode_and_put,
-    low_priority_thread,
+    coding_thread,
 )
 from cellctl.records.store import RunStore
 
@@ -37,7 +37,7 @@ class AsyncRunStore:
         except BaseException:
             self._thread.shutdown()
             raise
-        self._images = low_priority_thread()
+        self._images = coding_thread()
         self._keeping: set[asyncio.Task[None]] = set()
         self.fault: RecordNotWritten | None = None
         """The first write that did not reach the disk; the store takes no run after it."""

@@ -1,8 +1,6 @@
-"""Images as the cameras gave them, coded without loss by a thread of low priority."""
+"""Images as the cameras gave them, coded without loss by a thread beside the run."""
 
-import os
 import re
-import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -14,9 +12,6 @@ from cellctl.records.artefacts import ArtefactFolder
 
 MEDIA_TYPE = "application/zstd"
 """PGM inside: `zstd -d` gives a picture that any viewer opens."""
-_GREATEST_NICENESS = 19
-_NICENESS = 10
-"""Added to that of the daemon. Not all there is: a run is closed with its images."""
 _LEVEL = 1
 """Noise cannot be compressed: more effort costs seconds and saves a few per cent. PNG takes ten
 times as long."""
@@ -25,9 +20,14 @@ _HEADER = re.compile(rb"P5 (\d+) (\d+) 255\n")
 GreyImage = NDArray[np.uint8]
 
 
-def low_priority_thread() -> ThreadPoolExecutor:
-    """One thread that gives way to whatever a run waits for."""
-    return ThreadPoolExecutor(1, "raw-images", initializer=_at_low_priority)
+def coding_thread() -> ThreadPoolExecutor:
+    """One thread for ``encode_and_put``, at the daemon's own priority.
+
+    A nicer thread would be worse for whatever moves: while it waits for a processor it may hold the
+    interpreter's lock, and then the event loop with all heartbeats waits for it. The work itself is
+    20 ms an image, outside that lock.
+    """
+    return ThreadPoolExecutor(1, "raw-images")
 
 
 def encode_and_put(image: GreyImage, files: ArtefactFolder) -> bytes:
@@ -55,9 +55,3 @@ def decode(data: bytes) -> GreyImage:
     pixels = np.frombuffer(plain, np.uint8, offset=header.end())
     # An array over bytes cannot be written to, and it would keep the whole file in memory.
     return pixels.reshape(height, width).copy()
-
-
-def _at_low_priority() -> None:
-    # On Linux every thread has a niceness of its own.
-    niceness = min(os.getpriority(os.PRIO_PROCESS, 0) + _NICENESS, _GREATEST_NICENESS)
-    os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), niceness)

@@ -70,7 +70,7 @@ class JobRunner:
         return self._job.outcome if self._job and self._finished else None
 
     async def start(self, job: Job) -> None:
-        """Do what the job does in Starting; ``RecordSilent`` while the last record is not closed."""
+        """Do what the job does in Starting; ``RecordSilent`` while the last record is open."""
         if self._closing is not None:
             raise RecordSilent("the record of the run before is still being closed")
         self._job = self._shown = job
