@@ -11,8 +11,8 @@ from cellctl.errors.records import RecordNotWritten, RecordsError
 from cellctl.records.raw_images import (
     MEDIA_TYPE,
     GreyImage,
-    encode_and_put,
     coding_thread,
+    encode_and_put,
 )
 from cellctl.records.store import RunStore
 
