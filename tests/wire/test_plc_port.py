@@ -53,7 +53,10 @@ class Line:
 
     async def execute(self, submission: LineSubmission) -> RejectCode:
         self.commands.append(submission)
-        return self.answer(submission)
+        code = self.answer(submission)
+        if code is RejectCode.NONE:
+            submission.taken()
+        return code
 
     async def remember(self, seq: int) -> None:
         """The number is on the disk."""
@@ -236,6 +239,20 @@ async def test_a_stop_of_another_client_does_not_take_over(line: Line) -> None:
     await line.command(plc, 1, Command.RESET)
     await until(plc, lambda b: b[ACK] == 1)
     await line.command(page, 2, Command.STOP)
+    await until(page, lambda b: b[ACK] == 2)
+    async with asyncio.timeout(3):
+        while not line.lost.is_set():
+            await line.heartbeat(page)
+            await asyncio.sleep(0.05)
+
+
+async def test_a_refused_command_does_not_take_over(line: Line) -> None:
+    port, plc = await line.open(timeout_s=0.5)
+    page = await line.connect(port, "127.0.0.2")
+    await line.command(plc, 1, Command.RESET)
+    await until(plc, lambda b: b[ACK] == 1)
+    line.answer = lambda _submission: RejectCode.DEVICE_NOT_READY
+    await line.command(page, 2, Command.START)
     await until(page, lambda b: b[ACK] == 2)
     async with asyncio.timeout(3):
         while not line.lost.is_set():

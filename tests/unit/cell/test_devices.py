@@ -1,13 +1,15 @@
 """All devices together: connect, stop, rearm, whatever fails."""
 
 import asyncio
+from dataclasses import replace
 
 import pytest
 
 from cellctl.cell.devices import Cell
+from cellctl.cell.readiness import require_ready
 from cellctl.errors.force import GuardDied
 from cellctl.errors.link import ConnectTimeout, LinkLost
-from cellctl.errors.robot import StopFailed
+from cellctl.errors.robot import RobotNotReady, StopFailed
 from tests.unit.cell.bench import CELL_FILE, Bench
 
 
@@ -97,6 +99,39 @@ async def test_a_robot_without_a_confirmed_stop_counts_as_moving_until_connect(
     with pytest.raises(StopFailed):
         await bench.cell.stop_motion()
     bench.cell.main.faults.clear()
+    await bench.cell.connect()
+    assert not bench.cell.unstopped
+
+
+async def test_a_driver_that_hangs_in_its_stop_counts_as_moving(bench: Bench) -> None:
+    async def stop() -> None:
+        await asyncio.Event().wait()
+
+    bench.cell.main.stop = stop  # type: ignore[method-assign]
+    bench.cell.aux_1.faults["stop"] = StopFailed("aux_1")
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(0.05):
+            await bench.cell.stop_motion()
+    assert list(bench.cell.unstopped) == ["main", "aux_1"]
+    assert "disarm" not in bench.cell.guard.asked
+
+
+async def test_clear_does_not_believe_that_an_arm_stands_which_reports_that_it_moves(
+    bench: Bench,
+) -> None:
+    main = bench.cell.main
+    main.faults["stop"] = StopFailed("main")
+    with pytest.raises(StopFailed):
+        await bench.cell.stop_motion()
+    main.faults.clear()
+    state = main.state
+    main.state = lambda max_age_s=1.0: replace(state(max_age_s), moving=True)  # type: ignore[method-assign]
+    with pytest.raises(StopFailed, match="main still moves"):
+        await bench.cell.connect()
+    assert list(bench.cell.unstopped) == ["main"]
+    with pytest.raises(RobotNotReady, match="still moves"):
+        require_ready([main])
+    main.state = state  # type: ignore[method-assign]
     await bench.cell.connect()
     assert not bench.cell.unstopped
 

@@ -181,7 +181,7 @@ async def test_abort_cancels_at_once_and_aborting_does_not_wait_to_act(rig: Rig)
     assert order == ["robots stopped", "execute cleaned up"]
 
 
-async def test_stopping_begins_after_the_left_sequence_has_cleaned_up(rig: Rig) -> None:
+async def test_stopping_begins_at_once_and_ends_after_the_left_sequence(rig: Rig) -> None:
     order: list[str] = []
     started = asyncio.Event()
 
@@ -201,7 +201,31 @@ async def test_stopping_begins_after_the_left_sequence_has_cleaned_up(rig: Rig) 
     await started.wait()
     await machine.command(Command.STOP)
     await machine.wait_for(State.STOPPED, timeout_s=1)
-    assert order == ["execute", "stopping"]
+    assert order == ["stopping", "execute"]
+
+
+@pytest.mark.parametrize("command", [Command.STOP, Command.ABORT])
+async def test_the_fault_of_the_stop_is_not_lost_to_one_of_what_was_left(
+    rig: Rig, command: Command
+) -> None:
+    started = asyncio.Event()
+
+    async def execute() -> None:
+        started.set()
+        try:
+            await forever()
+        finally:
+            raise WarnError("left behind")
+
+    async def stop() -> None:
+        raise AbortError("the arm still moves")
+
+    rig.actions |= {State.STOPPING: stop, State.ABORTING: stop}
+    machine = await rig.executing(execute)
+    await started.wait()
+    await machine.command(command)
+    await machine.wait_for(State.ABORTED, timeout_s=1)
+    assert "the arm still moves" in str(machine.fault)
 
 
 @pytest.mark.parametrize(
