@@ -51,7 +51,8 @@ class ContactPoints:
         carrying[self.wedges] = False
         together[carrying] = stiffness[carrying].sum()
         damping = 2 * damping_ratio * np.sqrt(mass / together) * stiffness
-        return Contacts(jacobian, stiffness, damping, self.wedges, self.holding)
+        holding = self.holding if self.holding.any() else None
+        return Contacts(jacobian, stiffness, damping, self.wedges, holding)
 
 
 @dataclass(frozen=True, slots=True)

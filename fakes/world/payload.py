@@ -51,7 +51,7 @@ class Payload:
             com_T_body = self.flange_T_com.inv() * touch.flange_T_body
             contacts = touch.points.contacts(com_T_body, touch.damping_ratio, mass_kg)
         self.suspension = Suspension(springs, mass_kg, contacts)
-        normals = contacts.jacobian[:, :3]
+        self._normals = normals = np.ascontiguousarray(contacts.jacobian[:, :3])
         self._guides_carries = np.column_stack(
             [np.hypot(normals[:, 0], normals[:, 1]), normals[:, 2]]
         )
@@ -94,13 +94,14 @@ class Payload:
 
     def _push(self, rates: Array, inertia: Array, slide: Array) -> None:
         suspension, step_s = self.suspension, STEP_S / _SUBSTEPS
+        wrench = inertia.copy()
         for index in range(_SUBSTEPS):
             drag = self._drag(slide + suspension.rate[:3])
-            wrench = inertia.copy()
-            wrench[:3] += drag
-            suspension.touch(step_s, self._gaps + index * step_s * rates, rates, wrench)
-            force = suspension.normal_forces @ suspension.contacts.jacobian[:, :3]
-            self.contact_force_n = float(np.linalg.norm(force + drag))
+            wrench[:3] = inertia[:3] + drag
+            gaps = self._gaps + index * step_s * rates
+            suspension.touch(step_s, gaps, rates, wrench, goes_on=index > 0)
+            force = suspension.normal_forces @ self._normals + drag
+            self.contact_force_n = math.sqrt(force @ force)
             self.peak_contact_force_n = max(self.peak_contact_force_n, self.contact_force_n)
 
     def _drag(self, speed: Array) -> Array:

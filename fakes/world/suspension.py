@@ -85,15 +85,26 @@ class Suspension:
         transition, response = self._propagator(None, step_s)
         self.state = transition @ self.state + response @ wrench
 
-    def touch(self, step_s: float, gaps: Array, gap_rates: Array, wrench: Array) -> None:
-        """Advance with contacts in reach; ``gaps`` at the start, without deflection."""
+    def touch(
+        self,
+        step_s: float,
+        gaps: Array,
+        gap_rates: Array,
+        wrench: Array,
+        *,
+        goes_on: bool = False,
+    ) -> None:
+        """Advance with contacts in reach; ``gaps`` at the start, without deflection.
+
+        ``goes_on``: the gaps begin where they ended in the call before, at the same rates. The
+        forces at the start are then known already.
+        """
         contacts = self.contacts
-        closed = self._forces(gaps, gap_rates) != 0
-        if closed.any():
-            rows, stiffness = contacts.jacobian[closed], contacts.stiffness_n_m[closed]
-            middle = gaps[closed] + 0.5 * step_s * gap_rates[closed]
-            push = stiffness * middle + contacts.damping_n_s_m[closed] * gap_rates[closed]
-            wrench = wrench - push @ rows
+        forces = self.normal_forces if goes_on else self._forces(gaps, gap_rates)
+        closed = forces != 0
+        middle = gaps + 0.5 * step_s * gap_rates
+        push = contacts.stiffness_n_m * middle + contacts.damping_n_s_m * gap_rates
+        wrench = wrench - (push * closed) @ contacts.jacobian
         transition, response = self._propagator(closed, step_s)
         self.state = transition @ self.state + response @ wrench
         self.normal_forces = self._forces(gaps + step_s * gap_rates, gap_rates)
@@ -102,11 +113,13 @@ class Suspension:
         """Normal forces: closed contacts push, and pull only where they hold."""
         contacts = self.contacts
         depth = self._depths(gaps)
-        approach = -(gap_rates + contacts.jacobian @ self.rate)
-        force = contacts.stiffness_n_m * depth + contacts.damping_n_s_m * approach
-        if contacts.holding is not None:
-            self._held |= contacts.holding & (depth > 0)
-        return np.where(self._held, force, np.where(depth > 0, np.maximum(force, 0.0), 0.0))
+        approach = gap_rates + contacts.jacobian @ self.rate
+        force = contacts.stiffness_n_m * depth - contacts.damping_n_s_m * approach
+        pushing = np.maximum(force, 0.0) * (depth > 0)
+        if contacts.holding is None:
+            return np.asarray(pushing)
+        self._held |= contacts.holding & (depth > 0)
+        return np.where(self._held, force, pushing)
 
     def _depths(self, gaps: Array) -> Array:
         """How deep each row is closed; negative for an open one."""
@@ -115,11 +128,12 @@ class Suspension:
         if not len(wedges):
             return np.asarray(depths)
         inside = depths[wedges]
-        hit = (inside > 0).all(axis=1)
-        nearest = wedges[hit, inside[hit].argmin(axis=1)]
-        closed = depths[nearest]
+        hit = inside.min(axis=1) > 0
         depths[wedges] = -1.0
-        depths[nearest] = closed
+        # Rarely is a wedge entered, and the search for its nearest face is slow.
+        if hit.any():
+            nearest = inside[hit].argmin(axis=1)
+            depths[wedges[hit, nearest]] = inside[hit, nearest]
         return np.asarray(depths)
 
     def _propagator(self, closed: Flags | None, step_s: float) -> tuple[Array, Array]:
