@@ -16,7 +16,7 @@ from fakes.world.frames import Array, displacement
 from fakes.world.suspension import Contacts, Suspension
 
 STEP_S = 1e-3
-_SUBSTEPS = 4
+_SUBSTEPS = 2
 _NEAR_M = 2e-3
 _GRAVITY = np.array([0.0, 0.0, -9.80665])
 _SLIP_M_S = 1e-4
