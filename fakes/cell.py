@@ -1,14 +1,14 @@
-"""The fake cell as one process: the world on the wall clock, its devices on their sockets."""
+"""The fake cell as one process: the world on its clock, its devices on their sockets."""
 
 import asyncio
 import errno
 import json
 import signal
 import sys
-import time
 from collections.abc import Awaitable, Callable, Mapping
 from typing import Any
 
+from fakes.clock import WorldClock
 from fakes.control import ControlServer
 from fakes.devices import DeviceFaults, DeviceRack
 from fakes.faults import ROBOT_FAULTS, FaultBoard
@@ -35,18 +35,14 @@ class Cell:
         """``ports`` override those of the scenario: device, ``robot.CHANNEL`` or ``control``."""
         self._ports = ports or {}
         self._control_port = self._ports.get("control", scenario.control_port)
-        self._started_s = time.monotonic()
+        self.clock = WorldClock()
         self.world = open_world(scenario, seed)
         self.robots = {
             name: self._controller(name, robot) for name, robot in scenario.robots.items()
         }
-        self._rack = DeviceRack(self.world, self._started_s, self._ports)
+        self._rack = DeviceRack(self.world, self.clock, self._ports)
         self.stopping = asyncio.Event()
         self._control = ControlServer(Operator(self, self.commands()).handlers())
-
-    def now_s(self) -> float:
-        """Time of the world."""
-        return time.monotonic() - self._started_s
 
     def commands(self) -> Mapping[str, Command]:
         """What the hands of an operator can do in this cell, by name."""
@@ -77,8 +73,10 @@ class Cell:
 
     async def run(self) -> None:
         """Advance the world until ``stopping`` is set."""
+        self.clock()
+        self.clock.lost_s = 0.0  # what was lost before, nobody was there to miss
         while not self.stopping.is_set():
-            self.world.advance(self.now_s())
+            self.world.advance(self.clock())
             await asyncio.sleep(_ADVANCE_S)
 
     async def stop(self) -> None:
@@ -97,7 +95,7 @@ class Cell:
         }
         return SjlController(
             self.world.arms[name],
-            self.now_s,
+            self.clock,
             ports,
             faults=FaultBoard(name, ROBOT_FAULTS),
             offer=StreamOffer() if robot.streams else None,

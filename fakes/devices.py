@@ -4,13 +4,13 @@ Controllers of robots are not here: they connect to the PC, as the real ones do.
 """
 
 import asyncio
-import time
 from collections.abc import Awaitable, Callable, Iterator, Mapping
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol, TypeVar
 
+from fakes.clock import WorldClock
 from fakes.faults import TRACKER_FAULTS, FaultBoard
 from fakes.render.look import options_of
 from fakes.render.options import RenderOptions
@@ -58,11 +58,10 @@ class Device:
 class DeviceRack:
     """Every listening device of a scenario, wired to the world."""
 
-    def __init__(self, world: World[Any], started_s: float, ports: Mapping[str, int]) -> None:
-        """``started_s``: when the world began, by CLOCK_MONOTONIC; ``ports`` override those of the
-        scenario."""
+    def __init__(self, world: World[Any], clock: WorldClock, ports: Mapping[str, int]) -> None:
+        """``clock`` is that of the world; ``ports`` override those of the scenario."""
         self._scenario: Scenario = world.scenario
-        self._world, self._started_s, self._ports = world, started_s, ports
+        self._world, self._clock, self._ports = world, clock, ports
         self._renderers: ProcessPoolExecutor | None = None
         self._jaws: dict[str, PneumaticJaws] = {}
         self._inputs: dict[str, dict[int, bool]] = {}
@@ -82,10 +81,6 @@ class DeviceRack:
         """End the renderers, once the devices have stopped."""
         if self._renderers is not None:
             self._renderers.shutdown(cancel_futures=True)
-
-    def _clock(self) -> float:
-        """Time of the world."""
-        return time.monotonic() - self._started_s
 
     def _all(self) -> Iterator[Device]:
         scenario = self._scenario
@@ -107,12 +102,11 @@ class DeviceRack:
 
     # -- force sensors and trackers -------------------------------------------------------------
     def _force_sensor(self, name: str) -> Device:
-        def sample(monotonic_s: float) -> list[float]:
-            time_s = monotonic_s - self._started_s
+        def sample(time_s: float) -> list[float]:
             reading: list[float] = self._world.sensor_wrench(name, time_s).tolist()
             return reading
 
-        box = SriBox(sample)
+        box = SriBox(sample, clock=self._clock)
         port = self._port(name, self._scenario.force_sensors[name].port)
         return Device(name, port, box.faults, partial(box.start_tcp, port=port), box.stop)
 

@@ -34,11 +34,12 @@ class Operator:
     async def status(self) -> dict[str, Any]:
         """Time of the world and the channels that the PC has accepted."""
         channels = {name: robot.open_channels for name, robot in self._cell.robots.items()}
-        return {"time_s": self._cell.now_s(), "channels": channels}
+        return {"time_s": self._cell.clock(), "channels": channels}
 
     async def truth(self) -> dict[str, Any]:
         """Everything that nobody in the cell knows exactly."""
-        return {"truth": self._cell.world.report()}
+        lost_s = self._cell.clock.lost_s
+        return {"truth": {**self._cell.world.report(), "lost_s": lost_s}}
 
     async def inject(self, device: str, name: str, **parameters: Any) -> dict[str, Any]:
         """Inject a fault; ``count`` limits how often it acts."""

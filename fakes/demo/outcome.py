@@ -21,6 +21,8 @@ class Outcome:
     result: str
     judgement: Judgement
     wall_s: float
+    lost_s: float
+    """Time that the PC could not give to the fake world, which ran slower by as much."""
     report: str
     """Path of the HTML report; empty when no run was opened."""
 
@@ -47,6 +49,7 @@ def collect(
         result=str(line.get("result")),
         judgement=judgement,
         wall_s=wall_s,
+        lost_s=truth["lost_s"],
         report=str(folder / "report" / "report.html") if run else "",
     )
     _write(
@@ -59,6 +62,7 @@ def collect(
             "fault": evidence.record.get("fault") or line.get("message") or "",
             **judgement.figures,
             "wall_s": wall_s,
+            "lost_s": outcome.lost_s,
             "report": outcome.report,
         },
     )
@@ -72,6 +76,7 @@ def result_table(outcome: Outcome) -> Table:
         written = "–" if row.value is None else row.form.format(row.value)
         table.add_row(row.name, written, row.limit, style="red" if row.within is False else None)
     table.add_row("wall time, s", f"{outcome.wall_s:.0f}", "")
+    table.add_row("lost by the fake cell on a busy PC, s", f"{outcome.lost_s:.2f}", "")
     return table
 
 

@@ -114,7 +114,15 @@ class BurstDetector:
 
 
 class RateDetector:
-    """Compares the number of samples a second, in consecutive windows, with an allowed band."""
+    """Compares the number of samples a second, in consecutive windows, with an allowed band.
+
+    Time in which the whole machine stood still counts against too many samples, not against too
+    few. A box outside of the machine goes on sending, and the samples wait in the socket; what runs
+    on the same machine, a fake or a serial server, stands still as well.
+    """
+
+    _MOST_EXCUSED = 0.5
+    """Share of a window. A machine that is away for more leaves no rate that could be trusted."""
 
     def __init__(self, band_hz: tuple[float, float], window_s: float, now_s: float) -> None:
         self.rate_hz = 0.0
@@ -122,6 +130,7 @@ class RateDetector:
         self._lowest_hz, self._highest_hz = band_hz
         self._window_s = window_s
         self._since_s = now_s
+        self._excused_s = 0.0
         self._count = 0
 
     def add(self) -> None:
@@ -133,13 +142,15 @@ class RateDetector:
         elapsed_s = now_s - self._since_s
         if elapsed_s < self._window_s:
             return False
+        running_s = elapsed_s - min(self._excused_s, self._MOST_EXCUSED * elapsed_s)
         self.rate_hz = self._count / elapsed_s
-        self._since_s, self._count = now_s, 0
-        return not self._lowest_hz <= self.rate_hz <= self._highest_hz
+        enough = self._lowest_hz <= self._count / running_s
+        self._since_s, self._excused_s, self._count = now_s, 0.0, 0
+        return not (enough and self.rate_hz <= self._highest_hz)
 
     def excuse(self, seconds: float) -> None:
-        """Leave out time in which the whole machine stood still and nobody could count."""
-        self._since_s += seconds
+        """The whole machine stood still for so long and nobody could count."""
+        self._excused_s += seconds
 
 
 def beyond(wrench: Six, limits: Six) -> int | None:

@@ -5,8 +5,8 @@
     box.faults.inject("frozen")
     await box.stop()
 
-Times are CLOCK_MONOTONIC. A frame is paced by that clock at the rate the client set, and carries
-the sample of its own due time even when it leaves late.
+A frame is paced by the box's clock at the rate the client set, and carries the sample of its own
+due time even when it leaves late.
 """
 
 import time

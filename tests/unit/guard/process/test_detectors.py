@@ -1,6 +1,7 @@
 """The detectors on signals whose outcome is known."""
 
 import numpy as np
+import pytest
 from scipy.signal import lfilter
 
 from cellctl.guard.limits import CusumTouch, GuardLimits
@@ -9,6 +10,7 @@ from cellctl.guard.process.detectors import (
     BurstDetector,
     FrozenDetector,
     LowPass,
+    RateDetector,
     beyond,
 )
 
@@ -58,3 +60,33 @@ def test_burst_forgets_after_its_window() -> None:
     assert not burst.update(12, 0.0)
     assert not burst.update(13, 0.2)
     assert burst.update(15, 0.25)
+
+
+@pytest.mark.parametrize(
+    ("samples", "paused_s", "out"),
+    [
+        (500, 0.0, False),
+        (500, 0.2, False),  # a box of its own sent on; what it sent waited in the socket
+        (300, 0.2, False),  # a box that stood still with the machine
+        (950, 0.2, True),  # too fast, whoever paused
+        (200, 0.2, True),  # too slow even for the time in which the machine ran
+        (200, 0.4, True),  # a machine that is away for longer excuses half of the window at most
+        (0, 0.5, True),
+    ],
+)
+def test_rate_on_a_machine_that_pauses(samples: int, paused_s: float, out: bool) -> None:
+    rate = RateDetector((900.0, 1100.0), 0.5, now_s=10.0)
+    for _ in range(samples):
+        rate.add()
+    rate.excuse(paused_s)
+    assert not rate.check(10.499)
+    assert rate.check(10.5) == out
+
+
+def test_rate_excuses_a_pause_once() -> None:
+    rate = RateDetector((900.0, 1100.0), 0.5, now_s=0.0)
+    rate.excuse(0.2)
+    for end_s, out in ((0.5, False), (1.0, True)):
+        for _ in range(300):
+            rate.add()
+        assert rate.check(end_s) == out
