@@ -22,6 +22,7 @@ COLUMNS = (
     ("final_true_n", "final true N", "{:.1f}"),
     ("gauge_min_mm", "smallest gauge mm", "{:.2f}"),
     ("wall_s", "wall s", "{:.0f}"),
+    ("lost_s", "lost by the fake s", "{:.2f}"),
 )
 
 
@@ -33,7 +34,7 @@ def campaign(
     ),
 ) -> None:
     """Run the seeds, print a table, write campaign.json; exit code 1 when a run was not good."""
-    console = Console(highlight=False)
+    console = Console(highlight=False, width=150)
     out.mkdir(parents=True, exist_ok=True)
     results = [_run(seed, out, console) for seed in range(first, first + n)]
     (out / "campaign.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
@@ -51,13 +52,14 @@ def campaign(
 
 def _run(seed: int, out: Path, console: Console) -> dict[str, Any]:
     folder = out / f"seed-{seed}"
+    path = folder / "result.json"
+    path.unlink(missing_ok=True)  # that of an earlier campaign is no result of this one
     command = ["-m", "fakes", "demo", "--seed", str(seed), "--out", str(folder), "--quiet"]
     begun = time.monotonic()
     process = subprocess.run(
         [sys.executable, *command], check=False, capture_output=True, text=True
     )
     wall_s = time.monotonic() - begun
-    path = folder / "result.json"
     if path.exists():
         result: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     else:
