@@ -6,7 +6,7 @@ from functools import partial
 
 from cellctl.errors.internal import StateDidNotEnd
 from cellctl.packml.state import State
-from cellctl.packml.tables import WHEN_DONE
+from cellctl.packml.transition_tables import WHEN_DONE
 
 Action = Callable[[], Awaitable[None]]
 Task = asyncio.Task[None]

@@ -4,7 +4,7 @@ from transitions import Machine
 
 from cellctl.packml.command import Command
 from cellctl.packml.state import STATES, State
-from cellctl.packml.tables import ON_COMMAND, WHEN_DONE
+from cellctl.packml.transition_tables import ON_COMMAND, WHEN_DONE
 
 _STATE_COMPLETE = "STATE_COMPLETE"
 

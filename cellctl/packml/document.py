@@ -7,12 +7,12 @@ from pathlib import Path
 from cellctl.packml.command import COMMANDS, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.state import STATES, State
-from cellctl.packml.tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND, WHEN_DONE
+from cellctl.packml.transition_tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND, WHEN_DONE
 
 _INTRODUCTION = """\
 # State machine
 
-Generated from `cellctl/packml/tables.py`; do not edit.
+Generated from `cellctl/packml/transition_tables.py`; do not edit.
 
 The unit follows ISA-TR88.00.02 (PackML), 2022 edition, with its default masks. The tables in that
 file are the whole machine: `transitions` is built from them, and nothing else changes the state.

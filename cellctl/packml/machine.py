@@ -13,7 +13,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.packml.tables import ON_COMMAND, requested
+from cellctl.packml.transition_tables import ON_COMMAND, requested
 from cellctl.packml.validation import MODE_REQUEST, Refusal, validate_command, validate_mode
 
 Gate = Callable[[State, Command], RejectCode]

@@ -10,7 +10,7 @@ from cellctl.packml.command import COMMANDS, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.packml.tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND
+from cellctl.packml.transition_tables import MODE_CHANGE_IN, NOT_IN_MODE, ON_COMMAND
 
 MODE_REQUEST = 0x100
 """Added to the number of a mode, so that it is no command."""

@@ -7,7 +7,7 @@ from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import RunResult
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.job import Job
 from cellctl.runtime.job_record import JobRecord

@@ -22,9 +22,9 @@ from cellctl.errors.config import UnknownDriver
 from cellctl.errors.records import NotReplayable
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import Calibration, RunRecord
-from cellctl.records.recorder import RunRecorder
 from cellctl.records.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.progress import ProgressBoard

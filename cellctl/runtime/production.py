@@ -8,7 +8,7 @@ from cellctl.errors import CellError
 from cellctl.errors.records import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import PRODUCTION, RunResult
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.job import Job

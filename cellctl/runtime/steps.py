@@ -10,7 +10,7 @@ from enum import Enum
 from typing import Any, Generic, Protocol, TypeVar
 
 from cellctl import log
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.progress import ProgressBoard
 
 _log = log.get(__name__)

@@ -16,7 +16,7 @@ from cellctl.vision.camera.image_checks import check_pair
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import epipolar_distances_px, triangulate
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.kinds import kind_of
+from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.holes.correspondence import (
     Assignment,
     Expectation,
@@ -28,7 +28,7 @@ from cellctl.vision.holes.drawing_fit import check_layout, only_one
 from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
 from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, search_whole_images, search_windows
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
-from cellctl.vision.paper import measure_pair_by_paper
+from cellctl.vision.paper_baseline import measure_pair_by_paper
 from cellctl.vision.rim.roi import RimRoi
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 

@@ -7,9 +7,9 @@ from importlib.metadata import version
 
 from cellctl import log
 from cellctl.api.modbus.heartbeat import LineHeartbeat
-from cellctl.api.modbus.image import input_block
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
+from cellctl.api.modbus.register_values import input_block
 from cellctl.api.modbus.registers import RegisterFile
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from cellctl.api.modbus.image import Value, millionths, thousandths
 from cellctl.api.modbus.register_map import MAP_VERSION, REFUSALS, STATUS_BITS, VALIDITY_REGISTERS
+from cellctl.api.modbus.register_values import Value, millionths, thousandths
 from cellctl.runtime.cell_status import CellStatus
 
 _BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}

@@ -47,11 +47,11 @@ from cellctl.processes.deck_to_frame.record.keys import (
     MEASURED_FROM,
 )
 from cellctl.processes.deck_to_frame.record.sources import measured_from, raw_images
+from cellctl.records.curve_file import MEDIA_TYPE, encode_curve
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, split_document
 from cellctl.records.gauges import GAUGE_HOLES
-from cellctl.records.recorder import RunRecorder
-from cellctl.records.recording import MEDIA_TYPE, encode_curve
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.picture import annotate

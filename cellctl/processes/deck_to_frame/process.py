@@ -20,8 +20,8 @@ from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
     from cellctl.calibration.store.kind import Kinds
-    from cellctl.processes.deck_to_frame.facts import RunFacts
     from cellctl.processes.deck_to_frame.run import OpenRun
+    from cellctl.processes.deck_to_frame.run_facts import RunFacts
     from cellctl.processes.deck_to_frame.state import Ready
     from cellctl.processes.deck_to_frame.stations import DeckCell
 
@@ -68,7 +68,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     async def prepare(self, recipe: Recipe) -> "Prepared[RunFacts]":
         """Read calibrations and drawings, and compare them with what is connected."""
-        from cellctl.processes.deck_to_frame.facts import read_facts
+        from cellctl.processes.deck_to_frame.run_facts import read_facts
 
         deck_recipe = cast(DeckRecipe, recipe)
         facts = await read_facts(
@@ -87,9 +87,9 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     async def begin(self, run: "OpenRun") -> "Ready":
         """The deck clear of the station, the heads over it; these count as unmoved from here on."""
-        from cellctl.processes.deck_to_frame.beginning import to_the_beginning
+        from cellctl.processes.deck_to_frame.move_to_start import move_to_start
 
-        return await to_the_beginning(run)
+        return await move_to_start(run)
 
     def steps(self, recipe: Recipe) -> "Steps[Ready, Any]":  # noqa: ARG002 - alike for all
         """Measure frame, measure deck, pre-assembly, correct pose, mate, verify."""

@@ -10,11 +10,11 @@ from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.settling import settle
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.facts import RunFacts
 from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, PartMeasurer
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.process import CellServices, RunContext

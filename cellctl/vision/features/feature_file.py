@@ -12,7 +12,7 @@ import numpy as np
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.geometry.pose import MM, Array
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.kinds import KINDS
+from cellctl.vision.features.known_kinds import KINDS
 
 _HOLE_KEYS = {"name", "kind", "diameter_mm", "position_mm", "countersink_mm"}
 _FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis"}

@@ -11,7 +11,7 @@ class Hole:
 
     name: str
     kind: str
-    """A key of ``cellctl.vision.features.kinds.KINDS``."""
+    """A key of ``cellctl.vision.features.known_kinds.KINDS``."""
     diameter_m: float
     """Diameter of the rim that carries the nominal centre."""
     position_m: Array

@@ -46,7 +46,7 @@ class RimEvidence(Protocol):
 class HoleKind:
     """One kind of hole. The attributes are those of a plain dark bore unless a kind says otherwise.
 
-    A kind holds no state: there is one instance of each, in ``cellctl.vision.features.kinds``.
+    A kind holds no state: ``cellctl.vision.features.known_kinds`` has one instance of each.
     """
 
     name: ClassVar[str]

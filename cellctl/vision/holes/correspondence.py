@@ -10,7 +10,7 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import epipolar_distances_px, midpoints
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.kinds import kind_of
+from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.holes.candidates import Candidate
 from cellctl.vision.registration.rigid_fit import kabsch, misfits_m, on_a_line
 

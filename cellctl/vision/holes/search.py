@@ -10,7 +10,7 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.lens import project
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.kinds import by_brightness, kind_of
+from cellctl.vision.features.known_kinds import by_brightness, kind_of
 from cellctl.vision.holes.candidates import Candidate, find_candidates
 from cellctl.vision.holes.correspondence import Expectation, StereoCandidate, pair_candidates
 

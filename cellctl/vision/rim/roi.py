@@ -12,7 +12,7 @@ from cellctl.vision.camera.plane_patch import PlanePatch, plane_basis, plane_pat
 from cellctl.vision.camera.stereo_head import CameraModel
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import HoleKind
-from cellctl.vision.features.kinds import kind_of
+from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.measurement import Side
 from cellctl.vision.rim.edges import edge_circle
 

@@ -22,11 +22,11 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.unit_command import Options, Source, UnitCommand
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
-from cellctl.processes.deck_to_frame.facts import RunFacts
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurement
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
 from cellctl.vision.features.feature_file import FeatureFile, read_features

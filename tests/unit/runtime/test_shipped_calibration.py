@@ -17,7 +17,7 @@ from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame

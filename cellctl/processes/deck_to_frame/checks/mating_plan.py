@@ -11,7 +11,7 @@ from cellctl.errors.config import UnknownDriver
 from cellctl.errors.force import MatingPlanInvalid
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.contact_plan import mating_settings
 from cellctl.processes.deck_to_frame.mating.plan import plan_mating
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe

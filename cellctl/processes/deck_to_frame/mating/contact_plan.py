@@ -9,7 +9,7 @@ from cellctl.config.sensor import sensor_rate_hz
 from cellctl.force.contact.approach import planned_stiffness
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating, Pins

@@ -2,16 +2,15 @@
 
 from cellctl import log
 from cellctl.calibration.checks import all_passed
-from cellctl.processes.deck_to_frame.beginning import to_the_beginning
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, CONTACT_STIFFNESS
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
-from cellctl.processes.deck_to_frame.facts import read_facts
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.commissioning import (
     ContactStiffness,
     measure_contact_stiffness,
 )
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
 from cellctl.processes.deck_to_frame.mating.curves import curves_kept
+from cellctl.processes.deck_to_frame.move_to_start import move_to_start
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_picture import stiffness_picture
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import (
     stiffness_checks,
@@ -19,11 +18,12 @@ from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import 
 )
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.run import OpenRun
+from cellctl.processes.deck_to_frame.run_facts import read_facts
 from cellctl.processes.deck_to_frame.state import Corrected, Ready
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.steps import CORRECT_POSE, TO_STAND_OFF
 from cellctl.processes.deck_to_frame.taught_poses import main_to_home
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.steps import HeldMeanwhile, StepRunner, Steps, StepSpec
@@ -53,7 +53,7 @@ async def measure_contact_stiffness_on_cell(
     steps: Steps[Ready, ContactStiffness] = TO_STAND_OFF.then(CORRECT_POSE).then(touch)
     while True:
         try:
-            measured = await runner.run(steps, await to_the_beginning(opened))
+            measured = await runner.run(steps, await move_to_start(opened))
             break
         except HeldMeanwhile:
             _log.info("held meanwhile: everything is measured again")

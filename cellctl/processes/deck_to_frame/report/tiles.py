@@ -4,8 +4,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM
+from cellctl.records.curve_file import Recording
 from cellctl.records.entries import Gauge, LoopPass, RunRecord
-from cellctl.records.recording import Recording
 from cellctl.records.report.sections import Tile
 from cellctl.records.report.text import decimals, number
 

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.api.modbus.image import WordOrder, decode, encode, input_block, millionths, thousandths
 from cellctl.api.modbus.register_map import (
     HOLDING,
     HOLDING_SIZE,
@@ -18,6 +17,14 @@ from cellctl.api.modbus.register_map import (
     Item,
     Kind,
     item,
+)
+from cellctl.api.modbus.register_values import (
+    WordOrder,
+    decode,
+    encode,
+    input_block,
+    millionths,
+    thousandths,
 )
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.packml import Mode, RejectCode, State

@@ -16,7 +16,7 @@ from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.progress import ProgressBoard

@@ -11,13 +11,13 @@ from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
-from cellctl.processes.deck_to_frame.facts import read_facts
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan, mating_settings
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.recipe import Pins
+from cellctl.processes.deck_to_frame.run_facts import read_facts
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from tests.unit.processes.deck_to_frame.rig import RunRig
 from tests.unit.processes.deck_to_frame.test_steps import at_the_stand_off

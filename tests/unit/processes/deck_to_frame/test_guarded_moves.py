@@ -19,11 +19,11 @@ from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
-from cellctl.processes.deck_to_frame.facts import RunFacts
 from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
+from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory, deck_recipes
 from cellctl.runtime.interruption import Interruption

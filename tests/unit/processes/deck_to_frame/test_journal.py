@@ -10,8 +10,8 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.journal import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.record.entries import rms_um
+from cellctl.records.curve_file import read_recording
 from cellctl.records.entries import PoseOrigin, Verdict
-from cellctl.records.recording import read_recording
 from cellctl.vision.measurement import PairMeasurement
 from tests.unit.cell.bench import SIGMA, measurement
 from tests.unit.processes.deck_to_frame.rig import RunRig, curve

@@ -17,7 +17,7 @@ from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.camera.triangulation import epipolar_distances_px, joint_covariance, triangulate
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.kinds import by_brightness
+from cellctl.vision.features.known_kinds import by_brightness
 from cellctl.vision.holes.candidates import Candidate
 from cellctl.vision.holes.correspondence import (
     Expectation,

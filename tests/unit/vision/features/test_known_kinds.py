@@ -9,7 +9,7 @@ import pytest
 import cellctl.vision
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import HoleKind
-from cellctl.vision.features.kinds import KINDS, by_brightness, kind_of
+from cellctl.vision.features.known_kinds import KINDS, by_brightness, kind_of
 
 
 class Evidence:

@@ -17,7 +17,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
     CONTACT_STIFFNESS,
     STOP_LATENCY,
 )
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from tests.unit.calibration.store.shipped import spoil
 
 HOUR = timedelta(hours=1)

@@ -12,7 +12,7 @@ from cellctl.packml.document import state_machine_document
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES, State
-from cellctl.packml.tables import MODE_CHANGE_IN, ON_COMMAND, WHEN_DONE, requested
+from cellctl.packml.transition_tables import MODE_CHANGE_IN, ON_COMMAND, WHEN_DONE, requested
 from cellctl.packml.validation import validate_command, validate_mode
 
 # Written out by hand from the 2022 edition's defaults: per state, command number -> state number.

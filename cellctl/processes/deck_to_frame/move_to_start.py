@@ -6,7 +6,7 @@ from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_poses, main_to_home
 
 
-async def to_the_beginning(opened: OpenRun) -> Ready:
+async def move_to_start(opened: OpenRun) -> Ready:
     """Go to the beginning; nothing is measured yet. Raises the faults of guard and robots."""
     facts, cell = opened.facts, opened.facts.cell
     # Before the first move: from here on the guard knows the weight, so that its limits hold

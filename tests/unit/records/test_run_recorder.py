@@ -19,7 +19,7 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.figures import Limit, figure
-from cellctl.records.recorder import RunRecorder
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from tests.unit.records.conftest import start
 

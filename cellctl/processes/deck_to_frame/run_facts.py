@@ -10,7 +10,7 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.readiness import require_full_speed
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
-from cellctl.processes.deck_to_frame.commissioned import Commissioned
+from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MEASURING
