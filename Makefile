@@ -43,19 +43,19 @@ campaign: venv
 	$(BIN)/python -m benchmarks.campaign -n $(N)
 
 campaign-mating: venv
-	$(BIN)/python -m benchmarks.campaign_mating
-	$(BIN)/python -m benchmarks.campaign_mating_pins
+	$(BIN)/python -m benchmarks.mating.campaign
+	$(BIN)/python -m benchmarks.mating.campaign_pins
 
 bench: bench-metrology bench-looks bench-guard
 
 bench-metrology: venv
-	$(BIN)/python -m benchmarks.metrology
+	$(BIN)/python -m benchmarks.metrology.accuracy
 
 bench-looks: venv
-	$(BIN)/python -m benchmarks.metrology_looks
+	$(BIN)/python -m benchmarks.metrology.looks
 
 bench-guard: venv
-	$(BIN)/python -m benchmarks.guard
+	$(BIN)/python -m benchmarks.guard.latency
 
 format: venv
 	$(BIN)/ruff check --fix .

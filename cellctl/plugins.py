@@ -1,6 +1,7 @@
 """Drivers and processes by name: entry points, loaded only when a cell file names them."""
 
-from importlib.metadata import entry_points
+from functools import cache
+from importlib.metadata import EntryPoint, entry_points
 
 from cellctl.errors.config import UnknownDriver
 
@@ -17,12 +18,14 @@ PROCESS = "cellctl.process"
 
 def names(group: str) -> list[str]:
     """Names of the installed drivers of one kind."""
-    return sorted(point.name for point in entry_points(group=group))
+    return sorted(point.name for point in installed(group))
 
 
 def load(group: str, name: str) -> type:
     """The driver class ``name``; raises ``UnknownDriver`` when absent or not importable."""
-    for point in entry_points(group=group, name=name):
+    for point in installed(group):
+        if point.name != name:
+            continue
         try:
             loaded = point.load()
         # A driver whose vendor's library is missing is a fault of this cell file, not a crash of
@@ -32,5 +35,15 @@ def load(group: str, name: str) -> type:
         if not isinstance(loaded, type):
             raise UnknownDriver(f"{group} '{name}' is not a class")
         return loaded
-    installed = ", ".join(names(group)) or "none"
-    raise UnknownDriver(f"no {group} named '{name}'; installed: {installed}")
+    known = ", ".join(names(group)) or "none"
+    raise UnknownDriver(f"no {group} named '{name}'; installed: {known}")
+
+
+@cache
+def installed(group: str) -> tuple[EntryPoint, ...]:
+    """Entry points of one kind; what is installed does not change while a program runs.
+
+    Remembered, because Python reads the metadata of every installed package for the answer, and a
+    cell file asks dozens of times.
+    """
+    return tuple(entry_points(group=group))

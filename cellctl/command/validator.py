@@ -6,7 +6,7 @@ The first check that fails gives the reject code. Stop and Abort meet only check
 2. Parameters: serial number, order and options are well formed.
 3. Turn: no Stop, and no command of another source, came between giving and executing the command.
 4. Authority: the line PLC alone commands motion in Production while it is alive.
-5. Start: recipe or procedure, calibrations, records and devices (``runtime.job_factory``).
+5. Start: recipe or procedure, calibrations, records and devices (``runtime.jobs.factory``).
 6. Tables: the state and the mode allow the command (``packml.validation``).
 7. Devices are connected (the gate of the state machine).
 
@@ -28,7 +28,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.packml.unit_command import KNOWN_OPTIONS, Source, UnitCommand
 from cellctl.packml.validation import validate_command, validate_mode
-from cellctl.runtime.job_factory import JobFactory
+from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.unit import MAY_MOVE
 
 _CHARSET = re.compile(r"[A-Z0-9._-]*")

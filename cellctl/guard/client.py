@@ -41,7 +41,7 @@ class GuardClient:
         stop_config: dict[str, Any] | None,
         settings: GuardSettings,
         *,
-        module: str = "cellctl.guard.process.main",
+        module: str = "cellctl.guard.watch.main",
     ) -> None:
         self._sensor = {"name": sensor_plugin, "config": sensor_config}
         stop = {"name": stop_plugin, "config": stop_config or {}}

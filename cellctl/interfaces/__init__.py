@@ -1,7 +1,7 @@
 """What a driver offers to the core: one interface a file. Values are SI, frozen and time-stamped.
 
 Names are looked up when they are used: the guard imports two of these modules and must not load
-the arrays that the others need (cellctl/guard/process).
+the arrays that the others need (cellctl/guard/watch).
 """
 
 from importlib import import_module

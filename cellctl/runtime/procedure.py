@@ -6,7 +6,7 @@ from datetime import timedelta
 from typing import Any
 
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.runtime.job_record import JobRecord
+from cellctl.runtime.jobs.record import JobRecord
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
 

@@ -11,8 +11,8 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.cell_status import NO_VALUE, CellStatus, ShownRefusal
-from cellctl.runtime.job import Job
-from cellctl.runtime.job_factory import JobFactory
+from cellctl.runtime.jobs.factory import JobFactory
+from cellctl.runtime.jobs.job import Job
 from cellctl.runtime.progress import ProgressBoard
 
 

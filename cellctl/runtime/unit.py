@@ -22,8 +22,8 @@ from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
 from cellctl.runtime.interrupted import interrupted_faults
 from cellctl.runtime.invalidation import invalidate_after
-from cellctl.runtime.job_factory import JobFactory
-from cellctl.runtime.job_runner import JobRunner
+from cellctl.runtime.jobs.factory import JobFactory
+from cellctl.runtime.jobs.runner import JobRunner
 from cellctl.runtime.process import CellServices, calibration_kinds, open_processes
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.status_view import StatusView

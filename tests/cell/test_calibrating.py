@@ -5,7 +5,7 @@ import pytest
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
-from cellctl.runtime.job_factory import PLANNED
+from cellctl.runtime.jobs.factory import PLANNED
 from fakes.demo.deck_calibration import PROCEDURES
 from tests.cell.own_cell import OwnCell
 

@@ -15,7 +15,7 @@ from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell
-from cellctl.runtime.job_factory import PLANNED
+from cellctl.runtime.jobs.factory import PLANNED
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 
 

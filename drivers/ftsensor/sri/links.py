@@ -23,8 +23,8 @@ class Link:
 def link_for(config: SriConfig) -> Link:
     """The transport of a configuration. Libraries of the others are not imported."""
     if config.transport == "can":
-        from drivers.ftsensor.sri.can_bus import CanConnection
         from drivers.ftsensor.sri.can_frames import TripleDecoder
+        from drivers.ftsensor.sri.transports.can_bus import CanConnection
 
         return Link(
             CanConnection(config),
@@ -42,9 +42,9 @@ def link_for(config: SriConfig) -> Link:
 
 def _stream_connection(config: SriConfig) -> Connection:
     if config.transport == "serial":
-        from drivers.ftsensor.sri.serial_line import SerialConnection
+        from drivers.ftsensor.sri.transports.serial_line import SerialConnection
 
         return SerialConnection(config.device, config.baud)
-    from drivers.ftsensor.sri.tcp import TcpConnection
+    from drivers.ftsensor.sri.transports.tcp import TcpConnection
 
     return TcpConnection(config.host, config.port)

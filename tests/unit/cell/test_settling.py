@@ -5,7 +5,7 @@ from typing import cast
 import numpy as np
 import pytest
 
-from benchmarks.campaign_mating_loop import run_simulated
+from benchmarks.mating.simulated_loop import run_simulated
 from cellctl.cell.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
 from cellctl.errors.force import GuardDied, NotSettled, SensorFrozen
 from cellctl.guard.client import GuardClient

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.guard import Row, evaluate, verdicts
-from benchmarks.guard_stalls import touched
+from benchmarks.guard.latency import Row, evaluate, verdicts
+from benchmarks.guard.stalls import touched
 
 
 def test_touched_by_a_stall() -> None:

@@ -6,9 +6,9 @@ from typing import Any
 from cellctl.processes.deck_to_frame.process import DeckToFrame
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
-from cellctl.runtime.job_factory import procedures_by_number
-from cellctl.runtime.job_record import JobRecord
-from cellctl.runtime.maintenance import MaintenanceJob
+from cellctl.runtime.jobs.factory import procedures_by_number
+from cellctl.runtime.jobs.maintenance import MaintenanceJob
+from cellctl.runtime.jobs.record import JobRecord
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 from cellctl.runtime.progress import Progress, ProgressBoard

@@ -4,7 +4,7 @@ import pytest
 
 from cellctl.errors.internal import Unexpected
 from cellctl.processes.deck_to_frame.process import DeckToFrame
-from cellctl.runtime.job_factory import procedures_by_number
+from cellctl.runtime.jobs.factory import procedures_by_number
 from tests.unit.procedures.rig import ProcedureRig
 
 

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.campaign_mating_cell import MatingCell
-from benchmarks.campaign_mating_loop import run_simulated
+from benchmarks.mating.cell import MatingCell
+from benchmarks.mating.simulated_loop import run_simulated
 from cellctl.errors.force import CommissioningFailed, NotSettled
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.interfaces import RobotState

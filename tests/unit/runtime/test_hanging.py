@@ -15,7 +15,9 @@ from cellctl.packml.command import Command
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
-from cellctl.runtime import job_record, job_runner, unit
+from cellctl.runtime import unit
+from cellctl.runtime.jobs import record as job_record
+from cellctl.runtime.jobs import runner as job_runner
 from tests.unit.daemon_rig import DaemonRig
 
 SHORT_S = 0.05

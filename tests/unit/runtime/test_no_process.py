@@ -1,10 +1,9 @@
 """The core alone: it imports, checks a cell file, and its unit idles with no process installed."""
 
-import importlib.metadata
 import subprocess
 import sys
+from importlib.metadata import EntryPoint
 from pathlib import Path
-from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -41,12 +40,12 @@ print(count)
 @pytest.fixture
 def nothing_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     """As if the entry points of all processes were gone; drivers stay."""
-    everything = importlib.metadata.entry_points
+    everything = plugins.installed
 
-    def without_processes(**wanted: Any) -> object:
-        return () if wanted.get("group") == plugins.PROCESS else everything(**wanted)
+    def without_processes(group: str) -> tuple[EntryPoint, ...]:
+        return () if group == plugins.PROCESS else everything(group)
 
-    monkeypatch.setattr(plugins, "entry_points", without_processes)
+    monkeypatch.setattr(plugins, "installed", without_processes)
 
 
 def bare_cell_file(folder: Path) -> Path:

@@ -5,9 +5,9 @@ import statistics
 import numpy as np
 import pytest
 
-from benchmarks.metrology import CLEAN_GREY, MACHINED_GREY, Run, measure
-from benchmarks.metrology_figures import band
-from benchmarks.metrology_scenes import parts
+from benchmarks.metrology.accuracy import CLEAN_GREY, MACHINED_GREY, Run, measure
+from benchmarks.metrology.figures import band
+from benchmarks.metrology.scenes import parts
 from fakes.render import api
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.campaign_mating_cell import MatingCell
-from benchmarks.campaign_mating_loop import run_simulated
-from benchmarks.campaign_mating_trial import nominal_settings, plan_for
+from benchmarks.mating.cell import MatingCell
+from benchmarks.mating.simulated_loop import run_simulated
+from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.cell.devices import Cell
 from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.guarded_robot import GuardedRobot

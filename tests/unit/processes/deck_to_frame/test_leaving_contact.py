@@ -5,9 +5,9 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from benchmarks.campaign_mating_cell import MatingCell
-from benchmarks.campaign_mating_loop import run_simulated
-from benchmarks.campaign_mating_trial import nominal_settings, plan_for
+from benchmarks.mating.cell import MatingCell
+from benchmarks.mating.simulated_loop import run_simulated
+from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off

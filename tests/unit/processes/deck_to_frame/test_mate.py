@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.campaign_mating_cell import MatingCell
-from benchmarks.campaign_mating_loop import run_simulated
-from benchmarks.campaign_mating_trial import nominal_settings, plan_for
+from benchmarks.mating.cell import MatingCell
+from benchmarks.mating.simulated_loop import run_simulated
+from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.errors.force import FalseSeat, MatingPlanInvalid, NotSettled, TareImplausible
 from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.mating.commissioning import measure_contact_stiffness

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.campaign_mating_failures import FAILURES, run_failure
+from benchmarks.mating.failures import FAILURES, run_failure
 
 TRIED_HERE = (
     "sensor silent, creep",

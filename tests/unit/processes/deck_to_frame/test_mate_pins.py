@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchmarks.campaign_mating_pins import PINS
-from benchmarks.campaign_mating_trial import Hook, Trial, run_trial
+from benchmarks.mating.campaign_pins import PINS
+from benchmarks.mating.trial import Hook, Trial, run_trial
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.mating.settings import PinSettings

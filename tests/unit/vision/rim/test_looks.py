@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.drawn_looks import LOOKS
-from benchmarks.drawn_scenes import drawn_scene
-from benchmarks.metrology_figures import HoleErrors
-from benchmarks.metrology_looks import measure
+from benchmarks.metrology.drawn_looks import LOOKS
+from benchmarks.metrology.drawn_scenes import drawn_scene
+from benchmarks.metrology.figures import HoleErrors
+from benchmarks.metrology.looks import measure
 from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair

@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from benchmarks.metrology_scenes import HEAD_HOLES, stereo_head
+from benchmarks.metrology.scenes import HEAD_HOLES, stereo_head
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import PairMeasurement

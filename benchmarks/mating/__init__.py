@@ -1,0 +1,1 @@
+"""Matings on simulated time: over stiffness, latency, failures and pins."""

@@ -1,0 +1,1 @@
+"""Holes and poses measured in rendered and drawn images, against exact truth."""

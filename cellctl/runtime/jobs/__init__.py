@@ -1,0 +1,1 @@
+"""One job of the unit: made from a Start, recorded from before the first move to its end."""

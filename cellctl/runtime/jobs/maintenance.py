@@ -1,0 +1,140 @@
+"""A run in Maintenance mode: one procedure, chosen by its number."""
+
+import asyncio
+
+from cellctl import log
+from cellctl.errors import CellError
+from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.entries import RunResult
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.records.store import RunStore
+from cellctl.runtime.jobs.job import Job
+from cellctl.runtime.jobs.record import JobRecord
+from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
+from cellctl.runtime.process import CellServices
+from cellctl.runtime.steps import HeldMeanwhile, SafePoint
+
+_log = log.get(__name__)
+
+
+class MaintenanceJob(Job):
+    """Runs a procedure and stores what passed."""
+
+    def __init__(
+        self,
+        services: CellServices,
+        procedure: Procedure,
+        command: UnitCommand,
+        safe_point: SafePoint,
+    ) -> None:
+        self.number = command.recipe_id
+        self.serial = command.serial
+        self._store = services.store
+        self._board = services.board
+        self._calibrations = services.calibrations
+        self._procedure = procedure
+        self._command = command
+        self._record = JobRecord(services.cell, services.store, command)
+        self._context = ProcedureContext(services.board, safe_point, self._record)
+
+    @property
+    def run_number(self) -> int:
+        """Number of the run in its record; 0 while there is none."""
+        return self._record.number
+
+    async def start(self) -> None:
+        """Open the run record, before anything moves; each procedure begins where it needs to.
+
+        A procedure with contact opens its own, with the recipe whose parts it touches.
+        """
+        procedure = self._procedure
+        if not procedure.contact:
+            await self._record.open_procedure(procedure.number, procedure.label)
+        self._board.update(
+            step=procedure.step, step_label=procedure.label, contact=procedure.contact
+        )
+
+    async def execute(self) -> None:
+        """Run the procedure, from its beginning again when a Hold has spoilt its measurements.
+
+        Raises ``ResultOutOfLimits`` when the verdict is bad.
+        """
+        # From the beginning and not from where it was: boards, heads or payload may have been moved
+        # during the Hold.
+        while True:
+            try:
+                outcome = await self._procedure.run(self._context)
+                break
+            except HeldMeanwhile:
+                _log.info("held meanwhile: the procedure begins again")
+        if outcome is None:
+            _log.info("measured, waiting for its counterpart")
+            return
+        await self._keep(outcome)
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
+        """Close the record of the run, and say in the audit log how the procedure ended."""
+        # Before anything that can fail: the line must not see a contact step in a job that has
+        # ended.
+        self._board.leave_step()
+        await self._record.close(outcome, fault)
+        ended = {
+            "procedure": self._procedure.label,
+            "outcome": outcome.value,
+            "fault": str(fault or ""),
+        }
+        await self._store.do(RunStore.audit, self._who, "procedure ended", ended)
+        return outcome
+
+    @property
+    def _who(self) -> str:
+        return self._command.who
+
+    async def _keep(self, outcome: ProcedureOutcome) -> None:
+        """Store a result that passed; put a bad one aside for whoever looks for the reason.
+
+        Raises ``CalibrationNotStored``, ``ResultOutOfLimits`` or ``RecordNotWritten``.
+        """
+        for warning in outcome.warnings:
+            _log.warning("calibration", item=outcome.kind.name, warning=warning)
+        if not outcome.passed:
+            reasons = "; ".join(_failed_checks(outcome)) or "see the record"
+            # Kept, so that somebody can see from its picture and residuals why it failed. A disk
+            # that refuses it must not hide the verdict.
+            aside = await self._put_aside(outcome)
+            raise ResultOutOfLimits(f"{outcome.kind.name}: {reasons}; {aside}")
+        # The folder is what production reads, so it comes before the run store, which only keeps
+        # the history.
+        stored = await asyncio.to_thread(
+            self._calibrations.store,
+            outcome.kind,
+            outcome.record,
+            outcome.serial_number,
+            self._procedure.valid_for,
+            outcome.picture_png,
+        )
+        await self._store.do(RunStore.add_calibration, stored)
+        detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
+        if self.run_number:
+            await RunRecorder(self._store, self.run_number).document("calibration", detail)
+        await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
+        _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
+
+    async def _put_aside(self, outcome: ProcedureOutcome) -> str:
+        try:
+            folder = await asyncio.to_thread(
+                self._calibrations.put_aside, outcome.kind, outcome.record, outcome.picture_png
+            )
+        except CalibrationNotStored as error:
+            return f"and not kept: {error.detail}"
+        return f"kept in {folder}"
+
+
+def _failed_checks(outcome: ProcedureOutcome) -> list[str]:
+    checks = outcome.record.get("checks", ())
+    return [
+        f"{check['name']} {check['value']:.4g}, limit {check['limit']:.4g} {check['unit']}".rstrip()
+        for check in checks
+        if not check["passed"]
+    ]

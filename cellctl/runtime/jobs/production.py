@@ -1,0 +1,123 @@
+"""A run in Production: one part, made by the steps of a process."""
+
+from typing import Any
+
+from cellctl import log
+from cellctl.config.recipe import Recipe
+from cellctl.errors import CellError
+from cellctl.errors.records import FigureBeyondLimit
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.records.store import RunStore
+from cellctl.runtime.interruption import Interruption
+from cellctl.runtime.jobs.job import Job
+from cellctl.runtime.jobs.record import JobRecord
+from cellctl.runtime.process import Process, RunContext
+from cellctl.runtime.steps import HeldMeanwhile, SafePoint, StepRunner
+
+_log = log.get(__name__)
+
+DRY_RUN = "dry run"
+"""Mode of a run that ends before the first contact."""
+
+
+class ProductionJob(Job):
+    """Opens the record before anything moves and closes it whatever happens."""
+
+    makes_part = True
+
+    def __init__(
+        self,
+        process: Process[Any, Any, Any],
+        recipe: Recipe,
+        command: UnitCommand,
+        safe_point: SafePoint,
+    ) -> None:
+        self.number = recipe.id
+        self.serial = command.serial
+        self.line_lost_in_contact = recipe.line_lost_in_contact
+        self._interruption = Interruption()
+        self._process = process
+        self._recipe = recipe
+        self._command = command
+        self._board = process.services.board
+        self._safe_point = safe_point
+        self._record = JobRecord(process.services.cell, process.services.store, command)
+        self._begun: tuple[Any, Any] | None = None
+        """The run of the process, and what its first step takes."""
+
+    @property
+    def run_number(self) -> int:
+        """Number of the run in its record; 0 while there is none."""
+        return self._record.number
+
+    @property
+    def _recorder(self) -> RunRecorder:
+        return RunRecorder(self._process.services.store, self.run_number)
+
+    @property
+    def outcome(self) -> RunResult:
+        """A dry run ends without a part: never good."""
+        return RunResult.BAD if self._command.dry_run else RunResult.GOOD
+
+    def interrupt(self, fault: CellError) -> bool:
+        """End a step in contact by this fault; False when the process offers no way."""
+        return self._interruption.interrupt(fault)
+
+    async def start(self) -> None:
+        """Read and check everything, open the record, then bring the cell to the beginning.
+
+        Raises what the process raises, and the faults of the records.
+        """
+        # Before the record is opened: a run that lacks a calibration or a drawing has not begun and
+        # leaves no record.
+        prepared = await self._process.prepare(self._recipe)
+        mode = DRY_RUN if self._command.dry_run else PRODUCTION
+        # Before ``begin``, the first call that moves a robot: no motion without a record.
+        await self._record.open(self._recipe, mode, prepared.stored)
+        context = RunContext(self._recorder, self._safe_point, self._interruption)
+        run = self._process.open(prepared, context)
+        self._begun = run, await self._process.begin(run)
+
+    async def execute(self) -> None:
+        """All steps in their order; from the beginning again when the cell was held on the way.
+
+        Raises ``RuntimeError`` before ``start`` has ended.
+        """
+        if self._begun is None:
+            raise RuntimeError("a run is executed before it was started")
+        run, state = self._begun
+        steps = self._process.steps(self._recipe)
+        if self._command.dry_run:
+            steps = steps.before_contact()
+        runner = StepRunner(
+            self._board, self._safe_point, self._recorder, self._command.single_step
+        )
+        while True:
+            try:
+                await runner.run(steps, state)
+            except HeldMeanwhile:
+                _log.info("held meanwhile: everything is measured again")
+                state = await self._process.begin(run)
+            else:
+                await self._require_figures_within()
+                return
+
+    async def _require_figures_within(self) -> None:
+        """Raise ``FigureBeyondLimit``: a run is good with all of its figures or not at all."""
+        # Read back from the store, so that the verdict is about what the record says and not about
+        # what a step remembers.
+        record = await self._process.services.store.do(RunStore.run, self.run_number)
+        if beyond := record.beyond_limits:
+            raise FigureBeyondLimit(", ".join(f"{one.label} {one.value}" for one in beyond))
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
+        """Close the run record; nothing to close when it could not be opened."""
+        self._board.leave_step()
+        # These faults stop the run by their reaction, but they are a verdict on the part: the line
+        # has to sort it out.
+        if isinstance(fault, (FigureBeyondLimit, *self._process.spoiled_by)):
+            outcome = RunResult.BAD
+        await self._record.close(outcome, fault)
+        return outcome

@@ -1,0 +1,140 @@
+"""The record of one job: opened before anything moves, closed whatever happens."""
+
+import asyncio
+from collections.abc import Sequence
+from hashlib import sha256
+from typing import Any
+
+from cellctl import log
+from cellctl.calibration.store.envelope import StoredCalibration
+from cellctl.cell.devices import Cell
+from cellctl.config.recipe import Recipe
+from cellctl.errors import CellError
+from cellctl.errors.records import RecordSilent
+from cellctl.packml.unit_command import UnitCommand
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.entries import RunResult
+from cellctl.records.store import RunStore
+from cellctl.runtime.jobs.provenance import cell_artefact, provenance
+from cellctl.version import software
+
+_log = log.get(__name__)
+
+OPEN_TIMEOUT_S = 30.0
+"""For the disk to take the row and the files of a run; nothing has moved yet."""
+MAINTENANCE = "maintenance"
+"""Mode of the runs of procedures, and their process: a procedure may belong to several."""
+
+
+class JobRecord:
+    """Opens and closes the record of one job; a job has at most one."""
+
+    def __init__(self, cell: Cell, store: AsyncRunStore, command: UnitCommand) -> None:
+        self.store = store
+        self.number = 0
+        """Of the run; 0 until it is open."""
+        self._cell = cell
+        self._command = command
+        self._opening: asyncio.Task[None] | None = None
+
+    async def open(
+        self,
+        recipe: Recipe,
+        mode: str,
+        stored: Sequence[StoredCalibration],
+    ) -> int:
+        """The number of the run, opened at the first call; ``stored`` are what counts in it.
+
+        Cell file, recipe and the files of the recipe go into it whole. The row is written by a
+        task of its own: a Stop must not leave one that nobody closes.
+        """
+        if self._opening is None:
+            self._opening = asyncio.create_task(self._write(recipe, mode, stored))
+        return await self._opened(self._opening)
+
+    async def open_procedure(self, number: int, label: str) -> int:
+        """The number of the run of a procedure without parts, opened at the first call.
+
+        It has the procedure in place of a recipe; the cell file goes into it whole.
+        """
+        if self._opening is None:
+            self._opening = asyncio.create_task(self._write_procedure(number, label))
+        return await self._opened(self._opening)
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
+        """Close the record; does nothing when it was never opened or could not be opened."""
+        if self._opening is None:
+            return
+        try:
+            await self._opening
+        except CellError:
+            if not self.number:
+                return  # there is no record; this is the fault that has ended the run
+        # Images are written in the background and belong to the seal, which covers every file of
+        # the run at its closing.
+        await self.store.images_kept()
+        await self.store.do(
+            RunStore.close_run,
+            self.number,
+            outcome,
+            fault_number=fault.number if fault else None,
+            fault=str(fault) if fault else None,
+        )
+        _log.info("run closed", run=self.number, result=outcome.value)
+
+    async def _opened(self, opening: "asyncio.Task[None]") -> int:
+        # Waited for and not awaited: a time-out or a Stop must not cancel the task that is writing
+        # the row.
+        await asyncio.wait({opening}, timeout=OPEN_TIMEOUT_S)
+        if not opening.done():
+            raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
+        opening.result()
+        return self.number
+
+    async def _write(
+        self,
+        recipe: Recipe,
+        mode: str,
+        stored: Sequence[StoredCalibration],
+    ) -> None:
+        # The rows of the calibrations first: the run names them by their ids.
+        for calibration in stored:
+            await self.store.do(RunStore.add_calibration, calibration)
+        cell = self._cell
+        made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
+        await self._start(
+            process=recipe.process,
+            recipe_id=recipe.id,
+            recipe_name=recipe.name,
+            recipe_hash=made_with.recipe_hash,
+            mode=mode,
+            config_hash=made_with.cell_hash,
+            calibration_ids={one.kind: one.id for one in stored},
+        )
+        for artefact in made_with.artefacts():
+            await self.store.do(RunStore.add_artefact, self.number, *artefact)
+
+    async def _write_procedure(self, number: int, label: str) -> None:
+        cell_file = cell_artefact(self._cell.config)
+        cell_hash = sha256(cell_file[1]).hexdigest()
+        await self._start(
+            process=MAINTENANCE,
+            recipe_id=number,
+            recipe_name=label,
+            recipe_hash=cell_hash,
+            mode=MAINTENANCE,
+            config_hash=cell_hash,
+            calibration_ids={},
+        )
+        await self.store.do(RunStore.add_artefact, self.number, *cell_file)
+
+    async def _start(self, **made_with: Any) -> None:
+        """Write the row with what it was made with, and who commanded it."""
+        self.number = await self.store.do(
+            RunStore.start_run,
+            serial=self._command.serial,
+            operator=self._command.operator,
+            software=await asyncio.to_thread(software),
+            simulated=self._cell.config.simulated,
+            **made_with,
+        )

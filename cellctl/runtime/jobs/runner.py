@@ -1,0 +1,134 @@
+"""Runs the job of the unit from its start until its record has been closed, once."""
+
+import asyncio
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from cellctl import log
+from cellctl.config.recipe import LineLostAction
+from cellctl.errors import CellError
+from cellctl.errors.records import RecordSilent
+from cellctl.packml.result import Result
+from cellctl.records.entries import RunResult
+from cellctl.runtime.jobs.job import Job
+
+_log = log.get(__name__)
+
+LEAVE_TIMEOUT_S = 8.0
+"""For a cancelled job to stop its robots and write down what it has; the machine waits longer."""
+CLOSE_TIMEOUT_S = 15.0
+"""For the disk to take the end of a run."""
+
+_TO_THE_LINE = {
+    RunResult.GOOD: Result.GOOD,
+    RunResult.BAD: Result.BAD,
+    RunResult.STOPPED: Result.STOPPED,
+    RunResult.ABORTED: Result.ABORTED,
+}
+
+
+class JobRunner:
+    """Holds the present job and remembers the last one. Belongs to one event loop."""
+
+    def __init__(self) -> None:
+        self._job: Job | None = None
+        self._shown: Job | None = None
+        self._closing: asyncio.Task[None] | None = None
+        self._resting = asyncio.Event()
+        self._resting.set()
+        self._finished = self._given_up = False
+        self.result = Result.NONE
+        """Of the run that is shown; NONE while it is open."""
+
+    @property
+    def shown(self) -> Job | None:
+        """The present job, else the last one."""
+        return self._shown
+
+    @property
+    def run_number(self) -> int | None:
+        """The open run, if there is one with a record."""
+        return (self._job.run_number or None) if self._job else None
+
+    @property
+    def line_lost_in_contact(self) -> LineLostAction:
+        """What the present job wants to happen when the line is lost while it is in contact."""
+        return self._job.line_lost_in_contact if self._job else LineLostAction.KEEP
+
+    def interrupt(self, fault: CellError) -> bool:
+        """Have a step in contact end by this fault in its own way; False when none can."""
+        return self._job is not None and self._job.interrupt(fault)
+
+    @property
+    def makes_part(self) -> bool:
+        """True while the present job makes a part."""
+        return self._job is not None and self._job.makes_part
+
+    @property
+    def outcome(self) -> RunResult | None:
+        """How a job that did all it had to do ends; None for one that was cut short."""
+        return self._job.outcome if self._job and self._finished else None
+
+    async def start(self, job: Job) -> None:
+        """Do what the job does in Starting; ``RecordSilent`` while the last record is open."""
+        if self._closing is not None:
+            raise RecordSilent("the record of the run before is still being closed")
+        self._job = self._shown = job
+        self._finished, self._given_up, self.result = False, False, Result.NONE
+        with self._at_work():
+            await job.start()
+
+    async def execute(self) -> None:
+        """Do what the job does in Execute."""
+        assert self._job is not None
+        with self._at_work():
+            await self._job.execute()
+            self._finished = True
+
+    async def left(self) -> None:
+        """Wait until a cancelled job has cleaned up: its record must not be closed before."""
+        try:
+            async with asyncio.timeout(LEAVE_TIMEOUT_S):
+                await self._resting.wait()
+        except TimeoutError:
+            _log.error("the job does not end", timeout_s=LEAVE_TIMEOUT_S)
+
+    async def close(self, outcome: RunResult, fault: CellError | None) -> None:
+        """Close the record, once, however often it is asked for: an Abort may overtake a Stop."""
+        if self._job is None:
+            return
+        # A task of its own: an Abort cancels the Stop that waits here, and the record has to be
+        # closed all the same.
+        if self._closing is None:
+            self._closing = asyncio.create_task(self._close(self._job, outcome, fault))
+        closing = self._closing  # it drops itself when it ends
+        await asyncio.wait({closing}, timeout=CLOSE_TIMEOUT_S)
+        if not closing.done():
+            # The line is told at once that this run is not good, and it cannot be told otherwise
+            # later.
+            self._given_up = True
+            self.result = Result.ABORTED
+            raise RecordSilent(f"not closed within {CLOSE_TIMEOUT_S:g} s")
+        closing.result()
+
+    async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:
+        try:
+            with log.bound(run=job.run_number):
+                outcome = await job.close(outcome, fault)
+            # What the line was told when the disk did not answer stays, whatever it says later.
+            self.result = Result.ABORTED if self._given_up else _TO_THE_LINE[outcome]
+        except CellError:
+            self.result = Result.ABORTED  # a part without a record is not a good one
+            raise
+        finally:
+            self._job = self._closing = None
+
+    @contextmanager
+    def _at_work(self) -> Iterator[None]:
+        # Set again in the ``finally``, so that ``left`` waits for the clean-up of a cancelled job
+        # too, in which its robots are stopped.
+        self._resting.clear()
+        try:
+            yield
+        finally:
+            self._resting.set()

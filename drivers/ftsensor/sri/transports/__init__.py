@@ -1,0 +1,1 @@
+"""The ways to reach the box: TCP, a serial line, CAN. Bytes and descriptors, without waiting."""
