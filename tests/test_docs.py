@@ -13,7 +13,7 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.api.modbus.document import register_map_document
-from cellctl.cli.commands import app as cellctl_app
+from cellctl.cli.commands import whole_app
 from cellctl.cli.faults import fault_catalogue
 from cellctl.packml.document import state_machine_document
 from fakes.__main__ import app as fakes_app
@@ -100,7 +100,7 @@ def test_command_exists(written: Written) -> None:
         assert words[1] in targets()
         assert all(_SETTING.fullmatch(word) for word in words[2:])
     elif words[0] == "cellctl":
-        app = demo_app if words[1:2] == ["demo"] else cellctl_app
+        app = demo_app if words[1:2] == ["demo"] else whole_app()
         options_exist(app, words[2:] if app is demo_app else words[1:])
     elif words[:3] == ["python", "-m", "fakes"]:
         inner = {"demo": demo_app, "plc": plc_app}.get(words[3] if len(words) > 3 else "")
@@ -173,12 +173,12 @@ def test_cheap_commands_run() -> None:
         ["check", str(ROOT / "config" / "cell.toml")],
         ["faults"],
     ):
-        done = runner.invoke(cellctl_app, arguments)
+        done = runner.invoke(whole_app(), arguments)
         assert done.exit_code == 0, (arguments, done.output)
 
 
 @pytest.mark.parametrize(
-    "app", [cellctl_app, fakes_app, demo_app, plc_app], ids=["cellctl", "fakes", "demo", "plc"]
+    "app", [whole_app(), fakes_app, demo_app, plc_app], ids=["cellctl", "fakes", "demo", "plc"]
 )
 def test_every_command_explains_itself(app: typer.Typer) -> None:
     def explain(command: Any, path: list[str]) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import typer
 from rich.console import Console
 
+from cellctl.cli.commands import app_with, whole_app
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.cli.root import settings
 from cellctl.errors import CellError
@@ -28,12 +29,10 @@ def main() -> None:
 
 
 def _app_for(words: Sequence[str]) -> typer.Typer:
-    """Everything, or what loads in a moment when that is enough."""
-    # Loading OpenCV, scipy and matplotlib takes seconds. An Abort does not wait for them, so the
-    # commands to the daemon have a command line of their own that loads none of it.
-    command = next((word for word in words if not word.startswith("-")), "")
-    if command in operator_commands.NAMES:
+    """The command line with the command that is asked for; with all of them for the help."""
+    # An Abort does not wait until OpenCV, scipy and matplotlib are loaded, so the commands to the
+    # daemon have a command line of their own.
+    name = next((word for word in words if not word.startswith("-")), "")
+    if name in operator_commands.NAMES:
         return operator_commands.app
-    from cellctl.cli.commands import app
-
-    return app
+    return app_with(name) or whole_app()

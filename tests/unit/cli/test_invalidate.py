@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.calibration.store.marker import require_not_invalidated
 from cellctl.calibration.store.store import CalibrationStore
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.store import RunStore
@@ -30,7 +30,7 @@ def cell(tmp_path: Path) -> Path:
 
 def invalidate(cell: Path, name: str) -> str:
     arguments = ["calibrate", "invalidate", name, *ARGUMENTS, "--cell", str(cell)]
-    result = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    result = CliRunner().invoke(whole_app(), arguments, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     return result.output
 

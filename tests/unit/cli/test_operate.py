@@ -25,7 +25,7 @@ from cellctl.api.local.messages import (
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
 from cellctl.api.local.socket_file import default_path
 from cellctl.cli import app as entry
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.cli.operator import daemon_client
 from cellctl.cli.operator.status_screen import screen
@@ -53,7 +53,7 @@ def daemon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Agreeabl
 
 
 def cellctl(*arguments: str) -> Result:
-    return CliRunner().invoke(app, list(arguments))
+    return CliRunner().invoke(whole_app(), list(arguments))
 
 
 def fault_of(result: Result) -> type[BaseException]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typer.testing import CliRunner
 
 from cellctl.calibration.store.envelope import read_calibration
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.records.store import RunStore
 from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.cell.bench import CELL_FILE
@@ -26,7 +26,7 @@ def test_who_sealed_what_is_printed_and_in_the_audit_log(tmp_path: Path) -> None
     RunStore(tmp_path / "store").close()
 
     arguments = ["calibrate", "seal", "--by", "OP-3", "--cell", str(tmp_path / "cell.toml")]
-    result = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    result = CliRunner().invoke(whole_app(), arguments, catch_exceptions=False)
 
     assert result.exit_code == 0, result.output
     assert "payload: made 20" in result.output

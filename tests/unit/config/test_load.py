@@ -6,7 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli import check
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 
@@ -131,7 +131,7 @@ def test_addresses_and_networks_may_be_allowed(tmp_path: Path, client: str) -> N
 
 def test_check_tells_of_a_recipe_that_no_mating_can_be_planned_for(tmp_path: Path) -> None:
     path = changed(tmp_path, force=("target_force_n = 35.0", "target_force_n = 44.0"))
-    result = CliRunner().invoke(app, ["check", str(path)])
+    result = CliRunner().invoke(whole_app(), ["check", str(path)])
     assert result.exit_code == 1
     assert "F528 recipes.0.mating" in result.output
     assert "no window for the final force" in result.output
@@ -156,19 +156,19 @@ def test_recipe_numbers_must_differ(tmp_path: Path) -> None:
 
 def test_check_exits_with_one_and_names_the_key(tmp_path: Path) -> None:
     path = changed(tmp_path, threshold=("threshold_mm = 0.05", "threshold_mm = 7"))
-    result = CliRunner().invoke(app, ["check", str(path)])
+    result = CliRunner().invoke(whole_app(), ["check", str(path)])
     assert result.exit_code == 1
     assert "recipes.0.pose_correction" in result.output
-    assert CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")]).exit_code == 0
+    assert CliRunner().invoke(whole_app(), ["check", str(CONFIG / "deck.toml")]).exit_code == 0
 
 
 def test_check_tells_of_calibrations_that_this_user_may_not_write(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = changed(tmp_path, folder=("demo-calibration", "calibration"))
-    assert "may not write" not in CliRunner().invoke(app, ["check", str(path)]).output
+    assert "may not write" not in CliRunner().invoke(whole_app(), ["check", str(path)]).output
     monkeypatch.setattr(check, "may_write", lambda _: False)
-    result = CliRunner().invoke(app, ["check", str(path)])
+    result = CliRunner().invoke(whole_app(), ["check", str(path)])
     assert result.exit_code == 0
     assert "may not write" in result.output
     assert not (tmp_path / "calibration").exists()
@@ -217,7 +217,7 @@ def test_devices_and_processes_belong_together(
 
 
 def test_check_says_which_recipes_the_cell_can_run() -> None:
-    result = CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")])
+    result = CliRunner().invoke(whole_app(), ["check", str(CONFIG / "deck.toml")])
     assert "(deck-to-frame): this cell can run it" in result.output
 
 
@@ -228,5 +228,5 @@ def test_a_sensor_with_bad_settings_is_reported_and_judged_no_further(tmp_path: 
 
 def test_check_says_whose_joint_moves_nobody_checks() -> None:
     words = "robots.main: joint moves are not checked"
-    assert words in CliRunner().invoke(app, ["check", str(CONFIG / "cell.toml")]).output
-    assert words not in CliRunner().invoke(app, ["check", str(CONFIG / "deck.toml")]).output
+    assert words in CliRunner().invoke(whole_app(), ["check", str(CONFIG / "cell.toml")]).output
+    assert words not in CliRunner().invoke(whole_app(), ["check", str(CONFIG / "deck.toml")]).output

@@ -9,7 +9,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl import plugins
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
@@ -73,7 +73,7 @@ def test_every_module_of_the_core_imports_without_a_process() -> None:
 def test_a_cell_without_recipes_is_good(tmp_path: Path) -> None:
     path = bare_cell_file(tmp_path)
     assert problems(path) == []
-    result = CliRunner().invoke(app, ["check", str(path)])
+    result = CliRunner().invoke(whole_app(), ["check", str(path)])
     assert result.exit_code == 0
     assert "  recipe " not in result.output
 

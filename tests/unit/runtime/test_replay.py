@@ -12,7 +12,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 from typer.testing import CliRunner
 
-from cellctl.cli.commands import app
+from cellctl.cli.commands import whole_app
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.state import State
@@ -78,7 +78,7 @@ async def replay(rig: DaemonRig, *options: str) -> tuple[int, str]:
     path = await rig.archive.do(lambda store: store.path)
     arguments = ["replay", "1", "--data-dir", str(path), *options]
     runner = CliRunner(env={"COLUMNS": "160", "NO_COLOR": "1"})
-    result = await asyncio.to_thread(runner.invoke, app, arguments)
+    result = await asyncio.to_thread(runner.invoke, whole_app(), arguments)
     return result.exit_code, result.stdout or str(result.exception)
 
 
