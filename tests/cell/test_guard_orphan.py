@@ -28,7 +28,9 @@ async def connected(port: int) -> Peer:
             return peer
 
 
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "how", [signal.SIGKILL, pytest.param(signal.SIGTERM, marks=pytest.mark.long)]
+)
 async def test_a_killed_daemon(how: signal.Signals) -> None:
     box = SriBox(lambda time_s: noisy([0.0] * 6))
     sensor_port = await box.start_tcp()

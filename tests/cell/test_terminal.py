@@ -85,6 +85,7 @@ def test_beside_a_line_that_is_in_control(visited: OwnCell) -> None:
         plc.done(60)
 
 
+@pytest.mark.long
 def test_a_killed_daemons_socket_is_replaced(visited: OwnCell) -> None:
     first = visited.daemon()
     first.ready()

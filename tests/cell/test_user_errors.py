@@ -90,7 +90,7 @@ def test_modbus_port_is_taken(own: OwnCell) -> None:
         refuses(own.daemon(), "F206", f":{own.modbus_port}")
 
 
-@pytest.mark.parametrize("shipped", [7002, 7003])
+@pytest.mark.parametrize("shipped", [7002, pytest.param(7003, marks=pytest.mark.long)])
 def test_port_of_a_robot_is_taken(visited: OwnCell, shipped: int) -> None:
     port = visited.ports[shipped]
     with taken(port):

@@ -109,6 +109,7 @@ def _started_held_and_stopped(plc: OutsidePlc) -> None:
     assert plc.value("run_result") == 4
 
 
+@pytest.mark.long
 def test_a_heartbeat_that_stands_still(visited: OwnCell) -> None:
     visited.change("heartbeat_timeout_s = 3.0", "heartbeat_timeout_s = 1.0")
     visited.daemon().ready()

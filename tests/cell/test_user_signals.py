@@ -118,6 +118,7 @@ def test_while_heads_move(visited: OwnCell) -> None:
     assert plc.end() != 0
 
 
+@pytest.mark.long
 def test_while_measuring(visited: OwnCell) -> None:
     daemon = visited.daemon()
     daemon.ready()

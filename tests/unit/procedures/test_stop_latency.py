@@ -35,7 +35,7 @@ def measured(latency_s: float) -> tuple[MatingCell, StopLatency]:
     return cell, result
 
 
-@pytest.mark.parametrize("latency_s", [0.05, 0.25])
+@pytest.mark.parametrize("latency_s", [pytest.param(0.05, marks=pytest.mark.long), 0.25])
 def test_the_latency_of_the_fake_is_found(latency_s: float) -> None:
     cell, found = measured(latency_s)
     braking_s = 2.0 * np.mean(found.speeds_m_s) / 2.0 / 0.5

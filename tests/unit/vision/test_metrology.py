@@ -64,6 +64,7 @@ def test_machined_holes_with_walls_and_countersinks(machined: Run) -> None:
         assert abs(errors.depth_bias_um()) < 25.0
 
 
+@pytest.mark.long
 def test_a_brushed_face_hardly_disturbs_pins_and_threads(machined_frame: Run) -> None:
     assert not machined_frame.failures
     for kind, limit_px in (("pin", 0.025), ("thread", 0.07)):

@@ -67,9 +67,8 @@ def test_a_good_deck_is_seated_below_the_limit() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("target_n", "limit_n"), [pytest.param(25.0, 40.0, marks=pytest.mark.long), (60.0, 80.0)]
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("target_n", "limit_n"), [(25.0, 40.0), (60.0, 80.0)])
 def test_a_recipe_with_another_force_seats_too(target_n: float, limit_n: float) -> None:
     cell = cell_of(seed=6, stiffness_n_m=1e6)
     settings = replace(

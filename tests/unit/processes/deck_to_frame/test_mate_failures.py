@@ -19,9 +19,7 @@ TRIED_HERE = (
 QUICK = (
     "sensor frozen, guarded travel",
     "sensor at half its rate",
-    "sensor saturated",
     "NaN-like bytes",
-    "stop request ignored once",
 )
 """Of these, what a standard run of the tests has the time for."""
 

@@ -108,7 +108,10 @@ MOVED = {"Assembly", "Measurements", "measured", "Figures", "mating", "Holes:", 
 """Headings that have another text now."""
 
 
-@pytest.mark.parametrize("number", [1, 2, 3, 4, 5])
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(1, marks=pytest.mark.long), 2, pytest.param(3, marks=pytest.mark.long), 4, 5],
+)
 def test_every_word_and_number_of_an_old_report_is_in_the_new_one(
     tmp_path: Path, number: int
 ) -> None:

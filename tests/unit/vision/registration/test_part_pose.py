@@ -59,7 +59,7 @@ def test_without_noise_the_pose_is_exact(method: Method) -> None:
     assert np.abs(result.residuals_m).max() < 1e-12
 
 
-@pytest.mark.parametrize("method", ["default", "paper"])
+@pytest.mark.parametrize("method", ["default", pytest.param("paper", marks=pytest.mark.long)])
 def test_the_covariance_is_that_of_the_scatter_and_contains_the_transfer(method: Method) -> None:
     rng = np.random.default_rng(5)
     transfer_sigma = np.array([20e-6, 20e-6, 20e-6, 3e-5, 3e-5, 3e-5])

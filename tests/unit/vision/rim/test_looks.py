@@ -54,6 +54,7 @@ def test_a_stated_width_of_a_narrow_cone_makes_its_centre_surer() -> None:
         assert np.trace(improved) < 0.97 * np.trace(variance)
 
 
+@pytest.mark.long
 def test_exchanged_and_turned_images_are_named_far_from_where_the_cameras_converge() -> None:
     view = drawn_scene("disc", 3).view
     left, right = view.images
