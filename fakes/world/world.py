@@ -13,6 +13,7 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
+from fakes.world.arm_flaws import ArmFlaws
 from fakes.world.frames import Array, stream, stream_seed
 from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
@@ -42,7 +43,7 @@ class World(ABC, Generic[S_co]):
         self.scenario, self.seed = scenario, seed
         self.truth = draw(scenario, scenario.hardware_seed)
         self.arms = {
-            name: RobotArm(robot, self.truth.robots[name], seed)
+            name: RobotArm(robot, self.truth.robots[name], seed, ArmFlaws.of(scenario, name, seed))
             for name, robot in scenario.robots.items()
         }
         self.faults = FaultBoard("world", self.fault_texts)
