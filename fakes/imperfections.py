@@ -62,6 +62,48 @@ CATALOGUE: Mapping[str, Imperfection] = {
         "to it, anew each motion",
         "assumed; procedure 107 measures the spread on a real arm",
     ),
+    # -- what the arm carries ----------------------------------------------------------------------
+    "grip_slip": Imperfection(
+        0.005, "mm", "deck in the gripper: shifts along each axis by up to this at every start of "
+        "a motion, until the frame carries it",
+        "assumed: a tenth of the loop's threshold",
+    ),
+    "burr": Imperfection(
+        0.02, "mm", "height of one burr somewhere under the rim of the deck",
+        "edges without a burr as by ISO 13715: at most 0.02 to 0.05 mm",
+    ),
+    # -- force sensor ------------------------------------------------------------------------------
+    "sensor_crosstalk": Imperfection(
+        0.0, "", "matrix of the force sensor: gain of each channel, and between channels",
+        "data sheets of six-axis sensors: 1 to 3 % of the range between channels",
+        keys=("force_sensors.*.gain_sigma", "force_sensors.*.crosstalk_sigma"),
+        calibrated=True,
+    ),
+    "sensor_noise": Imperfection(
+        0.0, "", "every sample of the force sensor", "0.03 % of the range, white",
+        keys=("force_sensors.*.noise_n", "force_sensors.*.noise_nm"),
+    ),
+    "sensor_hum": Imperfection(
+        0.0, "", "reading of the force sensor at 12 Hz, from the swaying arm", "assumed",
+        keys=("force_sensors.*.vibration_n",),
+    ),
+    "sensor_drift": Imperfection(
+        0.0, "", "zero of the force sensor", "warming up: 0.01 % of the range in a minute",
+        keys=("force_sensors.*.drift_n_per_min", "force_sensors.*.drift_nm_per_min"),
+    ),
+    "sensor_nonlinearity": Imperfection(
+        0.002, "ratio of range", "reading of the force sensor: bent like x - x³",
+        "data sheets of six-axis sensors: 0.2 to 0.5 % of the range",
+    ),
+    "sensor_hysteresis": Imperfection(
+        0.002, "ratio of range", "reading of the force sensor, from branch to branch of a full "
+        "cycle",
+        "data sheets of six-axis sensors: 0.2 to 0.5 % of the range",
+    ),
+    "sensor_lag": Imperfection(
+        1.0, "ms", "reading of the force sensor: time constant of its filter",
+        "a bandwidth of 160 Hz, usual for strain gauges sampled at 1 kHz",
+    ),
 }  # fmt: skip
 
 

@@ -19,6 +19,7 @@ from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
 from fakes.world.scene import Body, CameraScene
 from fakes.world.sensor import ForceReading
+from fakes.world.sensor_flaws import SensorFlaws
 from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
 from fakes.world.truth import draw, stream_keys
 
@@ -60,6 +61,7 @@ class World(ABC, Generic[S_co]):
                     seed,
                     stream_keys(scenario.force_sensors, name),
                 ),
+                SensorFlaws.of(scenario, name),
             )
             for name, sensor in scenario.force_sensors.items()
         }
