@@ -104,6 +104,44 @@ CATALOGUE: Mapping[str, Imperfection] = {
         1.0, "ms", "reading of the force sensor: time constant of its filter",
         "a bandwidth of 160 Hz, usual for strain gauges sampled at 1 kHz",
     ),
+    # -- cameras -----------------------------------------------------------------------------------
+    "lenses": Imperfection(
+        0.0, "", "focal length, principal point and distortion of each lens", "assumed",
+        keys=("optics.*.focal_spread_px", "optics.*.centre_spread_px",
+              "optics.*.distortion_spread"),
+        calibrated=True,
+    ),
+    "image_noise": Imperfection(
+        0.0, "", "every pixel of every exposure: read noise", "industrial CMOS sensors in 8 bits",
+        keys=("rendering.read_noise_levels",),
+    ),
+    "uneven_light": Imperfection(
+        0.0, "", "light from one side of the image to the other", "ring light at 500 mm, assumed",
+        keys=("rendering.light_gradient",),
+    ),
+    "lens_misfit": Imperfection(
+        0.05, "px", "every lens: waves that the model with five parameters cannot follow",
+        "parametric models against splined ones leave 0.05 to 0.3 px on real lenses",
+        calibrated=True,
+    ),
+    "head_drift": Imperfection(
+        0.015, "mm", "mount of every camera: offset since the calibrations, and as much in an hour",
+        "120 mm of aluminium, 5 K",
+    ),
+    "vibration": Imperfection(
+        10.0, "µrad", "line of sight of every camera at 12 Hz, root mean square; smears it too",
+        "a floor with 0.4 mm/s (the ISO limit of offices): 5 µm at 12 Hz, at a distance of 0.5 m",
+    ),
+    "exposure_drift": Imperfection(
+        0.02, "ratio", "brightness of every exposure", "LED light: 0.4 % per K, 5 K",
+    ),
+    "glare": Imperfection(
+        0.1, "ratio", "highlight in the picture of every camera, beside the 0.1 that it has anyway",
+        "assumed; a worn or oily milled face",
+    ),
+    "tilt_shading": Imperfection(
+        1.0, "ratio", "highlight: moves with the tilt of the surface as in a mirror", "geometry",
+    ),
 }  # fmt: skip
 
 

@@ -14,6 +14,7 @@ from scipy.spatial.transform import RigidTransform
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
 from fakes.world.arm_flaws import ArmFlaws
+from fakes.world.camera_flaws import CameraFlaws
 from fakes.world.frames import Array, stream, stream_seed
 from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
@@ -46,6 +47,9 @@ class World(ABC, Generic[S_co]):
         self.arms = {
             name: RobotArm(robot, self.truth.robots[name], seed, ArmFlaws.of(scenario, name, seed))
             for name, robot in scenario.robots.items()
+        }
+        self._camera_flaws = {
+            name: CameraFlaws.of(scenario, name, seed) for name in scenario.all_cameras()
         }
         self.faults = FaultBoard("world", self.fault_texts)
         self.time_s = 0.0
@@ -120,6 +124,9 @@ class World(ABC, Generic[S_co]):
     def camera_pose(self, camera: str) -> RigidTransform:
         """True cell_T_camera; of a stereo head the pose of its left camera."""
         mount_T_camera = self.truth.cameras[camera].mount_T_camera
+        drift = self._camera_flaws[camera].drift
+        if drift is not None:
+            mount_T_camera *= RigidTransform.from_matrix(drift.at(self.time_s))
         carrier = self.scenario.all_cameras()[camera].carried_by
         return mount_T_camera if carrier is None else self.flange(carrier) * mount_T_camera
 
@@ -134,6 +141,7 @@ class World(ABC, Generic[S_co]):
             bodies=tuple(self.bodies_before(self.camera_pose(camera).inv())),
             light_seed=truth.light_seed,
             noise_seed=stream_seed(self.seed, "exposure", camera, self._exposures),
+            exposure=self._camera_flaws[camera].exposure(self._exposures, self.time_s),
         )
 
     def targets(self, tracker: str, frames: int) -> tuple[SeenTarget, ...]:
