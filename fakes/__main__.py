@@ -1,4 +1,4 @@
-"""The fake cell and its helpers: ``python -m fakes run | plc | demo | taught``."""
+"""The fake cell and its helpers: ``python -m fakes run | plc | demo | taught | imperfections``."""
 
 import asyncio
 import json
@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 from fakes import scenario as scenarios
+from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
@@ -30,18 +31,30 @@ def taught(scenario: ScenarioOption = DEFAULT_SCENARIO) -> None:
 
 
 @app.command()
+def imperfections() -> None:
+    """List what can be imperfect about a fake cell: size, where it acts, source of the size."""
+    for name, one in CATALOGUE.items():
+        size = f"{one.size:g} {one.unit}" if one.unit else ", ".join(one.keys)
+        typer.echo(f"{name}: {size}\n    {one.acts}\n    source: {one.source}")
+
+
+@app.command()
 def run(
     scenario: ScenarioOption = DEFAULT_SCENARIO,
     seed: Annotated[int, typer.Option(min=0, help="Reproduces the whole cell.")] = 1,
     port: Annotated[
         list[str] | None, typer.Option(help="NAME=PORT, as in main.CMD=7001 or control=0.")
     ] = None,
+    imperfection: Annotated[
+        list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
+    ] = None,
 ) -> None:
     """Run the fake cell until SIGINT or SIGTERM."""
     from fakes.cell import run_cell
 
     ports = dict(_port(item) for item in port or [])
-    raise typer.Exit(asyncio.run(run_cell(scenarios.load(scenario), seed, ports)))
+    scales = dict(_scale(item) for item in imperfection or [])
+    raise typer.Exit(asyncio.run(run_cell(scenarios.load(scenario, scales), seed, ports)))
 
 
 def _port(item: str) -> tuple[str, int]:
@@ -49,6 +62,13 @@ def _port(item: str) -> tuple[str, int]:
     if not (separator and number.isdigit()):
         raise typer.BadParameter(f"expected NAME=PORT, got {item!r}")
     return name, int(number)
+
+
+def _scale(item: str) -> tuple[str, float]:
+    try:
+        return parsed_scale(item)
+    except UnknownImperfection as error:
+        raise typer.BadParameter(str(error)) from error
 
 
 _FORWARDED = {"ignore_unknown_options": True, "allow_extra_args": True, "help_option_names": []}

@@ -160,7 +160,11 @@ class DeviceRack:
     def _look(self) -> RenderOptions:
         rendering = self._scenario.rendering
         assert rendering is not None  # the scenario's model demands it where there is a camera
-        return options_of(rendering)
+        return options_of(
+            rendering,
+            glare=self._scenario.size_of("glare"),
+            tilt_shading=self._scenario.size_of("tilt_shading"),
+        )
 
     def _pool(self) -> ProcessPoolExecutor:
         """One renderer for all cameras; a cell without cameras does without."""

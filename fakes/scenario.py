@@ -9,8 +9,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
+from fakes.imperfections import CATALOGUE, check_scales, scale_written
 from fakes.sections import (
     Camera,
     DeviceName,
@@ -51,11 +52,24 @@ class Scenario(Section):
     """Needed as soon as there is a camera."""
     taught: dict[DeviceName, dict[str, Pose]] = Field(default_factory=dict)
     """Flange poses in the frame of the cell, by robot and name."""
+    imperfections: dict[str, float] = Field(default_factory=dict)
+    """How many times its realistic size each one has, by the names of ``fakes.imperfections``.
+
+    What is not named has the size that this file gives it, and none where the file gives no size.
+    """
 
     @classmethod
-    def read(cls, path: Path) -> Self:
-        """A file of this very model; raises as ``load`` does."""
-        return cls.model_validate(_read_toml(path))
+    def read(cls, path: Path, imperfections: Mapping[str, float] | None = None) -> Self:
+        """A file of this very model; scales and exceptions as with ``load``."""
+        return cls.model_validate(_read_toml(path, imperfections or {}))
+
+    def size_of(self, imperfection: str) -> float:
+        """Size of an imperfection whose size is that of the catalogue, in its unit there."""
+        return CATALOGUE[imperfection].size * self.imperfections.get(imperfection, 0.0)
+
+    def without_imperfections(self) -> Self:
+        """The same cell without those whose size is that of the catalogue."""
+        return self.model_copy(update={"imperfections": {}})
 
     def all_cameras(self) -> dict[str, Camera]:
         """Stereo heads and single cameras by name."""
@@ -98,6 +112,12 @@ class Scenario(Section):
             raise ValueError("; ".join(mistakes))
         return self
 
+    @field_validator("imperfections")
+    @classmethod
+    def _imperfections_are_known(cls, scales: dict[str, float]) -> dict[str, float]:
+        check_scales(scales)
+        return scales
+
     def _mistakes(self) -> Iterator[str]:
         names = self.device_names()
         for name in sorted({name for name in names if names.count(name) > 1}):
@@ -128,18 +148,22 @@ class Scenario(Section):
             yield f"taught.{robot}", robot
 
 
-def load(path: Path) -> Scenario:
+def load(path: Path, imperfections: Mapping[str, float] | None = None) -> Scenario:
     """Read a scenario file with the model of the scene that it names.
 
-    Raises ``OSError``, ``tomllib.TOMLDecodeError``, ``pydantic.ValidationError``, or
-    ``fakes.scenes.registry.UnknownScene``.
+    ``imperfections`` are scales by name that replace those of the file. Raises ``OSError``,
+    ``tomllib.TOMLDecodeError``, ``pydantic.ValidationError``,
+    ``fakes.imperfections.UnknownImperfection`` or ``fakes.scenes.registry.UnknownScene``.
     """
     from fakes.scenes.registry import scene_class  # the scenes are built on this module
 
-    written = _read_toml(path)
+    written = _read_toml(path, imperfections or {})
     return scene_class(str(written.get("scene", ""))).scenario_model.model_validate(written)
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read_toml(path: Path, imperfections: Mapping[str, float]) -> dict[str, Any]:
     with path.open("rb") as file:
-        return tomllib.load(file)
+        written = tomllib.load(file)
+    scales = {**written.get("imperfections", {}), **imperfections}
+    check_scales(scales)
+    return scale_written({**written, "imperfections": scales}, scales)

@@ -224,6 +224,9 @@ class Rendering(Section):
     hole_level: float
     wall_visibility: float
     """Brightness of a hole's wall, 0 as dark as the hole, 1 as bright as the plate."""
+    recessed_rims: bool = False
+    """The rim that carries the centre of a countersunk or chamfered hole lies below the face, as
+    machined; the feature files of the cell must say so. Else the ring round it is flat."""
     countersink_levels: Pair
     """Darkest and brightest azimuth, relative to the plate."""
     thread_levels: Pair

@@ -19,6 +19,7 @@ from fakes.demo.demo import Demo
 from fakes.demo.ports import PortInUse, check_ports
 from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, require_simulated
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
+from fakes.imperfections import UnknownImperfection, parsed_scale
 from fakes.scenes.registry import UnknownScene
 
 DEFAULT_PROCESS = "deck-to-frame"
@@ -31,6 +32,7 @@ _REFUSALS = (
     PortInUse,
     registry.UnknownProcess,
     UnknownScene,
+    UnknownImperfection,
 )
 """Each of them is a sentence for the user."""
 
@@ -67,6 +69,9 @@ def demo(
     fault: Annotated[
         list[str] | None, typer.Option(help="Inject before the start: device:name.")
     ] = None,
+    imperfection: Annotated[
+        list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
+    ] = None,
 ) -> None:
     """Run one job of a process on its fake cell; exit code 0 only for a good part.
 
@@ -81,6 +86,7 @@ def demo(
             scenario=scenario or shown.scenario,
             cell=cell or shown.cell,
             out=out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}",
+            imperfections=dict(parsed_scale(item) for item in imperfection or ()),
         )
         _check(files)
         code = _run(shown, files, job, console, complaint)
@@ -95,7 +101,7 @@ def _check(files: Files) -> None:
     require_simulated(files.cell)
     require_own_folder(files.out)
     try:
-        scenario = scenarios.load(files.scenario)
+        scenario = scenarios.load(files.scenario, files.imperfections)
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         raise ChildFailed(f"scenario {files.scenario}: {error}") from error
     check_ports(scenario, files.cell)

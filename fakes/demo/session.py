@@ -1,8 +1,8 @@
 """One demonstration while it runs: fake cell, daemon, line PLC."""
 
 import time
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +27,8 @@ class Files:
     scenario: Path
     cell: Path
     out: Path
+    imperfections: Mapping[str, float] = field(default_factory=dict)
+    """Scales in place of those of the scenario file, by name."""
 
 
 class Session:
@@ -59,6 +61,8 @@ class Session:
         )
         scenario, seed = str(self._files.scenario), str(self._seed)
         arguments = ["-m", "fakes", "run", "--scenario", scenario, "--seed", seed]
+        for name, scale in self._files.imperfections.items():
+            arguments += ["--imperfection", f"{name}={scale:g}"]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
         self._control = Control(int(ports["control"]))
 

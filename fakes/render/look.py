@@ -7,10 +7,14 @@ from fakes.sections import Rendering
 
 _IMAGE_WIDTH_M: Final = 0.34
 _IMAGE_AREA_M2: Final = 0.097
+_GLOSS: Final = 0.1
+"""Relative height of the soft highlight on a milled face under a ring light."""
 
 
-def options_of(rendering: Rendering) -> RenderOptions:
-    """Options of the scenario's section ``[rendering]``."""
+def options_of(
+    rendering: Rendering, *, glare: float = 0.0, tilt_shading: float = 0.0
+) -> RenderOptions:
+    """Options of the scenario's section ``[rendering]``, and of two of its imperfections."""
     plate, hole = rendering.plate_level, rendering.hole_level
     darkest, brightest = rendering.countersink_levels
     shot_variance = plate / rendering.electrons_per_level
@@ -32,6 +36,9 @@ def options_of(rendering: Rendering) -> RenderOptions:
         scratches_per_m2=rendering.scratches / _IMAGE_AREA_M2,
         false_circles_per_m2=rendering.false_circles / _IMAGE_AREA_M2,
         light_gradient_per_m=rendering.light_gradient / _IMAGE_WIDTH_M,
+        gloss=_GLOSS + glare,
+        mirror=tilt_shading,
         noise_grey=variance**0.5,
         shot_share=shot_variance / variance,
+        recessed_rims=rendering.recessed_rims,
     )

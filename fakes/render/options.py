@@ -41,6 +41,8 @@ class RenderOptions:
     """Its wavelength."""
     gloss: float = 0.10
     """Relative height of the soft highlight, at another place in each camera."""
+    mirror: float = 0.0
+    """By how much of its way in a perfect mirror the highlight moves when the surface tilts."""
     vignetting: float = 0.12
     """Relative loss of light in the corner of the image."""
 

@@ -21,10 +21,12 @@ from scipy.spatial.transform import RigidTransform
 from fakes.priority import give_way
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
 from fakes.render.optics.canvas import Image
+from fakes.render.optics.exposure import taken
+from fakes.render.optics.lens import views_of
 from fakes.render.optics.sensor import exposed
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pictures
-from fakes.world.scene import CameraScene, MonoTruth
+from fakes.world.scene import CameraScene, Exposure, MonoTruth
 
 _KEPT_SCENES: Final = 3
 _CHANNEL_GAINS: Final = (np.float32(1.0), np.float32(0.94), np.float32(0.86))
@@ -61,7 +63,10 @@ def render_frame(
     # In one fixed order, so that the same set of faults always gives the same picture.
     for name in _in_order(SCENE_FAULTS, faults):
         scene = SCENE_FAULTS[name](scene)
-    pictures = _clean(scene, options)
+    pictures = tuple(
+        taken(picture, scene.exposure, view.lens.focal_px[0])
+        for picture, view in zip(_clean(scene, options), views_of(scene.optics), strict=True)
+    )
     for name in _in_order(PICTURE_FAULTS, faults):
         pictures = PICTURE_FAULTS[name](pictures)
     # The seed comes with the scene, because the worker has no memory of how many exposures there
@@ -91,7 +96,7 @@ def fingerprint(value: Any) -> Any:
 def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
     # What differs from one exposure to the next of an unmoved scene is no part of the clean
     # picture.
-    unmoved = replace(scene, time_s=0.0, noise_seed=0)
+    unmoved = replace(scene, time_s=0.0, noise_seed=0, exposure=Exposure())
     key = fingerprint((unmoved, options))
     pictures = _kept.pop(key, None)
     if pictures is None:

@@ -6,6 +6,7 @@ from fakes.world.frames import Array
 from fakes.world.payload import STEP_S
 from fakes.world.robot import RobotArm
 from fakes.world.sensor import ForceReading
+from fakes.world.sensor_flaws import SensorFlaws
 
 __all__ = ["STEP_S", "MountedSensor"]
 
@@ -16,8 +17,12 @@ _HISTORY = 1024
 class MountedSensor:
     """Follows its flange in steps of one millisecond."""
 
-    def __init__(self, name: str, arm: RobotArm, reading: ForceReading) -> None:
+    def __init__(
+        self, name: str, arm: RobotArm, reading: ForceReading, flaws: SensorFlaws | None = None
+    ) -> None:
+        """``flaws`` is None for a sensor that follows its load at once and in proportion."""
         self.name = name
+        self._flaws = flaws
         self._arm = arm
         self._reading = reading
         self._history = np.zeros((_HISTORY, 6))
@@ -33,7 +38,8 @@ class MountedSensor:
 
     def keep(self, tick: int, load: Array) -> None:
         """Store the true load at the end of a step."""
-        self._history[tick % _HISTORY] = load
+        shown = load if self._flaws is None else self._flaws.pass_on(load)
+        self._history[tick % _HISTORY] = shown
 
     def read(self, time_s: float, newest_tick: int) -> Array:
         """Raw reading at a time, at the latest that of the newest step."""

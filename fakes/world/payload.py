@@ -6,6 +6,7 @@ sensor feels it all the same.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -62,6 +63,15 @@ class Payload:
         self.contact_force_n = 0.0
         self.peak_contact_force_n = 0.0
         self.load = np.zeros(6)
+
+    def regrip(self, flange_T_body: RigidTransform) -> None:
+        """The body hangs a few micrometres elsewhere from now on: too little for the levers."""
+        if self.touch is None:
+            return
+        self.touch = replace(self.touch, flange_T_body=flange_T_body)
+        self._body_matrix = flange_T_body.as_matrix()
+        if self._pose is not None:
+            self._gaps = self._gaps_at(self._pose)
 
     def advance(self, flange: Array, *, moving: bool) -> None:
         """One millisecond on; ``flange`` is the true cell_T_flange at its end, 4x4."""

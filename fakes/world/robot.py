@@ -12,6 +12,7 @@ from fakes.world.arm import (
     nominal_links,
     singular,
 )
+from fakes.world.arm_flaws import ArmFlaws
 from fakes.world.frames import MM, Array, distance, matrix_distance, stream
 from fakes.world.motion import JointPath, LinearPath, Path, Profile, StreamSegment, way_m
 from fakes.world.truth import RobotTruth
@@ -35,7 +36,10 @@ class RefusedMotionError(Exception):
 class RobotArm:
     """Kinematics and motion of one arm. Every method takes the time, which never runs backwards."""
 
-    def __init__(self, settings: Robot, truth: RobotTruth, seed: int) -> None:
+    def __init__(
+        self, settings: Robot, truth: RobotTruth, seed: int, flaws: ArmFlaws | None = None
+    ) -> None:
+        """``flaws`` is None for an arm that has only those of its links and its repeatability."""
         self.settings = settings
         self.truth = truth
         self._nominal = nominal_links(settings.chain_mm)
@@ -56,7 +60,8 @@ class RobotArm:
         self._profile = Profile(0.0, 0.0, 1.0, 1.0)
         self._travelled_m = 0.0
         self.override_percent = 100
-        self._cell_T_base = truth.cell_T_base.as_matrix()
+        self._flaws = flaws or ArmFlaws()
+        self._cell_T_base = self._base_at(0.0)
 
     # -- commands -----------------------------------------------------------------------------
     def start_joint(self, time_s: float, target_rad: Array, percent: float) -> None:
@@ -110,11 +115,14 @@ class RobotArm:
 
     def stop(self, time_s: float, *, latency_s: float | None = None) -> None:
         """Brake on the path after the controller's latency; the motion goes on until then."""
+        timing = self._flaws.timing
         if latency_s is None:
             latency_s = self.settings.stop_latency_ms / 1000
+            latency_s *= timing.stop_latency_factor if timing else 1.0
         braking = 1 / self.settings.ramp_s
         if isinstance(self._path, LinearPath | StreamSegment):
             braking = self.settings.stop_deceleration_mm_s2 * MM
+        braking *= timing.braking_factor if timing else 1.0
         stopping = np.isfinite(self._profile.stop_s)
         if isinstance(self._path, StreamSegment) and self.moving(time_s) and not stopping:
             self._run_on(time_s, self._path, latency_s, braking)
@@ -150,7 +158,10 @@ class RobotArm:
     def flange_matrix(self, time_s: float) -> Array:
         """True cell_T_flange as a 4x4 matrix."""
         along = self._profile.at(time_s)
-        base_T_flange = forward_matrix(self.truth.links, self._path.joints(along))
+        joints = self._path.joints(along)
+        if self._flaws.transmission is not None:
+            joints = joints + self._flaws.transmission.error(joints)
+        base_T_flange = forward_matrix(self.truth.links, joints)
         error = self._wander.error(self._travel(along)) + self._settled(along)
         return self._cell_T_base @ base_T_flange @ small_displacement(error)
 
@@ -165,6 +176,11 @@ class RobotArm:
         self._travelled_m, self._rest_error = self._travel(along), self._settled(along)
         self._next_error = self._settling_rng.normal(0, self._settling)
         start_s = time_s + self.settings.start_latency_ms / 1000
+        if self._flaws.timing is not None:
+            start_s += self._flaws.timing.begin_motion()
+        # With the motions, because a base that moves all the time would never let an arm stand,
+        # and a standing one costs nothing.
+        self._cell_T_base = self._base_at(time_s)
         speed *= self.override_percent / 100
         self._path, self._profile = path, Profile(start_s, path.length, speed, acceleration)
 
@@ -186,6 +202,11 @@ class RobotArm:
         length_m = speed * latency_s + speed**2 / braking + segment.length
         further = segment.lengthened(self._profile.at(time_s), length_m)
         self._continue(time_s, further, speed)
+
+    def _base_at(self, time_s: float) -> Array:
+        base = self.truth.cell_T_base.as_matrix()
+        drift = self._flaws.base_drift
+        return base if drift is None else base @ drift.at(time_s)
 
     def _travel(self, along: float) -> float:
         if self._path.length == 0:

@@ -30,6 +30,9 @@ class LensTruth:
     """Standard deviation of the optical blur, before the pixel's own box."""
     gain: float
     """Brightness of this camera relative to nominal."""
+    misfit: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Waves that the polynomial model cannot follow: amplitude in normalised coordinates, phases
+    along x and y."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,6 +129,19 @@ Body = ScenePlate | SceneTargetBoard | SceneChessboard
 
 
 @dataclass(frozen=True, slots=True)
+class Exposure:
+    """What distinguishes one exposure of a scene from the next, beside noise."""
+
+    sway_rad: tuple[float, float] = (0.0, 0.0)
+    """By which the line of sight is off in the middle of the exposure, towards +x and +y of the
+    image as the picture moves."""
+    smear_rad: tuple[float, float] = (0.0, 0.0)
+    """Standard deviation of its motion during the exposure."""
+    gain: float = 1.0
+    """Brightness relative to that of the scene."""
+
+
+@dataclass(frozen=True, slots=True)
 class CameraScene:
     """One exposure of one camera or stereo head."""
 
@@ -138,3 +154,4 @@ class CameraScene:
     """Direction of the light gradient; fixed for the camera in one run."""
     noise_seed: int
     """Sensor noise; differs from exposure to exposure."""
+    exposure: Exposure = Exposure()

@@ -4,7 +4,7 @@ A hardware seed draws it from the scenario. What stands in the cell has a truth 
 scene.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -144,7 +144,23 @@ def _camera(scenario: Scenario, camera: Camera, seed: int, name: str) -> CameraT
     else:
         colour = isinstance(camera, SingleCamera) and camera.colour
         drawn = MonoTruth(optics.image_px, _lens(optics, rng), colour)
+    if waves_px := scenario.size_of("lens_misfit"):
+        drawn = _with_misfit(drawn, waves_px / optics.focal_px, stream(seed, "lens misfit", name))
     return CameraTruth(mount_T_camera, drawn, stream_seed(seed, "light", name))
+
+
+def _with_misfit(
+    drawn: StereoTruth | MonoTruth, amplitude: float, rng: np.random.Generator
+) -> StereoTruth | MonoTruth:
+    """The same cameras behind lenses that the polynomial model does not fit."""
+
+    def waved(lens: LensTruth) -> LensTruth:
+        phase_x, phase_y = rng.uniform(0, 2 * np.pi, 2).tolist()
+        return replace(lens, misfit=(amplitude, phase_x, phase_y))
+
+    if isinstance(drawn, MonoTruth):
+        return replace(drawn, lens=waved(drawn.lens))
+    return replace(drawn, left=waved(drawn.left), right=waved(drawn.right))
 
 
 def _stereo(optics: Optics, rig: StereoRig, rng: np.random.Generator) -> StereoTruth:

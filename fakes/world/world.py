@@ -13,11 +13,14 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
+from fakes.world.arm_flaws import ArmFlaws
+from fakes.world.camera_flaws import CameraFlaws
 from fakes.world.frames import Array, stream, stream_seed
 from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
 from fakes.world.scene import Body, CameraScene
 from fakes.world.sensor import ForceReading
+from fakes.world.sensor_flaws import SensorFlaws
 from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
 from fakes.world.truth import draw, stream_keys
 
@@ -42,8 +45,11 @@ class World(ABC, Generic[S_co]):
         self.scenario, self.seed = scenario, seed
         self.truth = draw(scenario, scenario.hardware_seed)
         self.arms = {
-            name: RobotArm(robot, self.truth.robots[name], seed)
+            name: RobotArm(robot, self.truth.robots[name], seed, ArmFlaws.of(scenario, name, seed))
             for name, robot in scenario.robots.items()
+        }
+        self._camera_flaws = {
+            name: CameraFlaws.of(scenario, name, seed) for name in scenario.all_cameras()
         }
         self.faults = FaultBoard("world", self.fault_texts)
         self.time_s = 0.0
@@ -59,6 +65,7 @@ class World(ABC, Generic[S_co]):
                     seed,
                     stream_keys(scenario.force_sensors, name),
                 ),
+                SensorFlaws.of(scenario, name),
             )
             for name, sensor in scenario.force_sensors.items()
         }
@@ -117,6 +124,9 @@ class World(ABC, Generic[S_co]):
     def camera_pose(self, camera: str) -> RigidTransform:
         """True cell_T_camera; of a stereo head the pose of its left camera."""
         mount_T_camera = self.truth.cameras[camera].mount_T_camera
+        drift = self._camera_flaws[camera].drift
+        if drift is not None:
+            mount_T_camera *= RigidTransform.from_matrix(drift.at(self.time_s))
         carrier = self.scenario.all_cameras()[camera].carried_by
         return mount_T_camera if carrier is None else self.flange(carrier) * mount_T_camera
 
@@ -131,6 +141,7 @@ class World(ABC, Generic[S_co]):
             bodies=tuple(self.bodies_before(self.camera_pose(camera).inv())),
             light_seed=truth.light_seed,
             noise_seed=stream_seed(self.seed, "exposure", camera, self._exposures),
+            exposure=self._camera_flaws[camera].exposure(self._exposures, self.time_s),
         )
 
     def targets(self, tracker: str, frames: int) -> tuple[SeenTarget, ...]:

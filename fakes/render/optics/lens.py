@@ -13,6 +13,8 @@ Array = NDArray[np.float64]
 
 _NEWTON_STEPS: Final = 12
 _NEWTON_TOLERANCE: Final = 1e-13
+_MISFIT_RATE: Final = 2 * np.pi / 0.3
+"""Two to three waves over the picture, as the rings of a real lens leave them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +60,11 @@ def distort(lens: LensTruth, xn: Array, yn: Array) -> tuple[Array, Array]:
     radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))
     xd = xn * radial + 2 * p1 * xn * yn + p2 * (r2 + 2 * xn * xn)
     yd = yn * radial + p1 * (r2 + 2 * yn * yn) + 2 * p2 * xn * yn
+    amplitude, phase_x, phase_y = lens.misfit
+    if amplitude:
+        along, down = _MISFIT_RATE * xn + phase_x, _MISFIT_RATE * yn + phase_y
+        xd = xd + amplitude * np.sin(along) * np.cos(down)
+        yd = yd + amplitude * np.cos(along) * np.sin(down)
     return xd, yd
 
 
@@ -81,7 +88,8 @@ def undistort(lens: LensTruth, pixels: Array) -> Array:
 
 
 def _jacobian(lens: LensTruth, xn: Array, yn: Array) -> tuple[Array, Array, Array]:
-    """d(distorted)/d(ideal); symmetric in this model."""
+    """d(distorted)/d(ideal) without the misfit, which is too small to matter for the search of the
+    inverse; symmetric in this model."""
     k1, k2, p1, p2, k3 = lens.distortion
     r2 = xn * xn + yn * yn
     radial = 1 + r2 * (k1 + r2 * (k2 + r2 * k3))

@@ -33,6 +33,10 @@ def light_field(
     width, height = view.size_px
     middle = np.array([(width - 1) / 2, (height - 1) / 2])
     centre = meet_surface(view_T_surface, undistort(view.lens, middle[None]), 0.0)[0]
+    # Towards the camera, in the axes of the surface: a mirror throws the light of the lamp, which
+    # sits beside the camera, back from where the surface faces it.
+    towards = -view_T_surface.rotation.as_matrix()[2]
+    mirrored = options.mirror * float(view_T_surface.translation[2]) * towards[:2] / towards[2]
     lamp_centre = -(head_T_surface.rotation.as_matrix().T @ head_T_surface.translation)[:2]
 
     def relative(pixels: Array) -> Array:
@@ -43,7 +47,7 @@ def light_field(
         lamp += options.light_ripple * np.sin(2 * np.pi * along / options.light_ripple_m)
         # A highlight is a reflection and lies elsewhere for each camera, so no measurement may take
         # the light for the same in both.
-        spot = points - centre - 0.06 * np.array(highlight)
+        spot = points - centre - mirrored - 0.06 * np.array(highlight)
         lamp += options.gloss * np.exp(-0.5 * (spot[:, 0] / _HIGHLIGHT_WIDTH_M) ** 2)
         lamp += 0.2 * options.gloss * np.cos(spot[:, 1] / _HIGHLIGHT_WIDTH_M + phase)
         radius2 = ((pixels - middle) ** 2).sum(axis=1) / (middle**2).sum()

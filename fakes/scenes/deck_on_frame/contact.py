@@ -1,4 +1,4 @@
-"""Where the deck can touch the frame: pads round its rim, pins, foreign bodies, chamfers."""
+"""Where the deck can touch the frame: pads round its rim, pins, burrs, foreign bodies, chamfers."""
 
 import numpy as np
 
@@ -13,17 +13,14 @@ from fakes.world.suspension import Contacts
 _DOWEL_N_M = 1e6
 """A steel dowel jammed in its hole; the arm behind it is no stiffer."""
 _BODY_SHARE = 0.5
-"""Stiffness of a foreign body or a chamfer relative to all pads together."""
+"""Stiffness of a foreign body, a burr or a chamfer relative to all pads together."""
 
 
 def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> ContactPoints:
     """Contact points of loaded parts and of injected obstacles."""
-    pads = _pads(scenario)
-    count = len(pads)
-    points = np.column_stack([pads, np.full(count, -parts.deck_thickness_m)])
-    directions = np.tile([0.0, 0.0, 1.0], (count, 1))
-    anchors = np.zeros((count, 3))
-    stiffness = np.full(count, parts.contact_stiffness_n_m / count)
+    anchors, stiffness = _resting(scenario, parts)
+    points = np.column_stack([anchors[:, :2], np.full(len(anchors), -parts.deck_thickness_m)])
+    directions = np.tile([0.0, 0.0, 1.0], (len(anchors), 1))
     for name in ("foreign_body", "pin_catch"):
         fault = faults.active(name)
         if fault is None:
@@ -58,6 +55,17 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
     ahead[wedges[:, :2]] = False
     holding = np.append(holding, np.zeros(len(points) - len(holding), dtype=bool))
     return ContactPoints(points, directions, anchors, stiffness, half_size, wedges, ahead, holding)
+
+
+def _resting(scenario: DeckScenario, parts: PartsTruth) -> tuple[Array, Array]:
+    """Where the deck rests on the frame, and the stiffness there: pads, and a burr beside them."""
+    pads = _pads(scenario)
+    anchors = np.column_stack([pads, np.zeros(len(pads))])
+    stiffness = np.full(len(pads), parts.contact_stiffness_n_m / len(pads))
+    if parts.burr_m is not None:
+        anchors = np.vstack([anchors, parts.burr_m])
+        stiffness = np.append(stiffness, _BODY_SHARE * parts.contact_stiffness_n_m)
+    return anchors, stiffness
 
 
 def _pads(scenario: DeckScenario) -> Array:

@@ -1,14 +1,18 @@
 """One pair of frame and deck: how the operator loads them, and how they were really made."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenes.deck_on_frame.scenario import DeckScenario, HoleSpec, Parts
-from fakes.world.frames import MM, from_written, stream, stream_seed
+from fakes.world.frames import MM, displacement, from_written, stream, stream_seed
 from fakes.world.scene import HoleKind, SceneHole
 from fakes.world.truth import drawn_spread
+
+_SLIP_LEVER_M = 0.5
+"""Half the length of the deck: its end slips as far by turning as its middle by shifting."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +28,8 @@ class PartsTruth:
     contact_stiffness_n_m: float
     frame_seed: int
     deck_seed: int
+    burr_m: tuple[float, float, float] | None = None
+    """x and y on the underside of the deck, and height; None for a deck without one."""
 
 
 def draw_parts(scenario: DeckScenario, seed: int, number: int) -> PartsTruth:
@@ -45,7 +51,28 @@ def draw_parts(scenario: DeckScenario, seed: int, number: int) -> PartsTruth:
         deck_holes=tuple(_deck_hole(parts, hole, rng) for hole in parts.holes),
         frame_seed=stream_seed(seed, "frame texture", number),
         deck_seed=stream_seed(seed, "deck texture", number),
+        burr_m=_burr(scenario, seed, number),
     )
+
+
+def grip_slips(scenario: DeckScenario, seed: int, number: int) -> Iterator[RigidTransform]:
+    """By how much the ``number``-th deck slips in the gripper, start by start of a motion."""
+    size_m = scenario.size_of("grip_slip") * MM
+    rng = stream(seed, "grip slip", number)
+    while size_m > 0:
+        shift, turn = rng.uniform(-size_m, size_m, (2, 3))
+        yield displacement(shift, turn / _SLIP_LEVER_M)
+
+
+def _burr(scenario: DeckScenario, seed: int, number: int) -> tuple[float, float, float] | None:
+    """Somewhere on the rim, where the deck rests on the frame."""
+    height_m = scenario.size_of("burr") * MM
+    if not height_m:
+        return None
+    angle = stream(seed, "burr", number).uniform(0, 2 * np.pi)
+    half_m = (np.array(scenario.parts.size_mm) / 2 - scenario.contact.rim_inset_mm) * MM
+    x, y = half_m * [np.cos(angle), np.sin(angle)] / max(abs(np.cos(angle)), abs(np.sin(angle)))
+    return float(x), float(y), height_m
 
 
 def _frame_hole(parts: Parts, hole: HoleSpec, rng: np.random.Generator) -> SceneHole:

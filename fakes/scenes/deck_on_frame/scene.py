@@ -18,7 +18,7 @@ from fakes.scenes.deck_on_frame.boards import (
 )
 from fakes.scenes.deck_on_frame.contact import rim
 from fakes.scenes.deck_on_frame.gauges import pin_offsets
-from fakes.scenes.deck_on_frame.parts import PartsTruth, draw_parts
+from fakes.scenes.deck_on_frame.parts import PartsTruth, draw_parts, grip_slips
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.views import plates, seen_chessboard, seen_target_board
 from fakes.world.contact import Touch
@@ -59,6 +59,8 @@ class DeckOnFrame(World[DeckScenario]):
         super().__init__(scenario, seed)
         self.placed = Placed()
         self.loads = 0
+        self._moved = False
+        self._slips: Iterator[RigidTransform] = iter(())
         self._bow_m = chessboard_bow_m(scenario, scenario.hardware_seed)
         if scenario.parts.loaded_at_start:
             self.load_parts()
@@ -68,6 +70,7 @@ class DeckOnFrame(World[DeckScenario]):
     def load_parts(self) -> None:
         """Bring in the next frame and put the next deck into the gripper."""
         self.loads += 1
+        self._slips = grip_slips(self.scenario, self.seed, self.loads)
         parts = draw_parts(self.scenario, self.seed, self.loads)
         self.placed = replace(self.placed, parts=parts, frame=True, deck=True)
         self.rebuild()
@@ -129,6 +132,9 @@ class DeckOnFrame(World[DeckScenario]):
         """Gripper and deck behind their sensor; any other sensor carries nothing."""
         if sensor != self.scenario.payload.behind:
             return np.zeros(6)
+        if moving and not self._moved:
+            self._slip()
+        self._moved = moving
         self.payload.advance(flange, moving=moving)
         return self.payload.load
 
@@ -191,6 +197,16 @@ class DeckOnFrame(World[DeckScenario]):
             report["frame_T_deck_mm_deg"] = to_written(frame_T_deck)
             report["pins"] = pin_offsets(parts, frame_T_deck)
         return report
+
+    def _slip(self) -> None:
+        """The arm jerks into motion; a deck that the frame carries stays where it is."""
+        parts = self.placed.parts
+        slip = next(self._slips, None)
+        if parts is None or slip is None or self.payload.contact_force_n > 0:
+            return
+        parts = replace(parts, flange_T_deck=parts.flange_T_deck * slip)
+        self.placed = replace(self.placed, parts=parts)
+        self.payload.regrip(parts.flange_T_deck)
 
     def _load(self) -> dict[str, Any]:
         self.load_parts()

@@ -8,5 +8,12 @@ SCENARIO = Path(__file__).parents[3] / "config" / "deck.scenario.toml"
 
 
 @pytest.fixture(scope="session")
-def scenario() -> DeckScenario:
+def shipped_scenario() -> DeckScenario:
+    """As the demonstration has it."""
     return DeckScenario.read(SCENARIO)
+
+
+@pytest.fixture(scope="session")
+def scenario(shipped_scenario: DeckScenario) -> DeckScenario:
+    """Without the imperfections that have a test of their own each."""
+    return shipped_scenario.without_imperfections()

@@ -111,7 +111,7 @@ class Rig:
 
 
 def rig(contact_n_m: float, tilt_deg: tuple[float, float] = (0.0, 0.0)) -> Rig:
-    scenario = DeckScenario.read(SCENARIO)
+    scenario = DeckScenario.read(SCENARIO).without_imperfections()
     smooth = scenario.contact.model_copy(update={"friction": 0.0})
     tilt = Rotation.from_rotvec(np.deg2rad([*tilt_deg, 0.0]))
     return Rig(scenario.model_copy(update={"contact": smooth}), contact_n_m, tilt)
