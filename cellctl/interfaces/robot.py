@@ -74,7 +74,7 @@ class Robot(Device):
         return False
 
     @classmethod
-    def check_joint_target(cls, config: Any, joints_rad: Array) -> None:  # noqa: B027
+    def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
         """Raise ``TargetOutOfBounds`` when, with these settings, the arm may not stand there.
 
         ``joints_rad`` has shape (6,). `cellctl check` asks for every taught pose; a driver that
