@@ -1,15 +1,15 @@
 """`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.console import Console
 
-from cellctl import plugins
 from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig, load_cell, problems
 from cellctl.config.process_definition import installed_processes, process_definition
+from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.roles import lacking_roles
 
 
@@ -47,8 +47,8 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
 def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
     """Robots whose joint moves nobody holds against the bounds of their flange."""
     for name, robot in cell.robots.items():
-        driver: Any = plugins.load(plugins.ROBOT, robot.driver)
-        if not driver.checks_joint_ways(driver.Config.model_validate(robot.settings)):
+        driver, settings = robot_driver(robot)
+        if not driver.checks_joint_ways(settings):
             console.print(
                 f"  robots.{name}: joint moves are not checked against its workspace (the driver's "
                 "settings say nothing of its kinematics)",

@@ -48,8 +48,11 @@ class TargetOutOfBounds(RobotError):
 
     number = 305
     text = "A motion target lies outside its bounds"
-    cause = "Wrong calibration, wrong recipe, or an implausible measurement."
-    remedy = "Check calibration and recipe; look at the measurement's pictures."
+    cause = "Wrong calibration, recipe or taught pose, or an implausible measurement."
+    remedy = (
+        "Check calibration and recipe, and the measurement's pictures. After a joint move: teach "
+        "the pose again, or jog the arm to a taught pose from which its way is free."
+    )
 
 
 class NotRearmed(RobotError):

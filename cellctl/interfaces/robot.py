@@ -1,6 +1,7 @@
 """A robot controller that moves its flange on command and says where it is."""
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -10,6 +11,9 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.device import Device
+
+ForwardKinematics = Callable[[Array], RigidTransform]
+"""``base_T_flange`` at joints, shape (6,), in rad."""
 
 
 class RobotMode(Enum):
@@ -68,6 +72,19 @@ class Robot(Device):
         ``config`` is an instance of the driver's ``Config``. `cellctl check` asks.
         """
         return False
+
+    @classmethod
+    def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
+        """Raise ``TargetOutOfBounds`` when, with these settings, the arm may not stand there.
+
+        ``joints_rad`` has shape (6,). `cellctl check` asks for every taught pose; a driver that
+        does not know says nothing, and refuses the move itself.
+        """
+
+    @classmethod
+    def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:  # noqa: ARG003
+        """Where the flange is at given joints; None where these settings do not say it."""
+        return None
 
     @abstractmethod
     async def disconnect(self) -> None:

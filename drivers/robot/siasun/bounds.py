@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
@@ -19,8 +20,6 @@ STEP_MAX_ANGLE_DEG = 0.5
 DH_FITS_MM = 5.0
 DH_FITS_DEG = 0.5
 """A table of the right arm fits its controller's pose much better, one of another does not."""
-WAY_STEP_RAD = math.radians(1.0)
-"""A flange 3 m from the axis moves by 52 mm between two points of the way that are checked."""
 
 
 class Bounds:
@@ -33,13 +32,7 @@ class Bounds:
 
     def joints(self, joints_rad: Array, speed_ratio: float) -> tuple[Array, int]:
         """Joint angles in degrees and speed in percent."""
-        joints_deg = np.degrees(np.asarray(joints_rad, dtype=float))
-        lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
-        inside = joints_deg.shape == (6,) and bool(
-            np.all((joints_deg >= lower) & (joints_deg <= upper))
-        )
-        if not inside:
-            self._refuse(f"joints {np.round(joints_deg, 3).tolist()} deg")
+        joints_deg = self._joints_deg(joints_rad)
         limit = self._config.max_joint_speed_percent
         if not 0.0 < speed_ratio * 100.0 <= limit:
             self._refuse(f"joint speed {speed_ratio * 100.0:g} %, allowed (0, {limit}]")
@@ -69,18 +62,42 @@ class Bounds:
                 f"the dh table puts the flange {distance_m / MM:.2f} mm and "
                 f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it"
             )
+        for joints in joint_path(state.joints_rad, joints_rad):
+            self._flange_in_box(kinematics, joints, "on the way to", joints_rad)
+
+    def joint_target(self, joints_rad: Array) -> None:
+        """Refuse joints, shape (6,), at which an arm that stands there would be out of bounds.
+
+        Without a dh table only the limits of the joints themselves are known.
+        """
+        self._joints_deg(joints_rad)
+        if self._kinematics is not None:
+            self._flange_in_box(self._kinematics, joints_rad, "at", joints_rad)
+
+    def _joints_deg(self, joints_rad: Array) -> Array:
+        joints_deg = np.degrees(np.asarray(joints_rad, dtype=float))
+        lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
+        inside = joints_deg.shape == (6,) and bool(
+            np.all((joints_deg >= lower) & (joints_deg <= upper))
+        )
+        if not inside:
+            self._refuse(
+                f"joints {np.round(joints_deg, 3).tolist()} deg, allowed "
+                f"{list(lower)} to {list(upper)}"
+            )
+        return joints_deg
+
+    def _flange_in_box(
+        self, kinematics: Kinematics, joints_rad: Array, where: str, target_rad: Array
+    ) -> None:
         lower, upper = self._config.joint_workspace_mm
-        # The joint with the longest way sets the number of points, because all joints arrive
-        # together.
-        greatest_rad = float(np.abs(joints_rad - state.joints_rad).max())
-        points = max(2, math.ceil(greatest_rad / WAY_STEP_RAD) + 1)
-        for joints in np.linspace(state.joints_rad, joints_rad, points):
-            place_mm = kinematics.base_T_flange(joints).translation / MM
-            if not np.all((place_mm >= lower) & (place_mm <= upper)):
-                self._refuse(
-                    f"on the way to joints {np.round(np.degrees(joints_rad), 3).tolist()} deg the "
-                    f"flange comes to {np.round(place_mm, 1).tolist()} mm"
-                )
+        place_mm = kinematics.base_T_flange(joints_rad).translation / MM
+        if not np.all((place_mm >= lower) & (place_mm <= upper)):
+            self._refuse(
+                f"{where} joints {np.round(np.degrees(target_rad), 3).tolist()} deg the flange "
+                f"comes to {np.round(place_mm, 1).tolist()} mm, allowed {list(lower)} to "
+                f"{list(upper)}"
+            )
 
     def pose(self, base_T_flange: RigidTransform) -> Array:
         """The pose in its written form, mm and degrees."""

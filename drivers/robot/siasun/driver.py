@@ -20,7 +20,7 @@ from cellctl.errors.robot import (
     StreamNotOffered,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
-from cellctl.interfaces.robot import RobotState
+from cellctl.interfaces.robot import ForwardKinematics, RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
     StreamingRobot,
@@ -32,6 +32,7 @@ from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.kinematics import Kinematics
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
 from drivers.robot.siasun.stream import SiasunStream
@@ -62,6 +63,16 @@ class SiasunRobot(StreamingRobot):
     def checks_joint_ways(cls, config: Any) -> bool:
         """Only with a dh table in the configuration."""
         return config.dh is not None
+
+    @classmethod
+    def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
+        """Limits of the joints, and with a dh table the box of the flange in joint moves."""
+        Bounds(config.robot_name, config).joint_target(joints_rad)
+
+    @classmethod
+    def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
+        """By the dh table of the configuration."""
+        return None if config.dh is None else Kinematics(config.dh).base_T_flange
 
     async def connect(self) -> None:
         """Listen and wait for both channels and a first state report. Idempotent."""

@@ -2,19 +2,22 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.processes.deck_to_frame.checks.base_frame_turns import base_frame_turn_issues
 from cellctl.processes.deck_to_frame.checks.features import feature_issues
 from cellctl.processes.deck_to_frame.checks.mating_plan import plan_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
+from cellctl.processes.deck_to_frame.settings import DeckSettings
 
 
 def recipe_issues(
     cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path
 ) -> Iterator[ConfigIssue]:
-    """Devices that do not belong together, feature files, and the plan of the mating."""
+    """Devices that do not belong together, joint targets, feature files, and the mating's plan."""
     sensor, main = recipe.device(FORCE), recipe.device(MAIN)
     mounted_on = cell.force_sensors[sensor].mounted_on
     if mounted_on != main:
@@ -24,5 +27,7 @@ def recipe_issues(
         if getattr(cell.robots[main], length) is None:
             allowed = "the base frame is calibrated with it (procedure 103)"
             yield ConfigIssue(f"robots.{main}.{length}", "(missing)", allowed)
+    settings = cast(DeckSettings, cell.processes[recipe.process])
+    yield from base_frame_turn_issues(cell, main, settings, recipe.process)
     yield from feature_issues(recipe, key, folder)
     yield from plan_issues(cell, recipe, key)
