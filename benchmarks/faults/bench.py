@@ -111,7 +111,9 @@ class Bench:
 
     def set_clock(self, off_s: float) -> None:
         """Set the daemon's time of day off by so much; 0 sets it right."""
-        self._clock.write_text(str(off_s), encoding="ascii")
+        part = self._clock.with_suffix(".part")
+        part.write_text(str(off_s), encoding="ascii")
+        part.replace(self._clock)  # the daemon must never read half a file
 
     # -- fake world -----------------------------------------------------------------------------
     def inject(self, device: str, name: str, **parameters: Any) -> None:

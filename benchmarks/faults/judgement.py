@@ -102,6 +102,8 @@ def _line(seen: Observation) -> list[str]:
 
 def _record(seen: Observation) -> list[str]:
     wrong = [] if seen.idle_again else ["did not come back to Idle"]
+    if seen.restarted and not seen.expected.may_restart:
+        wrong.append("came back to Idle only with a new daemon")
     if seen.record == "good":
         wrong.append("the record says good")
     elif seen.record == "open":

@@ -38,6 +38,8 @@ class Fault:
     resume: End | None = None
     line_silent: bool = False
     """The line sees nothing until the daemon is started again."""
+    may_restart: bool = False
+    """After it, the daemon has to be started again: its fault says so."""
     reason_not: Callable[[Phase], str | None] = lambda _phase: None
     """Why there is nothing to see in a phase."""
 
@@ -153,6 +155,7 @@ FAULTS = (
         "daemon killed",
         _signal("daemon", signal.SIGKILL),
         line_silent=True,
+        may_restart=True,
     ),
     Fault(
         "daemon-suspended",
@@ -185,6 +188,7 @@ FAULTS = (
         "disk full",
         lambda bench, _arm: bench.fill_disk(),
         Effect.AT_NEXT_USE,
+        may_restart=True,
         patience_s=180.0,
     ),
     Fault(

@@ -1,6 +1,6 @@
 """What was seen of one fault in one phase: values only, as they are kept in the results."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -27,6 +27,8 @@ class Expected:
     """No contact force after the fault is greater."""
     line_silent: bool = False
     """The daemon is dead: the line sees nothing at all."""
+    may_restart: bool = False
+    """Clear and Reset alone do not help: the daemon has to be started again."""
     has_record: bool = True
     """The job has a record that must be closed."""
 
@@ -66,6 +68,8 @@ class Observation:
     """What the next start found."""
     idle_again: bool
     """The cell came back to Idle by Clear and Reset, as an operator would do it."""
+    restarted: bool
+    """It did so only after the daemon had been started again."""
     lost_s: float
     """Time that the PC did not give to the fake world."""
 
@@ -73,12 +77,3 @@ class Observation:
     def key(self) -> str:
         """Name of the cell of the table."""
         return f"{self.fault}/{self.phase}"
-
-
-def of_json(values: Mapping[str, object]) -> Observation:
-    """From what ``dataclasses.asdict`` has made of it."""
-    fields = dict(values)
-    expected = dict(fields.pop("expected"))  # type: ignore[call-overload]
-    expected["effect"] = Effect(expected["effect"])
-    motions = [Moved(**motion) for motion in fields.pop("motions")]  # type: ignore[attr-defined]
-    return Observation(expected=Expected(**expected), motions=motions, **fields)  # type: ignore[arg-type]

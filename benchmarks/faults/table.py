@@ -5,9 +5,11 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 
+from pydantic import TypeAdapter
+
 from benchmarks.faults.judgement import judge
 from benchmarks.faults.kinds import FAULTS
-from benchmarks.faults.observation import Observation, of_json
+from benchmarks.faults.observation import Observation
 from benchmarks.faults.phases import PHASES, Phase
 
 _HEAD = """# Faults in every phase of motion
@@ -45,8 +47,8 @@ def load(path: Path) -> dict[str, Observation]:
     """What an earlier campaign has left; nothing if there was none."""
     if not path.exists():
         return {}
-    observations = [of_json(values) for values in json.loads(path.read_text(encoding="utf-8"))]
-    return {seen.key: seen for seen in observations}
+    kept = TypeAdapter(list[Observation]).validate_json(path.read_bytes())
+    return {seen.key: seen for seen in kept}
 
 
 def markdown(results: Mapping[str, Observation]) -> str:

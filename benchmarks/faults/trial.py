@@ -3,6 +3,7 @@
 import time
 from collections.abc import Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
 from benchmarks.faults.bench import LINE_FAILURES, POLL_S, RESTING, Bench, NotReached
@@ -18,12 +19,22 @@ STANDS_S = 2.5
 """An arm that has not moved for so long stands, while the line sees nothing."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What the next start found, in words, and how it ended."""
+
+    words: str
+    idle: bool
+    restarted: bool
+
+
 def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
     """Try one fault in one phase; raises ``NotReached``."""
+    before = bench.newest_run()[0]
     bench.control.request("watch_begin")
     arm = phase.reach(bench)
     bench.fresh = False
-    before, truth = bench.newest_run()[0] if phase.starts else 0, bench.truth()
+    truth = bench.truth()
     bench.control.request("reset_peak")
     known = set(bench.plc.shown().alarms)
     bench.control.request("watch_begin")
@@ -33,15 +44,16 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
     alarms = _alarms(bench, last, known)
     _quiet(bench)
     watched, after = bench.watched(), bench.truth()
-    record = _record(bench, fault, phase, before)
-    next_start, idle_again = _next_start(bench, fault)
-    alarms |= _alarms(bench, bench.shown(), known) if fault.line_silent else set()
+    record = _record(bench, before)
+    found = _next_start(bench, fault)
+    if fault.line_silent:  # its next start closes the record, and tells the line
+        record = _record(bench, before)
+        alarms |= _alarms(bench, bench.shown(), known)
     _tidy(bench)
-    effect, bound_s = demanded(fault, phase)
     return Observation(
         fault=fault.key,
         phase=phase.key,
-        expected=Expected(effect, bound_s, phase.peak_bound_n, fault.line_silent, phase.has_record),
+        expected=_expected(fault, phase),
         motions=_motions(watched),
         peak_n=after["peak_contact_force_n"],
         ended_s=ended_s,
@@ -49,9 +61,18 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
         shown=sorted(alarms),
         refused=refused,
         record=record,
-        next_start=next_start,
-        idle_again=idle_again,
+        next_start=found.words,
+        idle_again=found.idle,
+        restarted=found.restarted,
         lost_s=after["lost_s"] - truth["lost_s"],
+    )
+
+
+def _expected(fault: Fault, phase: Phase) -> Expected:
+    effect, bound_s = demanded(fault, phase)
+    has_record = phase.has_record and not (phase.starts and fault.line_silent)
+    return Expected(
+        effect, bound_s, phase.peak_bound_n, fault.line_silent, fault.may_restart, has_record
     )
 
 
@@ -104,30 +125,30 @@ def _alarms(bench: Bench, last: Shown | None, known: set[int]) -> set[int]:
     return ({last.first_out, shown.first_out} - {0}) | (set(shown.alarms) - known)
 
 
-def _record(bench: Bench, fault: Fault, phase: Phase, before: int) -> str | None:
-    """How the newest record ended; a killed daemon closes its own at its next start."""
-    if fault.line_silent or not phase.has_record:
-        return None
+def _record(bench: Bench, before: int) -> str | None:
+    """How the record of the job ended; none where the newest one is an earlier job's."""
     number, result = bench.newest_run()
     return (result or "open") if number > before else None
 
 
-def _next_start(bench: Bench, fault: Fault) -> tuple[str, bool]:
+def _next_start(bench: Bench, fault: Fault) -> _Found:
     """Fault away, Clear, Reset; a daemon that does not come back by them is started again."""
-    words = []
+    words: list[str] = []
     bench.clear_faults()
-    with suppress(NotReached, *LINE_FAILURES):
-        if not fault.line_silent:
+    if not fault.line_silent:
+        try:
             bench.plc.__exit__(None, None, None)
             bench.connect_plc()
-            return bench.to_idle(PRODUCTION), True
+            return _Found(bench.to_idle(PRODUCTION), idle=True, restarted=False)
+        except (NotReached, *LINE_FAILURES) as error:
+            words.append(f"{str(error)[:120]};")
+    words.append("daemon started again:")
     try:
-        words.append("daemon started again:")
         bench.restart_daemon()
         words.append(bench.to_idle(PRODUCTION))
     except (NotReached, *LINE_FAILURES) as error:
-        return f"{' '.join(words)} {str(error)[:120]}", False
-    return " ".join(words), True
+        return _Found(f"{' '.join(words)} {str(error)[:120]}", idle=False, restarted=True)
+    return _Found(" ".join(words), idle=True, restarted=True)
 
 
 def _tidy(bench: Bench) -> None:

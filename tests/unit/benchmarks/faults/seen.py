@@ -17,5 +17,6 @@ CALM = Observation(
     record="aborted",
     next_start="Aborted F302 → Stopped → Idle",
     idle_again=True,
+    restarted=False,
     lost_s=0.1,
 )

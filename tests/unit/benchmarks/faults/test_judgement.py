@@ -45,6 +45,7 @@ def test_an_arm_that_stood_is_as_demanded() -> None:
         ({"record": "open"}, "left open"),
         ({"record": None}, "no record"),
         ({"shown": []}, "no alarm"),
+        ({"restarted": True}, "new daemon"),
         ({"idle_again": False}, "back to Idle"),
     ],
 )
@@ -62,9 +63,9 @@ def test_back_off_is_allowed_after_its_faults_alone() -> None:
     assert not judge(seen).passed
 
 
-@pytest.mark.parametrize("change", [{"travel_mm": 2.5, "rise_mm": 2.5}, {"rise_mm": -2.0}])
-def test_a_back_off_is_short_and_up(change: dict[str, float]) -> None:
-    motions = [BRAKED, replace(UP, **change)]
+@pytest.mark.parametrize(("travel_mm", "rise_mm"), [(2.5, 2.5), (2.0, -2.0)])
+def test_a_back_off_is_short_and_up(travel_mm: float, rise_mm: float) -> None:
+    motions = [BRAKED, replace(UP, travel_mm=travel_mm, rise_mm=rise_mm)]
     assert not judge(replace(CALM, motions=motions, shown=[512], ended_s=4.1)).passed
 
 
