@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating bench bench-metrology bench-looks bench-guard \
+.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults bench bench-metrology bench-looks bench-guard \
 	format lint types imports check test test-parallel test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -45,6 +45,10 @@ campaign: venv
 campaign-mating: venv
 	$(BIN)/python -m benchmarks.mating.campaign
 	$(BIN)/python -m benchmarks.mating.campaign_pins
+
+# Takes hours; interrupted, it goes on where it was. ONLY=FAULT/PHASE, with *, tries a part of it.
+campaign-faults: venv
+	$(BIN)/python -m benchmarks.faults.campaign --page docs/fault-matrix.md $(if $(ONLY),--only '$(ONLY)')
 
 bench: bench-metrology bench-looks bench-guard
 
@@ -92,6 +96,8 @@ test-cell: venv
 test-long: venv
 	$(BIN)/pytest -n 2 -m "long and not cell" --durations 0
 	$(BIN)/pytest -m "long and cell" --durations 0
+	rm -rf runs/faults-tenth
+	$(BIN)/python -m benchmarks.faults.campaign --tenth $(SEED) --out runs/faults-tenth
 
 # Leaves out the tests marked long. The figures of each program that the tests start are combined.
 # Code that is being measured runs several times slower, hence the longer time limit.

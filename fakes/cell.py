@@ -12,6 +12,7 @@ from fakes.clock import WorldClock
 from fakes.control import ControlServer
 from fakes.devices import DeviceFaults, DeviceRack
 from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.motion_watch import MotionWatch
 from fakes.operator import Operator
 from fakes.priority import stand_apart
 from fakes.scenario import Scenario
@@ -37,6 +38,7 @@ class Cell:
         self._control_port = self._ports.get("control", scenario.control_port)
         self.clock = WorldClock()
         self.world = open_world(scenario, seed)
+        self.watch = MotionWatch(self.world.arms)
         self.robots = {
             name: self._controller(name, robot) for name, robot in scenario.robots.items()
         }
@@ -76,7 +78,9 @@ class Cell:
         self.clock()
         self.clock.lost_s = 0.0  # what was lost before, nobody was there to miss
         while not self.stopping.is_set():
-            self.world.advance(self.clock())
+            now_s = self.clock()
+            self.world.advance(now_s)
+            self.watch.sample(now_s)
             await asyncio.sleep(_ADVANCE_S)
 
     async def stop(self) -> None:

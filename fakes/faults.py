@@ -13,6 +13,7 @@ ROBOT_FAULTS = {
     "late": "records leave `delay_s` late",
     "corrupt": "a digit of a record changes after its sum was made",
     "silent": "nothing leaves any more, the socket stays open",
+    "cut": "every connection is closed, and none is opened until the fault is cleared",
     "half_open": "nothing leaves and nothing is read any more, the socket stays open",
     "never_ack": "a command is neither acknowledged nor executed",
     "never_done": "the end of a motion is never reported",

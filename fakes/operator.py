@@ -25,6 +25,8 @@ class Operator:
             **{name: _handler(command) for name, command in self._commands.items()},
             "status": self.status,
             "truth": self.truth,
+            "watch_begin": self.watch_begin,
+            "watched": self.watched,
             "inject": self.inject,
             "clear": self.clear,
             "faults": self.faults,
@@ -40,6 +42,15 @@ class Operator:
         """Everything that nobody in the cell knows exactly."""
         lost_s = self._cell.clock.lost_s
         return {"truth": {**self._cell.world.report(), "lost_s": lost_s}}
+
+    async def watch_begin(self) -> dict[str, Any]:
+        """Watch the motions of the arms from now on."""
+        self._cell.watch.begin(self._cell.clock())
+        return {}
+
+    async def watched(self) -> dict[str, Any]:
+        """Motions of the arms since the watch began."""
+        return self._cell.watch.report(self._cell.clock())
 
     async def inject(self, device: str, name: str, **parameters: Any) -> dict[str, Any]:
         """Inject a fault; ``count`` limits how often it acts."""

@@ -63,6 +63,21 @@ async def test_refused_hello_is_tried_again() -> None:
         assert await second.next("REJ", "ACK") == ["ACK", "1"]
 
 
+async def test_cut_links_stay_away_until_the_fault_is_cleared() -> None:
+    pc = Pc()
+    async with controller(pc, "CMD", "STA") as device:
+        lines = [await pc.accepted("CMD"), await pc.accepted("STA")]
+        device.faults.inject("cut")
+        for line in lines:
+            await asyncio.wait_for(line.ended.wait(), 2)
+        assert device.open_channels == []
+        assert device.logic.latched
+        with pytest.raises(TimeoutError):
+            await asyncio.wait_for(pc.accepted("CMD"), 1.0)
+        device.faults.clear("cut")
+        await asyncio.wait_for(pc.accepted("CMD"), 2)
+
+
 async def test_lost_channel_comes_back_latched_with_a_new_session() -> None:
     pc = Pc()
     async with controller(pc, "CMD", "STA"):

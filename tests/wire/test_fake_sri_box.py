@@ -256,6 +256,10 @@ class TestFaults:
         frame = run(start(saturated=1), 1)[0]
         assert min(struct.unpack_from("<3f", frame, 6)) > 7000.0
 
+    def test_values_that_jump(self) -> None:
+        forces = [struct.unpack_from("<f", frame, 6)[0] for frame in run(start(jump_every=3), 6)]
+        assert [force > 1000.0 for force in forces] == [False, False, True] * 2
+
     def test_nan(self) -> None:
         assert run(start(nan=1), 1)[0][6:30] == b"\xff" * 24
 

@@ -82,6 +82,9 @@ class SjlController:
     # -- controller -----------------------------------------------------------------------------
     async def _run(self) -> None:
         while True:
+            if self.faults.active("cut"):
+                for sender in self._senders.values():
+                    sender.close()
             self._post(self.logic.tick(self._clock()))
             await asyncio.sleep(_TICK_S)
 
@@ -93,8 +96,9 @@ class SjlController:
     # -- channels -------------------------------------------------------------------------------
     async def _keep_connected(self, channel: Channel) -> None:
         while True:
-            with suppress(OSError, TimeoutError, asyncio.IncompleteReadError, RecordError):
-                await self._connection(channel)
+            if not self.faults.active("cut"):
+                with suppress(OSError, TimeoutError, asyncio.IncompleteReadError, RecordError):
+                    await self._connection(channel)
             await asyncio.sleep(_RETRY_S)
 
     async def _connection(self, channel: Channel) -> None:

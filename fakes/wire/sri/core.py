@@ -28,6 +28,7 @@ class SriCore:
         self.transducer = Transducer(sample)
         self.next_number = 0
         self._held: Vector | None = None
+        self._points = 0
         self._history: deque[Vector] = deque(maxlen=16)
 
     def frame(self, times_s: Sequence[float], data_format: DataFormat | None = None) -> bytes:
@@ -67,6 +68,9 @@ class SriCore:
         if self.faults.frozen and self._held is not None:
             return self._held
         self._held = self.transducer.bridge_mv_v(time_s)
+        self._points += 1
+        if self.faults.jump_every and self._points % self.faults.jump_every == 0:
+            return self._held + 0.5 * self.transducer.end_of_scale_mv_v
         return self._held
 
     def _filtered(self, signal: Vector, weights: tuple[float, ...]) -> Vector:

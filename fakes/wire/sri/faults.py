@@ -5,7 +5,8 @@ from dataclasses import dataclass, fields
 
 @dataclass(slots=True)
 class SriFaults:
-    """All off by default. ``every`` fields: 0 is never, n is each n-th frame."""
+    """All off by default. ``every`` fields: 0 is never, n is each n-th frame
+    (of ``jump_every``: point)."""
 
     split: bool = False
     """Cut the byte stream anywhere but between frames."""
@@ -28,6 +29,8 @@ class SriFaults:
     """No frames, although commands are answered."""
     frozen: bool = False
     """The values stop changing; numbers go on."""
+    jump_every: int = 0
+    """Half the scale is added to all channels of that point, as a loose contact does."""
     saturated: bool = False
     """Every channel at its end of scale."""
     nan: bool = False

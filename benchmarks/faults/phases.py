@@ -1,0 +1,219 @@
+"""The phases in which something moves or is in contact, and how to get into each of them.
+
+Whether the cell is there is asked of the line's registers and of the fake cell's arms.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from benchmarks.faults.bench import Bench
+from fakes.demo.deck_calibration import PROCEDURES
+
+PRODUCTION, MAINTENANCE = 1, 2
+TOUCHED_N = 8.0
+"""Well above what noise and tare make of the force register without a contact."""
+FREE_N = 1.0
+"""Bound of the contact force where there must be no contact at all."""
+LIMIT_N = 50.0
+"""The recipe's ``limit_force_n``."""
+FOREIGN_BODY = {"x_mm": 0.0, "y_mm": 0.0, "height_mm": 0.2}
+"""Met in the slow travel: the mating ends with F522 and backs off."""
+REACH_S = 150.0
+
+Reach = Callable[[Bench], str]
+"""Brings the cell into the phase; the arm that moves or is in contact. Raises ``NotReached``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Phase:
+    """One column of the matrix."""
+
+    key: str
+    title: str
+    reach: Reach
+    peak_bound_n: float = FREE_N
+    sensor_moves: bool = True
+    """The robot with the force sensor moves or is in contact here, or does so next."""
+    images: bool = True
+    """Images are taken here or later in the same job."""
+    line_stops_at_once: bool = False
+    """A lost line stops here at once instead of before the next move."""
+    has_record: bool = True
+    fresh: bool = False
+    """Only in a cell in which nothing has moved yet."""
+    starts: bool = False
+    """Nothing is under way: Start is given when the fault is there."""
+
+
+def start_run(bench: Bench) -> None:
+    """A production run is asked for and taken."""
+    bench.command("Start", mode=PRODUCTION, recipe=1, serial="FAULT.1")
+
+
+def _moving(bench: Bench, what: str, step: int) -> str:
+    """The arm that moves in a step."""
+    found: list[str] = []
+
+    def there(shown_step: int) -> bool:
+        arm = bench.moving_arm() if shown_step == step else None
+        found.extend([arm] if arm else [])
+        return bool(found)
+
+    bench.until(what, lambda shown: there(shown.step), timeout_s=REACH_S)
+    return found[0]
+
+
+def _idle(bench: Bench) -> str:
+    bench.to_idle(PRODUCTION)
+    return "main"
+
+
+def _starting(bench: Bench) -> str:
+    bench.to_idle(PRODUCTION)
+    start_run(bench)
+    bench.until("heads on their way", lambda _shown: bench.moving_arm())
+    return bench.moving_arm() or "aux_1"
+
+
+def _step_begins(step: int, bench: Bench) -> str:
+    bench.to_idle(PRODUCTION)
+    start_run(bench)
+    bench.until(f"step {step}", lambda shown: shown.step == step, timeout_s=REACH_S)
+    return "main"
+
+
+def _step_moves(step: int, bench: Bench) -> str:
+    bench.to_idle(PRODUCTION)
+    start_run(bench)
+    return _moving(bench, f"motion in step {step}", step)
+
+
+def _contact(bench: Bench) -> str:
+    _step_begins(50, bench)
+    bench.until("contact", lambda shown: shown.force_z_n > TOUCHED_N, timeout_s=REACH_S)
+    return "main"
+
+
+def _back_off(bench: Bench) -> str:
+    _step_begins(50, bench)
+    bench.inject("world", "foreign_body", **FOREIGN_BODY)
+
+    def rises(_shown: object) -> bool:
+        motions = bench.watched()["motions"]["main"]
+        return bool(motions) and motions[-1]["ended_s"] is None and motions[-1]["rise_mm"] > 0.01
+
+    bench.until("back-off", rises, timeout_s=REACH_S)
+    return "main"
+
+
+def _lift_off(bench: Bench) -> str:
+    """After an abort in contact: the arm presses on the frame."""
+    _contact(bench)
+    bench.command("Abort")
+    bench.until("Aborted", lambda shown: shown.state == "Aborted")
+    bench.command("Clear")
+    bench.plc.done(30)
+    bench.control.request("watch_begin")
+    bench.command("Reset", mode=PRODUCTION)
+    bench.until("lift-off", lambda _shown: bench.moving_arm())
+    return "main"
+
+
+def _reset_home(bench: Bench) -> str:
+    """After a stop on the way to the measuring pose: no contact, and a long way home."""
+    _step_moves(20, bench)
+    bench.command("Stop")
+    bench.plc.done(30)
+    bench.control.request("watch_begin")
+    bench.command("Reset", mode=PRODUCTION)
+    bench.until("way home", lambda _shown: bench.moving_arm())
+    return "main"
+
+
+def _procedure(number: int, bench: Bench) -> str:
+    bench.to_idle(MAINTENANCE)
+    procedure = next(one for one in PROCEDURES if one.number == number)
+    procedure.prepare(bench.control)
+    bench.command("Start", mode=MAINTENANCE, recipe=number, serial="FAULT.1")
+    return _moving(bench, f"motion in procedure {number}", number)
+
+
+def _procedure_contact(bench: Bench) -> str:
+    bench.to_idle(MAINTENANCE)
+    bench.command("Start", mode=MAINTENANCE, recipe=108, serial="FAULT.1")
+    bench.until(
+        "contact",
+        lambda shown: shown.step == 108 and shown.force_z_n > TOUCHED_N,
+        timeout_s=2 * REACH_S,
+    )
+    return "main"
+
+
+def _in_procedure(number: int, title: str, *, sensor_moves: bool, images: bool) -> Phase:
+    return Phase(
+        f"procedure-{number}",
+        f"procedure {number}, {title}, an arm moves",
+        partial(_procedure, number),
+        sensor_moves=sensor_moves,
+        images=images,
+    )
+
+
+PHASES = (
+    Phase("start", "Idle, and Start is given", _idle, starts=True),
+    Phase("starting", "Starting, the heads move", _starting, fresh=True),
+    Phase("measure-frame", "step 10, measure frame, nothing moves", partial(_step_begins, 10)),
+    Phase("measure-deck", "step 20, measure deck, the arm moves", partial(_step_moves, 20)),
+    Phase("pre-assembly", "step 30, pre-assembly, the arm moves", partial(_step_moves, 30)),
+    Phase("correct-pose", "step 40, correct pose, the arm moves", partial(_step_moves, 40)),
+    Phase(
+        "way-down",
+        "step 50, mate, the arm moves down",
+        partial(_step_moves, 50),
+        LIMIT_N,
+        line_stops_at_once=True,
+    ),
+    Phase("contact", "step 50, mate, in contact", _contact, LIMIT_N, line_stops_at_once=True),
+    Phase("verify", "step 60, verify, pressed on the frame", partial(_step_begins, 60), LIMIT_N),
+    Phase(
+        "back-off",
+        "back-off after a mating that met a foreign body",
+        _back_off,
+        LIMIT_N,
+        images=False,
+        line_stops_at_once=True,
+    ),
+    Phase(
+        "lift-off",
+        "Resetting, lift-off after an abort in contact",
+        _lift_off,
+        LIMIT_N,
+        images=False,
+        line_stops_at_once=True,
+        has_record=False,
+    ),
+    Phase(
+        "reset-home",
+        "Resetting, the arm drives home",
+        _reset_home,
+        images=False,
+        line_stops_at_once=True,
+        has_record=False,
+    ),
+    _in_procedure(101, "calibrate head 1", sensor_moves=False, images=True),
+    _in_procedure(102, "calibrate head 2", sensor_moves=False, images=True),
+    _in_procedure(103, "calibrate base frame", sensor_moves=True, images=False),
+    _in_procedure(104, "calibrate board 1", sensor_moves=False, images=True),
+    _in_procedure(105, "calibrate board 2", sensor_moves=False, images=True),
+    _in_procedure(106, "identify payload", sensor_moves=True, images=False),
+    _in_procedure(107, "measure stop latency", sensor_moves=True, images=False),
+    Phase(
+        "procedure-108",
+        "procedure 108, measure contact stiffness, in contact",
+        _procedure_contact,
+        LIMIT_N,
+        images=False,
+        line_stops_at_once=True,
+    ),
+)
