@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults bench bench-metrology bench-looks bench-guard \
-	format lint types imports check test test-parallel test-cell test-long coverage lock clean
+	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
 
@@ -83,11 +83,17 @@ test: check
 
 # The tests are spread over the processors already; threads of BLAS beside them only wait for each
 # other, and waiting costs them a third of the processors' time.
-test-parallel test-cell test-long coverage: export OPENBLAS_NUM_THREADS = 1
+test-parallel test-version test-cell test-long coverage: export OPENBLAS_NUM_THREADS = 1
 
 # Two workers also where there are more processors: time limits within tests are those of two cores.
 test-parallel: venv
 	$(BIN)/pytest -n 2 -m "not cell and not long" --durations 25
+
+# What may differ from Python to Python: programs that talk, store, schedule and end. What computes
+# rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python.
+COMPUTES := vision calibration force processes procedures fakes benchmarks
+test-version: venv
+	$(BIN)/pytest -n 2 -m "not cell and not long" $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/unit
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
