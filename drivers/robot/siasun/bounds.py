@@ -85,7 +85,7 @@ class Bounds:
                 f"joints {np.round(joints_deg, 3).tolist()} deg, allowed "
                 f"{list(lower)} to {list(upper)}"
             )
-        return joints_deg
+        return np.asarray(joints_deg)
 
     def _flange_in_box(
         self, kinematics: Kinematics, joints_rad: Array, where: str, target_rad: Array

@@ -18,7 +18,8 @@ FOCAL_PX = 3580.0
 
 def spot(sigma_px: float = 3.0) -> np.ndarray:
     y, x = np.mgrid[-30:31, -30:31]
-    return (100 * np.exp(-0.5 * (x**2 + y**2) / sigma_px**2)).astype(np.float32)
+    image: np.ndarray = (100 * np.exp(-0.5 * (x**2 + y**2) / sigma_px**2)).astype(np.float32)
+    return image
 
 
 def moments(picture: np.ndarray) -> tuple[float, float, float]:
