@@ -155,13 +155,10 @@ class Cell:
         # stop may still move.
         self.connected, self.unanswered = True, {}
         # Whoever clears says that the arms stand. Their controllers know it, and are asked too.
-        self.unstopped = {
-            name: StopFailed(f"{name} still moves")
-            for name in self.unstopped
-            if self.robots[name].state().moving
-        }
-        for fault in self.unstopped.values():
-            raise fault
+        moving = [name for name in self.unstopped if self.robots[name].state().moving]
+        self.unstopped = {name: StopFailed(f"{name} still moves") for name in moving}
+        if moving:
+            raise self.unstopped[moving[0]]
         _log.info("all devices connected", simulated=self.config.simulated)
 
     async def disconnect(self) -> None:

@@ -39,12 +39,10 @@ async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterato
         await settle(guard)
         tare = await guard.tare(TARE_S)
         weight_n = float(np.linalg.norm(tare.mean[:3]))
-    force_n = tolerance.force_n + weight_n
     # The tare holds for one orientation. Tilted, the whole weight may appear in any direction, and
     # about the sensor on the lever of the load.
-    moment_n_m = tolerance.moment_n_m + weight_n * LEVER_M
-    filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
-    await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+    wider = WrenchTolerance(tolerance.force_n + weight_n, tolerance.moment_n_m + weight_n * LEVER_M)
+    await guard.arm(guard_limits(wider.limits, Sensing.of(arm.sensor)))
     # No disarming in a ``finally``: after a fault the arm may not stand yet, and the guard must go
     # on until the stop of the run.
     yield

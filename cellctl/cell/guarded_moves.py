@@ -15,6 +15,7 @@ from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.settling import settle
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed
+from cellctl.guard.limits import Six
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotState
 
@@ -33,6 +34,11 @@ class WrenchTolerance:
 
     force_n: float
     moment_n_m: float
+
+    @property
+    def limits(self) -> Six:
+        """The same for each axis: N, N, N, N·m, N·m, N·m."""
+        return (*(self.force_n,) * 3, *(self.moment_n_m,) * 3)
 
 
 @asynccontextmanager
@@ -58,10 +64,8 @@ async def guarded_moves(
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
     await guard.tare(TARE_S)
-    force_n, moment_n_m = tolerance.force_n, tolerance.moment_n_m
-    filtered = (force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m)
     with cell.trips_awaited(arm.sensor_name):
-        await guard.arm(guard_limits(filtered, Sensing.of(arm.sensor)))
+        await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
         # After a fault the guard stays armed or latched: whoever handles the fault decides when
         # watching may end.
         yield move

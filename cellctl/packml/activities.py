@@ -94,24 +94,33 @@ class Activities:
 
     async def _run(self, state: State) -> None:
         settle = partial(self._settle, tuple(self._leaving))
-        # What was left may still be stopping its robots. Two coroutines must not command the same
-        # device, so the new one waits. A stop must not wait: what was left may hang, or ask a robot
-        # that does not listen again and again, while the second stop channel lies idle. Stopping
-        # twice does no harm.
-        if state not in _STOPPING:
-            await settle()
-        try:
-            if state in self._actions:
-                await self._actions[state]()
-        except Exception as error:
-            if state in _STOPPING:
-                # The fault of the stop itself must not be lost to one of what was left.
-                for left in await asyncio.gather(settle(), return_exceptions=True):
-                    if left is not None:
-                        error.add_note(f"beside it: {left}")
-            raise
         if state in _STOPPING:
+            await self._act_at_once(state, settle)
+        else:
+            # What was left may still be stopping its robots, and two coroutines must not command
+            # the same device.
             await settle()
+            await self._act(state)
+
+    async def _act(self, state: State) -> None:
+        if state in self._actions:
+            await self._actions[state]()
+
+    async def _act_at_once(self, state: State, settle: Callable[[], Awaitable[None]]) -> None:
+        """Stop, and wait only then for what was left.
+
+        What was left may hang, or ask a robot that does not listen again and again, while the
+        second stop channel lies idle. Stopping twice does no harm.
+        """
+        try:
+            await self._act(state)
+        except Exception as error:
+            # The fault of the stop itself must not be lost to one of what was left.
+            for left in await asyncio.gather(settle(), return_exceptions=True):
+                if left is not None:
+                    error.add_note(f"beside it: {left}")
+            raise
+        await settle()
 
     async def _settle(self, left: tuple[Task, ...]) -> None:
         """Wait until left coroutines have ended; raises what went wrong in their clean-up."""
