@@ -20,7 +20,7 @@ from fakes.wire.sjl.logic import Controller
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
 
-SCENARIO = Path(__file__).parent.parent / "config" / "deck.scenario.toml"
+SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
 TICK_S = 1e-3
 THRESHOLD = np.repeat([5e-5, np.deg2rad(0.005)], 3)
 """What the measure-compensate loop may leave, each axis; the draw is uniform within."""
