@@ -26,7 +26,7 @@ from cellctl.vision.holes.correspondence import (
 from cellctl.vision.holes.diagnose import fault_without_layout
 from cellctl.vision.holes.drawing_fit import check_layout, only_one
 from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
-from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, search_whole_images, search_windows
+from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, WholeImageSearch, search_windows
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
 from cellctl.vision.rim.roi import RimRoi
@@ -96,11 +96,12 @@ def _find(
     images: HeadImages, holes: Sequence[Hole], expectation: Expectation | None
 ) -> list[Assignment]:
     """Assignments of features to holes, best first; a fault when there is none."""
+    search = WholeImageSearch(images, holes)
     candidates: list[StereoCandidate] = []
     # The narrow range first: it costs less, and fewer chance features compete for the drawing.
     for reach in (NEAR, WIDE):
         if expectation is None:
-            candidates = search_whole_images(images, holes, reach)
+            candidates = search.features(reach).pairs()
         else:
             candidates = search_windows(images, holes, expectation)
         found = assignments(
@@ -111,7 +112,7 @@ def _find(
         # Windows do not depend on the range of distance, so a second search would find the same.
         if expectation is not None:
             break
-    raise fault_without_layout(images, holes, candidates, expectation)
+    raise fault_without_layout(search, candidates, expectation)
 
 
 def _done_already(

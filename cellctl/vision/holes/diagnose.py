@@ -1,15 +1,12 @@
 """Why no assignment of features fits: holes missing, images exchanged, or a camera turned.
 
-Exchanged or turned images are recognised by trying: with the mistake undone the holes are found.
+Exchanged or turned images are recognised by trying: with the mistake undone the features that were
+found fit the drawing.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
-
-import numpy as np
 
 from cellctl.errors.vision import CamerasSwapped, CameraUpsideDown, HoleMissing, VisionError
-from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.holes.correspondence import (
     Expectation,
@@ -17,22 +14,22 @@ from cellctl.vision.holes.correspondence import (
     assignments,
     holes_without_candidate,
 )
-from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, search_whole_images
+from cellctl.vision.holes.search import NEAR, WIDE, RoundFeatures, WholeImageSearch
 
 _TOLERANCE_M = 1.5e-3
 
 
 def fault_without_layout(
-    images: HeadImages,
-    holes: Sequence[Hole],
+    search: WholeImageSearch,
     candidates: Sequence[StereoCandidate],
     expectation: Expectation | None,
 ) -> VisionError:
     """The fault to raise when no assignment of ``candidates`` fits the drawing."""
+    holes = search.holes
     # One or two holes fit nearly any image by chance; only from three on does a fit prove that the
     # images are exchanged or turned.
     for reach in (NEAR, WIDE) if len(holes) >= 3 else ():
-        if (fault := _wrong_images(images, holes, reach)) is not None:
+        if (fault := _wrong_images(search.features(reach), holes)) is not None:
             return fault
     missing = holes_without_candidate(holes, candidates, expectation)
     if missing:
@@ -45,31 +42,23 @@ def fault_without_layout(
     return HoleMissing(f"no arrangement of the features seen fits the drawing of {names}")
 
 
-def _wrong_images(
-    images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
-) -> VisionError | None:
+def _wrong_images(seen: RoundFeatures, holes: Sequence[Hole]) -> VisionError | None:
     """The fault when the holes are found once the images are exchanged or turned."""
-    if _fits(replace(images, left=images.right, right=images.left), holes, reach):
+    if _fits(seen.exchanged(), holes):
         return CamerasSwapped("the holes are found with the images exchanged")
-    left, right = _turned(images.left), _turned(images.right)
     turned = {
-        "the left image": replace(images, left=left),
-        "the right image": replace(images, right=right),
-        "both images": replace(images, left=left, right=right),
+        "the left image": seen.turned(left=True, right=False),
+        "the right image": seen.turned(left=False, right=True),
+        "both images": seen.turned(left=True, right=True),
     }
     for which, other in turned.items():
-        if _fits(other, holes, reach):
+        if _fits(other, holes):
             return CameraUpsideDown(f"the holes are found with {which} turned by 180°")
     return None
 
 
-def _fits(images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]) -> bool:
-    candidates = search_whole_images(images, holes, reach)
-    return bool(assignments(holes, candidates, tolerance_m=_TOLERANCE_M, expectation=None))
-
-
-def _turned(image: Image) -> Image:
-    return np.ascontiguousarray(image[::-1, ::-1])
+def _fits(seen: RoundFeatures, holes: Sequence[Hole]) -> bool:
+    return bool(assignments(holes, seen.pairs(), tolerance_m=_TOLERANCE_M, expectation=None))
 
 
 def _largest_part(

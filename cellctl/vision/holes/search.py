@@ -1,7 +1,7 @@
 """Find round features in a stereo pair: in the whole images, or near a predicted pose."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,23 +46,69 @@ def working_distance_m(head: StereoHead) -> float:
     return float(along) if 1.5 * baseline < along < 12.0 * baseline else 5.0 * baseline
 
 
-def search_whole_images(
-    images: HeadImages, holes: Sequence[Hole], reach: tuple[float, float]
-) -> list[StereoCandidate]:
-    """Round features in the whole images at plausible distances."""
-    head = images.head
-    distance_m = working_distance_m(head)
-    depth_m = (reach[0] * distance_m, reach[1] * distance_m)
-    candidates: list[StereoCandidate] = []
-    for bright, group in by_brightness(holes):
-        found = [
-            find_candidates(image, _radii(camera, group, depth_m), bright=bright)
-            for image, camera in ((images.left, head.left), (images.right, head.right))
+@dataclass(frozen=True, slots=True, eq=False)
+class RoundFeatures:
+    """Round features in the whole images of a pair, by their brightness, at plausible distances."""
+
+    images: HeadImages
+    depth_m: tuple[float, float]
+    left: Mapping[bool, Sequence[Candidate]]
+    """Under True the bright ones; only what the drawing has is searched for."""
+    right: Mapping[bool, Sequence[Candidate]]
+
+    def pairs(self) -> list[StereoCandidate]:
+        """Those that both cameras saw."""
+        return [
+            pair
+            for bright, left in self.left.items()
+            for pair in pair_candidates(
+                self.images.head,
+                left,
+                self.right[bright],
+                bright=bright,
+                epipolar_px=_EPIPOLAR_PX,
+                depth_m=self.depth_m,
+            )
         ]
-        candidates += pair_candidates(
-            head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
+
+    def exchanged(self) -> "RoundFeatures":
+        """What would have been found with left and right image exchanged."""
+        return replace(self, left=self.right, right=self.left)
+
+    def turned(self, *, left: bool, right: bool) -> "RoundFeatures":
+        """What would have been found with these images turned by 180°."""
+        return replace(
+            self,
+            left=_turned(self.left, self.images.left) if left else self.left,
+            right=_turned(self.right, self.images.right) if right else self.right,
         )
-    return candidates
+
+
+class WholeImageSearch:
+    """Looks for the round features of a drawing in whole images, once for each reach."""
+
+    def __init__(self, images: HeadImages, holes: Sequence[Hole]) -> None:
+        self.images, self.holes = images, holes
+        self._found: dict[tuple[float, float], RoundFeatures] = {}
+
+    def features(self, reach: tuple[float, float]) -> RoundFeatures:
+        """Features at this range of distances, in parts of the head's working distance."""
+        if reach not in self._found:
+            self._found[reach] = self._search(reach)
+        return self._found[reach]
+
+    def _search(self, reach: tuple[float, float]) -> RoundFeatures:
+        images, head = self.images, self.images.head
+        distance_m = working_distance_m(head)
+        depth_m = (reach[0] * distance_m, reach[1] * distance_m)
+        left, right = (
+            {
+                bright: find_candidates(image, _radii(camera, group, depth_m), bright=bright)
+                for bright, group in by_brightness(self.holes)
+            }
+            for image, camera in ((images.left, head.left), (images.right, head.right))
+        )
+        return RoundFeatures(images, depth_m, left, right)
 
 
 def search_windows(
@@ -86,6 +132,16 @@ def search_windows(
             head, found[0], found[1], bright=bright, epipolar_px=_EPIPOLAR_PX, depth_m=depth_m
         )
     return candidates
+
+
+def _turned(
+    groups: Mapping[bool, Sequence[Candidate]], image: Image
+) -> dict[bool, list[Candidate]]:
+    last_px = np.array(image.shape[::-1]) - 1.0
+    return {
+        bright: [replace(item, centre_px=last_px - item.centre_px) for item in group]
+        for bright, group in groups.items()
+    }
 
 
 def _radii(
