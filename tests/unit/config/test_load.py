@@ -65,66 +65,6 @@ def test_errors_in_a_drivers_settings_carry_their_path(tmp_path: Path) -> None:
         load_cell(path)
 
 
-def test_a_taught_pose_outside_the_workspace_is_found_by_forward_kinematics(tmp_path: Path) -> None:
-    # Every joint is within its limits; the flange would stand 0.9 m below the box.
-    low = "[0.0, -20.0, 130.0, 0.0, 0.0, 90.0]"
-    path = changed(tmp_path, home=("home = [0.0, -90.0, 90.0, 0.0, 90.0, 90.0]", f"home = {low}"))
-    (problem,) = problems(path)
-    assert (problem.key, problem.number) == ("robots.main.poses_deg.home", 305)
-    assert "the flange comes to" in problem.allowed
-    assert "teach the pose again" in problem.allowed
-
-
-def test_a_taught_pose_beyond_the_joint_limits_is_found(tmp_path: Path) -> None:
-    path = changed(tmp_path, home=("home = [0.0,", "home = [95.0,"))
-    (problem,) = problems(path)
-    assert problem.key == "robots.main.poses_deg.home"
-    assert "joints [95.0" in problem.allowed
-
-
-def test_the_turns_of_the_base_frame_are_held_against_the_workspace(tmp_path: Path) -> None:
-    narrow = "joint_workspace_max_mm = [2500.0, 1100.0, 2400.0]"
-    path = changed(tmp_path, box=("joint_workspace_max_mm = [2500.0, 1300.0, 2400.0]", narrow))
-    (problem,) = problems(path)
-    assert problem.key == "processes.deck-to-frame.base_frame_joints_deg"
-    assert "by 50 deg each way" in problem.allowed
-
-
-def test_a_zone_names_robots_of_the_cell_and_a_box(tmp_path: Path) -> None:
-    aux = "aux_1 = { min_mm = [1450.0, -800.0, 600.0]"
-    path = changed(tmp_path, robot=(aux, aux.replace("aux_1", "aux_3")))
-    (problem,) = problems(path)
-    assert problem.key == "zones.beside_head_1.robots.aux_3"
-    assert problem.allowed == "a robot of this cell: main, aux_1, aux_2"
-
-
-def test_a_zone_has_its_lower_corner_below_its_upper_one(tmp_path: Path) -> None:
-    path = changed(tmp_path, box=("aux_1 = { min_mm = [1450.0", "aux_1 = { min_mm = [2450.0"))
-    (problem,) = problems(path)
-    assert problem.key == "zones.beside_head_1.robots.aux_1"
-    assert "min_mm must lie below max_mm" in problem.allowed
-
-
-def test_a_zone_of_one_robot_is_none(tmp_path: Path) -> None:
-    path = changed(tmp_path, robot=("aux_1 = { min_mm = [1450.0", "# aux_1 = { min_mm = [1450.0"))
-    (problem,) = problems(path)
-    assert problem.key == "zones.beside_head_1.robots"
-
-
-@pytest.mark.parametrize(
-    ("poses", "expected"),
-    [('["retracted"]', "left out"), ('["retarded"]', "measuring, retracted")],
-)
-def test_clear_poses_are_taught_ones_of_a_robot_without_kinematics(
-    tmp_path: Path, poses: str, expected: str
-) -> None:
-    corner = "max_mm = [2400.0, 800.0, 1900.0]"
-    path = changed(tmp_path, poses=(corner, f"{corner}, clear_poses = {poses}"))
-    found = problems(path)
-    assert {one.key for one in found} == {"zones.beside_head_1.robots.aux_1.clear_poses"}
-    assert any(expected in one.allowed for one in found)
-
-
 def test_an_unknown_driver_lists_the_installed_ones(tmp_path: Path) -> None:
     path = changed(tmp_path, driver=('driver = "target-server"', 'driver = "laser"'))
     (problem,) = problems(path)
@@ -284,13 +224,6 @@ def test_check_says_which_recipes_the_cell_can_run() -> None:
 def test_a_sensor_with_bad_settings_is_reported_and_judged_no_further(tmp_path: Path) -> None:
     path = changed(tmp_path, one=('transport = "tcp"', 'transport = "telepathy"'))
     assert {problem.key for problem in problems(path)} == {"force_sensors.force.settings.transport"}
-
-
-@pytest.mark.parametrize("name", ["deck.toml", "cell.toml"])
-def test_check_says_which_taught_poses_a_zone_holds(name: str) -> None:
-    # By forward kinematics in the fake cell, by what is not listed as clear in the template.
-    output = CliRunner().invoke(app, ["check", str(CONFIG / name)]).output
-    assert "holds of main: no taught pose; of aux_2: measuring" in output
 
 
 def test_check_says_whose_joint_moves_nobody_checks() -> None:
