@@ -91,7 +91,7 @@ class ZoneArbiter:
         while claims := self._claims(robot, way := plan()):
             time_s = now_s()
             if not since_s:
-                _log.info("waits for a zone", robot=robot, claims=[str(one) for one in claims])
+                _log.info("zone is not free", robot=robot, claims=[str(one) for one in claims])
             # Counted for each claim by itself: an arm that was long on its way out has still the
             # time of a report to say that it is out.
             since_s = {claim: since_s.get(claim, time_s) for claim in claims}
