@@ -11,6 +11,7 @@ from cellctl import log, plugins
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.stereo_station import StereoStation
+from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
 from cellctl.config.devices import GROUPS, DeviceConfig, ForceSensorConfig
 from cellctl.errors import CellError
@@ -19,7 +20,7 @@ from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
-from cellctl.interfaces import Camera, DigitalIo, Gripper, Robot, StereoCamera, TargetTracker
+from cellctl.interfaces import Camera, DigitalIo, Gripper, StereoCamera, TargetTracker
 from cellctl.interfaces.device import Device
 from cellctl.workers import VisionWorkers
 
@@ -38,7 +39,7 @@ class Cell:
         """``folder`` holds the cell file."""
         self.config = config
         self.folder = folder
-        self.robots: Mapping[str, Robot] = _built(config, "robots")
+        self.robots = zoned_robots(config, _built(config, "robots"))
         self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
         self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
         self.cameras: Mapping[str, Camera] = _built(config, "cameras")

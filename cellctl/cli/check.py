@@ -11,6 +11,7 @@ from cellctl.config import CellConfig, load_cell, problems
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.roles import lacking_roles
+from cellctl.config.zone_checks import taught_in_zone
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
@@ -30,6 +31,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
     for key, (_, device) in cell.devices().items():
         console.print(f"  {key:32} {device.driver}", markup=False)
     _say_what_is_not_checked(console, cell)
+    _say_what_zones_hold(console, cell)
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
@@ -55,6 +57,16 @@ def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
                 style="yellow",
                 markup=False,
             )
+
+
+def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
+    """The taught poses in each zone, to be compared with what is seen in the cell."""
+    for name, zone in cell.zones.items():
+        texts = [
+            f"{robot}: {', '.join(taught_in_zone(cell.robots[robot], share)) or 'no taught pose'}"
+            for robot, share in zone.robots.items()
+        ]
+        console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}", markup=False)
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:

@@ -21,6 +21,7 @@ from cellctl.config.devices import (
     TrackerConfig,
 )
 from cellctl.config.recipe import Recipe
+from cellctl.config.zones import ZoneConfig
 
 
 class Plc(Section):
@@ -71,6 +72,8 @@ class CellConfig(Section):
     force_sensors: dict[DeviceName, ForceSensorConfig] = Field(default_factory=dict)
     grippers: dict[DeviceName, GripperConfig] = Field(default_factory=dict)
     digital_ios: dict[DeviceName, DigitalIoConfig] = Field(default_factory=dict)
+    zones: dict[DeviceName, ZoneConfig] = Field(default_factory=dict)
+    """Spaces that two arms may not share, by name."""
     processes: dict[str, SerializeAsAny[Section]] = Field(default_factory=dict)
     """Settings of the processes by name, those for all of their recipes; each process checks its
     own."""

@@ -16,6 +16,7 @@ from cellctl.config.process_definition import ProcessDefinition, process_definit
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import lacking
 from cellctl.config.taught_pose_checks import taught_pose_issues
+from cellctl.config.zone_checks import zone_issues
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
 
 _LONGEST_VALUE = 60
@@ -52,7 +53,11 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
         return found, None
     # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
     found += _driver_issues(cell)
-    found += [*taught_pose_issues(cell, found), *cross_issues(cell, found)]
+    found += [
+        *taught_pose_issues(cell, found),
+        *zone_issues(cell, found),
+        *cross_issues(cell, found),
+    ]
     # Faults of devices are reported once, where they are, and not again by every recipe that uses
     # them.
     bad_devices = {".".join(issue.key.split(".")[:2]) for issue in found}

@@ -128,3 +128,16 @@ class SetpointRefused(RobotError):
     text = "Robot refused a streamed setpoint and stopped"
     cause = "The setpoint lay further away than the stream allows, or out of the robot's reach."
     remedy = "See the controller's reason in the detail; check the limits of the stream."
+
+
+class ZoneTaken(RobotError):
+    """A move needs a zone in which another arm is, or may be; nothing was moved."""
+
+    number = 314
+    text = "Robot was not moved: another arm is in the zone that it needs"
+    cause = "The other arm stands or moves there, or its robot does not report its place."
+    remedy = (
+        "Bring the arm that the detail names out of the zone: by Reset and a new start, or with "
+        "its panel. Where its place is not known, restore its link first."
+    )
+    reaction = Reaction.STOP

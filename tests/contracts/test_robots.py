@@ -2,10 +2,16 @@
 
 from collections.abc import AsyncIterator
 
+import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.zones.arbiter import ZoneArbiter
+from cellctl.cell.zones.zone import Share, Zone
+from cellctl.cell.zones.zoned_robot import ZonedRobot
 from cellctl.clock import now_s
+from cellctl.geometry.box import Box
+from cellctl.interfaces import Robot
 from drivers.robot.siasun.driver import SiasunRobot
 from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
@@ -15,13 +21,13 @@ from tests.wire.sjl_rig import Rig, sjl_rig
 
 
 class InProcessBench(RobotBench):
-    robot: InProcessRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
     max_speed_m_s = MAX_SPEED_M_S
 
-    def __init__(self, memory: InProcessRobot) -> None:
+    def __init__(self, memory: InProcessRobot, robot: Robot | None = None) -> None:
+        """``robot``: what stands before the robot in memory, if anything does."""
         self.memory = memory
-        self.robot = memory
+        self.robot = memory if robot is None else robot
 
     def commands(self) -> int:
         return self.memory.commands
@@ -120,6 +126,22 @@ class TestInProcessRobot(RobotContract):
         bench = InProcessBench(InProcessRobot("memory"))
         yield bench
         await bench.robot.disconnect()
+
+
+class TestZonedRobot(RobotContract):
+    """What stands before the drivers of robots that share a zone keeps their contract."""
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[RobotBench]:
+        memory, other = InProcessRobot("memory"), InProcessRobot("other")
+        other.flange = RigidTransform.from_translation([-1.5, 0.0, 1.0])
+        share = Share(Box(np.array([0.0, -1.0, 0.0]), np.array([2.0, 1.0, 2.0])), ())
+        zone = Zone("all", {"memory": share, "other": share}, 1.0)
+        arbiter = ZoneArbiter((zone,), {"memory": memory.state, "other": other.state})
+        async with other:
+            bench = InProcessBench(memory, ZonedRobot(memory, arbiter, None))
+            yield bench
+            await bench.robot.disconnect()
 
 
 class TestSiasunRobot(RobotContract):

@@ -75,7 +75,7 @@ class Bounds:
             self._flange_in_box(self._kinematics, joints_rad, "at", joints_rad)
 
     def _joints_deg(self, joints_rad: Array) -> Array:
-        joints_deg = np.degrees(np.asarray(joints_rad, dtype=float))
+        joints_deg: Array = np.degrees(np.asarray(joints_rad, dtype=float))
         lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
         inside = joints_deg.shape == (6,) and bool(
             np.all((joints_deg >= lower) & (joints_deg <= upper))

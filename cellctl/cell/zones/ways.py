@@ -1,0 +1,91 @@
+"""The way of a move before it begins: which zones it needs, and in which it ends."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.zones.zone import Share
+from cellctl.geometry.joint_path import joint_path
+from cellctl.geometry.pose import Array
+from cellctl.interfaces import RobotState
+from cellctl.interfaces.robot import ForwardKinematics
+
+GREATEST_RAD = 4.0 * np.pi
+"""No joint of an arm turns further from its zero."""
+
+
+class Way(Protocol):
+    """What the arbiter asks about a move."""
+
+    def needs(self, share: Share) -> bool:
+        """Whether the arm may come into the robot's share of a zone, its start included."""
+        ...
+
+    def ends_in(self, share: Share) -> bool:
+        """Whether the arm may stand in it at the end."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FlangeWay:
+    """The flange goes straight from point to point."""
+
+    points_m: Array
+    """Shape (n, 3), in the base of the robot; the first one is where the flange is."""
+    reach_m: float = 0.0
+    """How far from these lines it may come."""
+
+    def needs(self, share: Share) -> bool:
+        """Whether the lines come that near to the box."""
+        return share.box.grown(self.reach_m).meets(self.points_m)
+
+    def ends_in(self, share: Share) -> bool:
+        """Whether the last point lies that near to the box."""
+        return share.box.grown(self.reach_m).holds(self.points_m[-1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class UnknownWay:
+    """A joint move of an arm whose kinematics are not known: the taught poses decide."""
+
+    here_m: Array
+    """Where the flange is now, shape (3,)."""
+    start_rad: Array
+    target_rad: Array
+
+    def needs(self, share: Share) -> bool:
+        """Whether it is anything but a move from one clear pose to another."""
+        between = share.is_clear(self.start_rad) and share.is_clear(self.target_rad)
+        return share.box.holds(self.here_m) or not between
+
+    def ends_in(self, share: Share) -> bool:
+        """Whether the target is anything but a clear pose."""
+        return not share.is_clear(self.target_rad)
+
+
+def linear_way(state: RobotState, base_T_flange: RigidTransform) -> FlangeWay:
+    """A straight move from where the flange is."""
+    return FlangeWay(np.vstack([state.base_T_flange.translation, base_T_flange.translation]))
+
+
+def stream_way(state: RobotState, travel_m: float) -> FlangeWay:
+    """Setpoints that may come anywhere so near to where the flange is."""
+    return FlangeWay(state.base_T_flange.translation[None], travel_m)
+
+
+def joint_way(state: RobotState, joints_rad: Array, kinematics: ForwardKinematics | None) -> Way:
+    """A joint move to shape (6,), by forward kinematics where there are some."""
+    here_m, target_rad = state.base_T_flange.translation, np.asarray(joints_rad, dtype=float)
+    # A target that no arm can have is left to the driver, which refuses it. Until then it needs
+    # every zone. Written so that what is not a number counts as such a target.
+    possible = target_rad.shape == (6,) and bool(np.all(np.abs(target_rad) <= GREATEST_RAD))
+    if not possible:
+        return UnknownWay(here_m, state.joints_rad, np.full(6, np.nan))
+    if kinematics is None:
+        return UnknownWay(here_m, state.joints_rad, target_rad)
+    path = joint_path(state.joints_rad, target_rad)
+    # What the robot reports comes first: a move from a place in the zone needs it, whatever the
+    # kinematics make of the joints.
+    return FlangeWay(np.vstack([here_m, *(kinematics(at).translation for at in path)]))

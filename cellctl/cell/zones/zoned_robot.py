@@ -1,0 +1,144 @@
+"""A robot whose moves ask the arbiter of the zones first."""
+
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.zones.arbiter import REPORT_AGE_S, ZoneArbiter
+from cellctl.cell.zones.ways import Way, joint_way, linear_way, stream_way
+from cellctl.cell.zones.zone import zones_of
+from cellctl.config.cell import CellConfig
+from cellctl.config.robot_drivers import robot_driver
+from cellctl.errors.base import CellError
+from cellctl.errors.robot import NotRearmed
+from cellctl.geometry.pose import Array
+from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, StreamLimits
+from cellctl.interfaces.robot import ForwardKinematics
+from cellctl.interfaces.streaming_robot import StreamOffer
+
+
+class ZonedRobot(Robot):
+    """Stands before a driver. Everything but a move goes straight through, a stop above all.
+
+    Moves raise ``ZoneTaken`` beside what the driver raises. A move that waits for a zone is given
+    up by a stop: it raises ``NotRearmed``, also when the robot was re-armed meanwhile.
+    """
+
+    def __init__(
+        self, robot: Robot, arbiter: ZoneArbiter, kinematics: ForwardKinematics | None
+    ) -> None:
+        self.name = robot.name
+        self._robot, self._arbiter, self._kinematics = robot, arbiter, kinematics
+        self._stops = 0
+
+    async def connect(self) -> None:
+        """As the driver does."""
+        await self._robot.connect()
+
+    async def disconnect(self) -> None:
+        """As the driver does; a move that waits is given up."""
+        self._stops += 1
+        await self._robot.disconnect()
+
+    def incidents(self) -> tuple[CellError, ...]:
+        """Those of the driver."""
+        return self._robot.incidents()
+
+    def state(self, max_age_s: float = 0.25) -> RobotState:
+        """That of the driver."""
+        return self._robot.state(max_age_s)
+
+    async def stop(self) -> None:
+        """As the driver does; a move that waits is given up."""
+        self._stops += 1
+        await self._robot.stop()
+
+    async def rearm(self) -> None:
+        """As the driver does."""
+        await self._robot.rearm()
+
+    async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
+        """With all zones on the way by forward kinematics, else by the taught poses."""
+        return await self._move(
+            lambda: joint_way(self.state(REPORT_AGE_S), joints_rad, self._kinematics),
+            lambda: self._robot.move_joint(joints_rad, speed_ratio=speed_ratio),
+        )
+
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        """With all zones on the straight line."""
+        return await self._move(
+            lambda: linear_way(self.state(REPORT_AGE_S), base_T_flange),
+            lambda: self._robot.move_linear(
+                base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
+            ),
+        )
+
+    async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
+        """With all zones on the straight line."""
+        return await self._move(
+            lambda: linear_way(self.state(REPORT_AGE_S), base_T_flange),
+            lambda: self._robot.step(base_T_flange, speed_m_s=speed_m_s),
+        )
+
+    async def _move(
+        self, plan: Callable[[], Way], move: Callable[[], Awaitable[RobotState]]
+    ) -> RobotState:
+        async with self._passage(plan):
+            return await move()
+
+    def _passage(self, plan: Callable[[], Way]) -> AbstractAsyncContextManager[None]:
+        stops = self._stops
+
+        def plan_unless_stopped() -> Way:
+            # The driver's own latch may have been released meanwhile: what was stopped must not
+            # begin by itself.
+            if self._stops != stops:
+                raise NotRearmed(f"{self.name}: a stop was requested while it waited for a zone")
+            return plan()
+
+        return self._arbiter.passage(self.name, plan_unless_stopped)
+
+
+class ZonedStreamingRobot(ZonedRobot, StreamingRobot):
+    """The same before a robot that follows a stream."""
+
+    def __init__(
+        self, robot: StreamingRobot, arbiter: ZoneArbiter, kinematics: ForwardKinematics | None
+    ) -> None:
+        super().__init__(robot, arbiter, kinematics)
+        self._streaming = robot
+
+    def stream_offer(self) -> StreamOffer:
+        """That of the driver."""
+        return self._streaming.stream_offer()
+
+    @asynccontextmanager
+    async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
+        """With all zones that its setpoints may reach."""
+        async with (
+            self._passage(lambda: stream_way(self.state(REPORT_AGE_S), limits.travel_m)),
+            self._streaming.stream(limits) as stream,
+        ):
+            yield stream
+
+
+def zoned_robots(config: CellConfig, robots: Mapping[str, Robot]) -> Mapping[str, Robot]:
+    """All robots by name; those that share a zone ask the cell's arbiter."""
+    zones = zones_of(config)
+    arbiter = ZoneArbiter(zones, {name: robot.state for name, robot in robots.items()})
+    sharing = {name for zone in zones for name in zone.shares}
+    return {
+        name: _zoned(config, robot, arbiter) if name in sharing else robot
+        for name, robot in robots.items()
+    }
+
+
+def _zoned(config: CellConfig, robot: Robot, arbiter: ZoneArbiter) -> ZonedRobot:
+    driver, settings = robot_driver(config.robots[robot.name])
+    kinematics = driver.forward_kinematics(settings)
+    if isinstance(robot, StreamingRobot):
+        return ZonedStreamingRobot(robot, arbiter, kinematics)
+    return ZonedRobot(robot, arbiter, kinematics)

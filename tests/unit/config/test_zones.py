@@ -1,0 +1,50 @@
+"""Zones of a cell file: robots, boxes, clear poses, and what the check says of them."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.commands import whole_app
+from cellctl.config import problems
+from tests.unit.config.devices_only import devices_only
+
+AUX = "aux_1 = { min_mm = [1450.0"
+
+
+def test_a_zone_names_robots_of_the_cell(tmp_path: Path) -> None:
+    (problem,) = problems(devices_only(tmp_path, AUX, AUX.replace("aux_1", "aux_3")))
+    assert problem.key == "zones.beside_head_1.robots.aux_3"
+    assert problem.allowed == "a robot of this cell: main, aux_1, aux_2"
+
+
+def test_a_zone_has_its_lower_corner_below_its_upper_one(tmp_path: Path) -> None:
+    (problem,) = problems(devices_only(tmp_path, AUX, AUX.replace("1450.0", "2450.0")))
+    assert problem.key == "zones.beside_head_1.robots.aux_1"
+    assert "min_mm must lie below max_mm" in problem.allowed
+
+
+def test_a_zone_of_one_robot_is_none(tmp_path: Path) -> None:
+    (problem,) = problems(devices_only(tmp_path, AUX, f"# {AUX}"))
+    assert problem.key == "zones.beside_head_1.robots"
+
+
+@pytest.mark.parametrize(
+    ("poses", "expected"),
+    [('["retracted"]', "left out"), ('["retarded"]', "measuring, retracted")],
+)
+def test_clear_poses_are_taught_ones_of_a_robot_without_kinematics(
+    tmp_path: Path, poses: str, expected: str
+) -> None:
+    corner = "max_mm = [2400.0, 800.0, 1900.0]"
+    found = problems(devices_only(tmp_path, corner, f"{corner}, clear_poses = {poses}"))
+    assert {one.key for one in found} == {"zones.beside_head_1.robots.aux_1.clear_poses"}
+    assert any(expected in one.allowed for one in found)
+
+
+@pytest.mark.parametrize("name", ["deck.toml", "cell.toml"])
+def test_check_says_which_taught_poses_a_zone_holds(tmp_path: Path, name: str) -> None:
+    # By forward kinematics in the fake cell, by what is not listed as clear in the template.
+    path = devices_only(tmp_path, name=name)
+    output = CliRunner().invoke(whole_app(), ["check", str(path)]).output
+    assert "holds of main: no taught pose; of aux_2: measuring" in output
