@@ -1,6 +1,5 @@
 """The campaign: `python -m benchmarks.tornado`."""
 
-import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -91,4 +90,4 @@ def _report(ledger: Ledger, out: Path, console: Console) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(typer.run(tornado))
+    typer.run(tornado)

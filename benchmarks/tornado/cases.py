@@ -50,16 +50,20 @@ class Case:
 def cases(
     scales: Sequence[float], seeds: Sequence[int], only: Sequence[str] = ()
 ) -> Iterator[Case]:
-    """All runs of a campaign, the references first; ``only`` names some imperfections."""
-    both: tuple[Place, Place] = ("mating", "cell")
-    for place in both:
+    """All runs of a campaign, the references first; ``only`` names some imperfections.
+
+    A reference is run where at least one of the imperfections is tried.
+    """
+    tried = [name for name in (*sorted(CATALOGUE), ALL) if not only or name in only]
+    for place in sorted({_place(name) for name in tried}, reverse=True):
         yield from (Case(NONE, 0.0, place, seed) for seed in seeds)
-    for name in (*sorted(CATALOGUE), ALL):
-        if only and name not in only:
-            continue
-        place = "mating" if name in MATING_ONLY else "cell"
+    for name in tried:
         for scale in scales:
             # The reference has the sizes of the scenario file.
             if scale == 1 and name in CATALOGUE and CATALOGUE[name].keys:
                 continue
-            yield from (Case(name, scale, place, seed) for seed in seeds)
+            yield from (Case(name, scale, _place(name), seed) for seed in seeds)
+
+
+def _place(imperfection: str) -> Place:
+    return "mating" if imperfection in MATING_ONLY else "cell"

@@ -35,7 +35,7 @@ class Cost:
 
 def costs(outcomes: Sequence[Outcome]) -> list[Cost]:
     """Every case but the references, the dearest imperfection first."""
-    reference = {
+    reference: dict[tuple[str, int], Outcome] = {
         (one.case.place, one.case.seed): one for one in outcomes if one.case.imperfection == NONE
     }
     groups: dict[tuple[str, float, str], list[Outcome]] = {}
