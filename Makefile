@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults bench bench-metrology bench-looks bench-guard \
+.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado bench bench-metrology bench-looks bench-guard \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -49,6 +49,10 @@ campaign-mating: venv
 # Takes hours; interrupted, it goes on where it was. ONLY=FAULT/PHASE, with *, tries a part of it.
 campaign-faults: venv
 	$(BIN)/python -m benchmarks.faults.campaign --page docs/fault-matrix.md $(if $(ONLY),--only '$(ONLY)')
+
+# Takes an hour and more; interrupted, it goes on where it was.
+campaign-tornado: venv
+	$(BIN)/python -m benchmarks.tornado
 
 bench: bench-metrology bench-looks bench-guard
 

@@ -24,6 +24,7 @@ COLUMNS = (
     ("wall_s", "wall s", "{:.0f}"),
     ("lost_s", "lost by the fake s", "{:.2f}"),
 )
+COMPONENTS = ("x mm", "y mm", "z mm", "rx °", "ry °", "rz °")
 
 
 def campaign(
@@ -42,6 +43,7 @@ def campaign(
     good = [result for result in results if result["passed"]]
     if good:
         console.print(_statistics(good))
+        console.print(decay(good))
     for result in results:
         if not result["passed"]:
             why = result["fault"] or "beyond its limit: " + ", ".join(result.get("beyond", ()))
@@ -88,6 +90,21 @@ def _statistics(good: list[dict[str, Any]]) -> Table:
         if values:
             numbers = (np.median(values), np.percentile(values, 95), np.max(values))
             table.add_row(title, *(form.format(number) for number in numbers))
+    return table
+
+
+def decay(good: list[dict[str, Any]]) -> Table:
+    """What each look of the loop found, and how many runs needed it: figure 11 of the paper."""
+    table = Table(
+        "look", "runs", "needed no other", *COMPONENTS, title="errors of the loop, median / max"
+    )
+    histories = [np.abs(np.array(one["errors_mm_deg"], float)) for one in good]
+    for look in range(max((len(errors) for errors in histories), default=0)):
+        found = np.array([errors[look] for errors in histories if len(errors) > look])
+        last = sum(len(errors) == look + 1 for errors in histories)
+        columns = zip(np.median(found, axis=0), found.max(axis=0), strict=True)
+        cells = [f"{middle:.4f} / {most:.4f}" for middle, most in columns]
+        table.add_row(str(look + 1), str(len(found)), str(last), *cells)
     return table
 
 

@@ -1,5 +1,6 @@
 """One cell for one trial: world, controller and guard on one simulated clock."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -63,11 +64,15 @@ class MatingCell:
         stop_latency_s: float,
         pins: Pins | None = None,
         left: Array | None = None,
+        imperfections: Mapping[str, float] | None = None,
     ) -> None:
-        """``left``: what the loop before leaves (m, rad), shape (6,); drawn when None."""
+        """``left``: what the loop before leaves (m, rad), shape (6,); drawn when None.
+        ``imperfections``: scales in place of those of the scenario file."""
         self.rng = np.random.default_rng([seed, 77])
         self._left = left
-        self.world = DeckOnFrame(_scenario(stiffness_n_m, stop_latency_s, pins), seed)
+        self.world = DeckOnFrame(
+            _scenario(stiffness_n_m, stop_latency_s, pins, imperfections), seed
+        )
         self.faults = FaultBoard("main", ROBOT_FAULTS)
         self.arm = self.world.arms["main"]
         self.start_s = self._approach_stand_off()
@@ -171,8 +176,13 @@ def _displacement(vector: Array) -> RigidTransform:
     return RigidTransform.from_components(vector[:3], Rotation.from_rotvec(vector[3:]))
 
 
-def _scenario(stiffness_n_m: float, stop_latency_s: float, pins: Pins | None) -> DeckScenario:
-    scenario = DeckScenario.read(SCENARIO)
+def _scenario(
+    stiffness_n_m: float,
+    stop_latency_s: float,
+    pins: Pins | None,
+    imperfections: Mapping[str, float] | None,
+) -> DeckScenario:
+    scenario = DeckScenario.read(SCENARIO, imperfections)
     changes = {"stiffness_n_m": (stiffness_n_m,) * 2, "pins": pins}
     contact = scenario.contact.model_copy(update=changes)
     main = scenario.robots["main"].model_copy(update={"stop_latency_ms": stop_latency_s * 1e3})

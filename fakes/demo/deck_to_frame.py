@@ -114,6 +114,9 @@ def _figures(evidence: Evidence) -> dict[str, Any]:
         "measured_error_mm_deg": (
             [component["value"] for component in passes[-1]["components"]] if passes else None
         ),
+        "errors_mm_deg": [
+            [component["value"] for component in one["components"]] for one in passes
+        ],
         "true_frame_T_deck_mm_deg": pose,
         "lateral_mm": max(offsets) if offsets else None,
         "rotation_deg": None if pose[0] is None else max(abs(angle) for angle in pose[3:]),

@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from fakes.world.flaws.sensor import SensorFlaws
 from fakes.world.frames import Array
 from fakes.world.payload import STEP_S
 from fakes.world.robot import RobotArm
 from fakes.world.sensor import ForceReading
-from fakes.world.sensor_flaws import SensorFlaws
 
 __all__ = ["STEP_S", "MountedSensor"]
 

@@ -12,7 +12,7 @@ from fakes.world.arm import (
     nominal_links,
     singular,
 )
-from fakes.world.arm_flaws import ArmFlaws
+from fakes.world.flaws.arm import ArmFlaws
 from fakes.world.frames import MM, Array, distance, matrix_distance, stream
 from fakes.world.motion import JointPath, LinearPath, Path, Profile, StreamSegment, way_m
 from fakes.world.truth import RobotTruth

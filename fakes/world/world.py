@@ -13,14 +13,14 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
-from fakes.world.arm_flaws import ArmFlaws
-from fakes.world.camera_flaws import CameraFlaws
+from fakes.world.flaws.arm import ArmFlaws
+from fakes.world.flaws.camera import CameraFlaws
+from fakes.world.flaws.sensor import SensorFlaws
 from fakes.world.frames import Array, stream, stream_seed
 from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
 from fakes.world.scene import Body, CameraScene
 from fakes.world.sensor import ForceReading
-from fakes.world.sensor_flaws import SensorFlaws
 from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
 from fakes.world.truth import draw, stream_keys
 

@@ -89,3 +89,13 @@ def test_a_figure_of_the_record_that_failed_is_bad() -> None:
 def test_a_loop_that_did_not_converge_is_bad() -> None:
     passes = [{"converged": False, "components": [{"value": 0.2}]}]
     assert judged(record={"passes": passes}) == ["convergence of the loop"]
+
+
+def test_the_errors_of_every_look_are_among_the_figures() -> None:
+    looks = [
+        {"converged": False, "components": [{"value": 0.3}, {"value": -0.02}]},
+        {"converged": True, "components": [{"value": 0.01}, {"value": 0.001}]},
+    ]
+    evidence = Evidence(GOOD, deepcopy(TRUTH), deepcopy(RECORD) | {"passes": looks})
+    figures = DeckToFrameDemo().judge(evidence).figures
+    assert figures["errors_mm_deg"] == [[0.3, -0.02], [0.01, 0.001]]

@@ -6,9 +6,9 @@ from typing import Self
 import numpy as np
 
 from fakes.scenario import Scenario
-from fakes.world.drift import ThermalDrift
+from fakes.world.flaws.drift import ThermalDrift
+from fakes.world.flaws.transmission import Transmission
 from fakes.world.frames import MM, stream
-from fakes.world.transmission import Transmission
 
 _ARCSEC = np.deg2rad(1 / 3600)
 _BASE_HEIGHT_M = 1.0

@@ -5,11 +5,11 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
-from fakes.world.arm_flaws import ArmFlaws
-from fakes.world.drift import ThermalDrift
+from fakes.world.flaws.arm import ArmFlaws
+from fakes.world.flaws.drift import ThermalDrift
+from fakes.world.flaws.transmission import CYCLES, Transmission
 from fakes.world.frames import distance
 from fakes.world.robot import RobotArm
-from fakes.world.transmission import CYCLES, Transmission
 from fakes.world.truth import draw
 
 ABOVE_RAD = np.deg2rad([0, -52.766, 109.14, 0, 33.626, 90])

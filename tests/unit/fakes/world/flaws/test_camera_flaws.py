@@ -5,7 +5,7 @@ import pytest
 
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
-from fakes.world.camera_flaws import CameraFlaws
+from fakes.world.flaws.camera import CameraFlaws
 from fakes.world.frames import distance
 from fakes.world.scene import Exposure, StereoTruth
 

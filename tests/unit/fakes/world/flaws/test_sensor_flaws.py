@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
-from fakes.world.sensor_flaws import SensorFlaws
+from fakes.world.flaws.sensor import SensorFlaws
 
 RANGE_N = 5000.0
 

@@ -1,0 +1,34 @@
+"""The same figures as a table in Markdown, for the documentation."""
+
+from collections.abc import Sequence
+
+from benchmarks.tornado.costs import FIGURES, Cost
+from benchmarks.tornado.outcome import Verdict
+from fakes.imperfections import CATALOGUE
+
+
+def markdown(found: Sequence[Cost]) -> str:
+    """One line for each imperfection and size."""
+    titles = [f"{title} more" for _, title, _ in FIGURES]
+    head = ["imperfection", "size", "tried on", *titles, "looks", "good", "noticed", "NOT NOTICED"]
+    lines = [_line(head), _line(["---"] * len(head))]
+    lines += [_line(_cells(cost)) for cost in found]
+    return "\n".join(lines) + "\n"
+
+
+def _cells(cost: Cost) -> list[str]:
+    more = ["–" if (value := cost.more[key]) is None else f"{value:+.4g}" for key, _, _ in FIGURES]
+    counts = [str(cost.count(verdict)) for verdict in Verdict]
+    looks = "–" if cost.iterations is None else str(cost.iterations)
+    return [cost.imperfection, _size(cost), cost.place, *more, looks, *counts]
+
+
+def _size(cost: Cost) -> str:
+    one = CATALOGUE.get(cost.imperfection)
+    if one is None or not one.unit:
+        return f"{cost.scale:g} ×"
+    return f"{cost.scale:g} × = {cost.scale * one.size:.3g} {one.unit}"
+
+
+def _line(cells: Sequence[str]) -> str:
+    return "| " + " | ".join(cells) + " |"

@@ -1,0 +1,1 @@
+"""What is imperfect about devices, each by its size in ``fakes.imperfections``."""

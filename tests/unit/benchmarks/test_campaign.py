@@ -1,0 +1,19 @@
+"""What the campaign says about the measuring loop."""
+
+from io import StringIO
+
+from rich.console import Console
+
+from benchmarks.campaign import decay
+
+FIRST, SECOND = [0.1, -0.2, 0.3, 0.01, 0.02, -0.03], [0.01, 0.0, -0.02, 0.001, 0.002, 0.003]
+
+
+def test_each_look_has_its_errors_and_how_many_runs_needed_it() -> None:
+    written = StringIO()
+    found = decay([{"errors_mm_deg": [FIRST, SECOND]}, {"errors_mm_deg": [SECOND]}])
+    Console(file=written, width=200).print(found)
+    rows = [line.split() for line in written.getvalue().splitlines() if "│" in line]
+    cells = [[cell for cell in row if cell not in {"│", "/"}] for row in rows]
+    assert cells[0][:5] == ["1", "2", "1", "0.0550", "0.1000"]
+    assert cells[1][:5] == ["2", "1", "1", "0.0100", "0.0100"]
