@@ -22,6 +22,8 @@ LINE_FAILURES = (ModbusException, AssertionError, OSError)
 DEVICES = ("main", "aux_1", "aux_2", "force", "head_1", "head_2", "tracker", "world")
 POLL_S = 0.03
 RESTING = frozenset({"Aborted", "Stopped", "Held", "Completed", "Idle"})
+OVER = RESTING - {"Idle"}
+"""A job that is found in one of these has ended."""
 _LEADS_ON = {"Aborted": "Clear", "Stopped": "Reset", "Completed": "Reset", "Held": "Stop"}
 
 
@@ -161,7 +163,7 @@ class Bench:
         reached: Callable[[Shown], Any],
         *,
         timeout_s: float = 60.0,
-        ends: frozenset[str] = frozenset({"Aborted"}),
+        ends: frozenset[str] = OVER,
     ) -> Shown:
         """Until the line sees it; ``NotReached`` when it ends elsewhere or takes too long."""
         deadline = time.monotonic() + timeout_s

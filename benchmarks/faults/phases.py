@@ -20,6 +20,7 @@ LIMIT_N = 50.0
 FOREIGN_BODY = {"x_mm": 0.0, "y_mm": 0.0, "height_mm": 0.2}
 """Met in the slow travel: the mating ends with F522 and backs off."""
 REACH_S = 150.0
+RESET_OVER = frozenset({"Idle", "Aborted"})
 
 Reach = Callable[[Bench], str]
 """Brings the cell into the phase; the arm that moves or is in contact. Raises ``NotReached``."""
@@ -116,7 +117,7 @@ def _lift_off(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("lift-off", lambda _shown: bench.moving_arm())
+    bench.until("lift-off", lambda _shown: bench.moving_arm(), ends=RESET_OVER)
     return "main"
 
 
@@ -127,7 +128,7 @@ def _reset_home(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("way home", lambda _shown: bench.moving_arm())
+    bench.until("way home", lambda _shown: bench.moving_arm(), ends=RESET_OVER)
     return "main"
 
 
@@ -166,7 +167,7 @@ PHASES = (
     Phase("measure-frame", "step 10, measure frame, nothing moves", partial(_step_begins, 10)),
     Phase("measure-deck", "step 20, measure deck, the arm moves", partial(_step_moves, 20)),
     Phase("pre-assembly", "step 30, pre-assembly, the arm moves", partial(_step_moves, 30)),
-    Phase("correct-pose", "step 40, correct pose, the arm moves", partial(_step_moves, 40)),
+    Phase("correct-pose", "step 40, correct pose, images are taken", partial(_step_begins, 40)),
     Phase(
         "way-down",
         "step 50, mate, the arm moves down",
