@@ -138,11 +138,13 @@ class Bench:
         """Motions since the watch began."""
         return self.control.request("watched")
 
-    def moving_arm(self) -> str | None:
-        """An arm that is on its way."""
-        motions = self.watched()["motions"]
-        moving = [arm for arm, all_ in motions.items() if all_ and all_[-1]["ended_s"] is None]
-        return moving[0] if moving else None
+    def moving_arm(self, travelled_mm: float) -> str | None:
+        """An arm that is on its way and has come so far, so that a stop has something to stop."""
+        for arm, motions in self.watched()["motions"].items():
+            last = motions[-1] if motions else None
+            if last and last["ended_s"] is None and last["travel_mm"] >= travelled_mm:
+                return str(arm)
+        return None
 
     def truth(self) -> dict[str, Any]:
         """What nobody in the cell knows."""

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
-from benchmarks.faults.bench import Bench
+from benchmarks.faults.bench import OVER, Bench
+from benchmarks.faults.line import Shown
 from fakes.demo.deck_calibration import PROCEDURES
 
 PRODUCTION, MAINTENANCE = 1, 2
@@ -19,6 +20,8 @@ LIMIT_N = 50.0
 """The recipe's ``limit_force_n``."""
 FOREIGN_BODY = {"x_mm": 0.0, "y_mm": 0.0, "height_mm": 0.2}
 """Met in the slow travel: the mating ends with F522 and backs off."""
+UNDER_WAY_MM, CREEPING_MM = 3.0, 0.03
+"""How far an arm has come when the fault is injected; the latter at the speeds of a contact."""
 REACH_S = 150.0
 RESET_OVER = frozenset({"Idle", "Aborted"})
 
@@ -52,16 +55,17 @@ def start_run(bench: Bench) -> None:
     bench.command("Start", mode=PRODUCTION, recipe=1, serial="FAULT.1")
 
 
-def _moving(bench: Bench, what: str, step: int) -> str:
-    """The arm that moves in a step."""
+def _arm_under_way(bench: Bench, what: str, travelled_mm: float, step: int | None = None) -> str:
+    """The arm that moves, in a step if one is given."""
     found: list[str] = []
 
-    def there(shown_step: int) -> bool:
-        arm = bench.moving_arm() if shown_step == step else None
+    def there(shown: Shown) -> bool:
+        arm = bench.moving_arm(travelled_mm) if step in {None, shown.step} else None
         found.extend([arm] if arm else [])
         return bool(found)
 
-    bench.until(what, lambda shown: there(shown.step), timeout_s=REACH_S)
+    ends = RESET_OVER if step is None else OVER
+    bench.until(what, there, timeout_s=REACH_S, ends=ends)
     return found[0]
 
 
@@ -73,8 +77,7 @@ def _idle(bench: Bench) -> str:
 def _starting(bench: Bench) -> str:
     bench.to_idle(PRODUCTION)
     start_run(bench)
-    bench.until("heads on their way", lambda _shown: bench.moving_arm())
-    return bench.moving_arm() or "aux_1"
+    return _arm_under_way(bench, "heads on their way", UNDER_WAY_MM)
 
 
 def _step_begins(step: int, bench: Bench) -> str:
@@ -87,7 +90,7 @@ def _step_begins(step: int, bench: Bench) -> str:
 def _step_moves(step: int, bench: Bench) -> str:
     bench.to_idle(PRODUCTION)
     start_run(bench)
-    return _moving(bench, f"motion in step {step}", step)
+    return _arm_under_way(bench, f"motion in step {step}", UNDER_WAY_MM, step)
 
 
 def _contact(bench: Bench) -> str:
@@ -117,8 +120,7 @@ def _lift_off(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("lift-off", lambda _shown: bench.moving_arm(), ends=RESET_OVER)
-    return "main"
+    return _arm_under_way(bench, "lift-off", CREEPING_MM)
 
 
 def _reset_home(bench: Bench) -> str:
@@ -128,8 +130,7 @@ def _reset_home(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("way home", lambda _shown: bench.moving_arm(), ends=RESET_OVER)
-    return "main"
+    return _arm_under_way(bench, "way home", UNDER_WAY_MM)
 
 
 def _procedure(number: int, bench: Bench) -> str:
@@ -137,7 +138,7 @@ def _procedure(number: int, bench: Bench) -> str:
     procedure = next(one for one in PROCEDURES if one.number == number)
     procedure.prepare(bench.control)
     bench.command("Start", mode=MAINTENANCE, recipe=number, serial="FAULT.1")
-    return _moving(bench, f"motion in procedure {number}", number)
+    return _arm_under_way(bench, f"motion in procedure {number}", UNDER_WAY_MM, number)
 
 
 def _procedure_contact(bench: Bench) -> str:
