@@ -4,7 +4,7 @@ import os
 import resource
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,8 @@ from tests.cell.own_cell import OwnCell, Program
 
 LINE_FAILURES = (ModbusException, AssertionError, OSError)
 """How the daemon's silence looks from the line; ``OutsidePlc`` asserts every answer."""
-DEVICES = ("main", "aux_1", "aux_2", "force", "head_1", "head_2", "tracker", "world")
+ARMS = ("main", "aux_1", "aux_2")
+DEVICES = (*ARMS, "force", "head_1", "head_2", "tracker", "world")
 POLL_S = 0.03
 RESTING = frozenset({"Aborted", "Stopped", "Held", "Completed", "Idle"})
 OVER = RESTING - {"Idle"}
@@ -138,12 +139,16 @@ class Bench:
         """Motions since the watch began."""
         return self.control.request("watched")
 
-    def moving_arm(self, travelled_mm: float) -> str | None:
-        """An arm that is on its way and has come so far, so that a stop has something to stop."""
-        for arm, motions in self.watched()["motions"].items():
+    def moving_arm(self, travelled_mm: float, arms: Sequence[str] = ARMS) -> str | None:
+        """One of these arms that is on its way and has come so far, in a turn a degree for each
+        3 mm: a stop then has something to stop."""
+        for arm in arms:
+            motions = self.watched()["motions"][arm]
             last = motions[-1] if motions else None
-            if last and last["ended_s"] is None and last["travel_mm"] >= travelled_mm:
-                return str(arm)
+            if last is None or last["ended_s"] is not None:
+                continue
+            if max(last["travel_mm"], 3.0 * last["turn_deg"]) >= travelled_mm:
+                return arm
         return None
 
     def truth(self) -> dict[str, Any]:

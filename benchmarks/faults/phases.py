@@ -3,11 +3,11 @@
 Whether the cell is there is asked of the line's registers and of the fake cell's arms.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from benchmarks.faults.bench import OVER, Bench
+from benchmarks.faults.bench import ARMS, OVER, Bench
 from benchmarks.faults.line import Shown
 from fakes.demo.deck_calibration import PROCEDURES
 
@@ -55,12 +55,18 @@ def start_run(bench: Bench) -> None:
     bench.command("Start", mode=PRODUCTION, recipe=1, serial="FAULT.1")
 
 
-def _arm_under_way(bench: Bench, what: str, travelled_mm: float, step: int | None = None) -> str:
+def _arm_under_way(
+    bench: Bench,
+    what: str,
+    travelled_mm: float,
+    step: int | None = None,
+    arms: Sequence[str] = ARMS,
+) -> str:
     """The arm that moves, in a step if one is given."""
     found: list[str] = []
 
     def there(shown: Shown) -> bool:
-        arm = bench.moving_arm(travelled_mm) if step in {None, shown.step} else None
+        arm = bench.moving_arm(travelled_mm, arms) if step in {None, shown.step} else None
         found.extend([arm] if arm else [])
         return bool(found)
 
@@ -133,12 +139,12 @@ def _reset_home(bench: Bench) -> str:
     return _arm_under_way(bench, "way home", UNDER_WAY_MM)
 
 
-def _procedure(number: int, bench: Bench) -> str:
+def _procedure(number: int, arms: Sequence[str], bench: Bench) -> str:
     bench.to_idle(MAINTENANCE)
     procedure = next(one for one in PROCEDURES if one.number == number)
     procedure.prepare(bench.control)
     bench.command("Start", mode=MAINTENANCE, recipe=number, serial="FAULT.1")
-    return _arm_under_way(bench, f"motion in procedure {number}", UNDER_WAY_MM, number)
+    return _arm_under_way(bench, f"motion in procedure {number}", UNDER_WAY_MM, number, arms)
 
 
 def _procedure_contact(bench: Bench) -> str:
@@ -156,7 +162,7 @@ def _in_procedure(number: int, title: str, *, sensor_moves: bool, images: bool) 
     return Phase(
         f"procedure-{number}",
         f"procedure {number}, {title}, an arm moves",
-        partial(_procedure, number),
+        partial(_procedure, number, ARMS[:1] if sensor_moves else ARMS),
         sensor_moves=sensor_moves,
         images=images,
     )
