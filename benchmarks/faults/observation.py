@@ -42,6 +42,7 @@ class Moved:
     ended_s: float | None
     travel_mm: float
     rise_mm: float
+    turn_deg: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,6 +166,7 @@ def _motions(watched: Mapping[str, Any]) -> list[Moved]:
             motion["ended_s"],
             motion["travel_mm"],
             motion["rise_mm"],
+            motion["turn_deg"],
         )
         for arm, motions in watched["motions"].items()
         for motion in motions

@@ -9,8 +9,8 @@ from benchmarks.faults.judgement import judge
 from benchmarks.faults.observation import Effect, Moved, Observation
 from tests.unit.benchmarks.faults.seen import BRAKED, CALM, EXPECTED
 
-UP = Moved("main", begun_s=1.2, ended_s=4.0, travel_mm=2.0, rise_mm=2.0)
-LATER = Moved("aux_1", begun_s=2.5, ended_s=3.0, travel_mm=1.0, rise_mm=0.0)
+UP = Moved("main", begun_s=1.2, ended_s=4.0, travel_mm=2.0, rise_mm=2.0, turn_deg=0.0)
+LATER = Moved("aux_1", begun_s=2.5, ended_s=3.0, travel_mm=1.0, rise_mm=0.0, turn_deg=0.0)
 
 
 def with_effect(effect: Effect, **changes: Any) -> Observation:
@@ -22,6 +22,7 @@ def test_figures_of_a_stop() -> None:
     assert judgement.passed
     assert judgement.standstill_s == 0.9
     assert judgement.travel_mm == 24.0
+    assert judgement.turn_deg == 1.0
     assert judgement.backed_off_mm == 0.0
 
 
