@@ -80,8 +80,10 @@ def _motion(seen: Observation, others: Sequence[Moved], standstill_s: float | No
     expected = seen.expected
     if expected.effect is not Effect.AT_NEXT_USE and standstill_s > expected.bound_s:
         wrong.append(f"stood after {standstill_s:.2f} s, bound {expected.bound_s:.2f} s")
-    if expected.effect is Effect.MOVE_ENDS and any(motion.begun_s > 0 for motion in others):
-        wrong.append("a move began after the fault")
+    if expected.effect is Effect.MOVE_ENDS and any(
+        motion.begun_s > expected.noticed_s for motion in others
+    ):
+        wrong.append("a move began when the fault was known")
     if seen.ended_s is not None:
         late = [motion for motion in seen.motions if motion.begun_s > seen.ended_s + AFTER_END_S]
         wrong += [f"{motion.arm} moved again after {seen.state}" for motion in late]

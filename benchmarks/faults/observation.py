@@ -29,6 +29,8 @@ class Expected:
     """The daemon is dead: the line sees nothing at all."""
     may_restart: bool = False
     """Clear and Reset alone do not help: the daemon has to be started again."""
+    noticed_s: float = 0.0
+    """Nobody can know of the fault earlier: until then other moves may begin."""
     has_record: bool = True
     """The job has a record that must be closed."""
 

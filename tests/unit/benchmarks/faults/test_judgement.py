@@ -74,7 +74,10 @@ def test_a_move_may_end_but_none_begin() -> None:
     long = replace(BRAKED, ended_s=1.8)
     assert judge(with_effect(Effect.MOVE_ENDS, motions=[long], state="Held")).passed
     seen = judge(with_effect(Effect.MOVE_ENDS, motions=[BRAKED, replace(UP, ended_s=1.9)]))
-    assert "a move began after the fault" in seen.wrong
+    assert "a move began when the fault was known" in seen.wrong
+    known_later = replace(EXPECTED, effect=Effect.MOVE_ENDS, noticed_s=1.5)
+    motions = [BRAKED, replace(UP, ended_s=1.9)]
+    assert judge(replace(CALM, expected=known_later, motions=motions, ended_s=2.0)).passed
 
 
 def test_what_is_not_used_may_go_on_until_the_job_ends() -> None:
