@@ -209,4 +209,6 @@ def demanded(fault: Fault, phase: Phase) -> tuple[Effect, float]:
     """Effect and bound of a fault in a phase."""
     if fault.effect is Effect.MOVE_ENDS and phase.line_stops_at_once:
         return Effect.AT_ONCE, fault.noticed_s + STOP_S
+    if fault.effect is Effect.AT_ONCE and phase.starts:
+        return Effect.AT_NEXT_USE, fault.bound_s  # other arms may begin to move
     return fault.effect, fault.bound_s

@@ -46,7 +46,7 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
     watched, after = bench.watched(), bench.truth()
     record = _record(bench, before)
     found = _next_start(bench, fault)
-    if fault.line_silent or (last is not None and last.state == "Held"):
+    if found.restarted or (last is not None and last.state == "Held"):
         # The next start of the daemon closes the record, and so does the Stop of a held run.
         record = _record(bench, before)
     if fault.line_silent:
