@@ -4,7 +4,7 @@ import os
 import resource
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,9 +19,12 @@ from tests.cell.own_cell import OwnCell, Program
 
 LINE_FAILURES = (ModbusException, AssertionError, OSError)
 """How the daemon's silence looks from the line; ``OutsidePlc`` asserts every answer."""
-DEVICES = ("main", "aux_1", "aux_2", "force", "head_1", "head_2", "tracker", "world")
+ARMS = ("main", "aux_1", "aux_2")
+DEVICES = (*ARMS, "force", "head_1", "head_2", "tracker", "world")
 POLL_S = 0.03
 RESTING = frozenset({"Aborted", "Stopped", "Held", "Completed", "Idle"})
+OVER = RESTING - {"Idle"}
+"""A job that is found in one of these has ended."""
 _LEADS_ON = {"Aborted": "Clear", "Stopped": "Reset", "Completed": "Reset", "Held": "Stop"}
 
 
@@ -136,11 +139,17 @@ class Bench:
         """Motions since the watch began."""
         return self.control.request("watched")
 
-    def moving_arm(self) -> str | None:
-        """An arm that is on its way."""
-        motions = self.watched()["motions"]
-        moving = [arm for arm, all_ in motions.items() if all_ and all_[-1]["ended_s"] is None]
-        return moving[0] if moving else None
+    def moving_arm(self, travelled_mm: float, arms: Sequence[str] = ARMS) -> str | None:
+        """One of these arms that is on its way and has come so far, in a turn a degree for each
+        3 mm: a stop then has something to stop."""
+        for arm in arms:
+            motions = self.watched()["motions"][arm]
+            last = motions[-1] if motions else None
+            if last is None or last["ended_s"] is not None:
+                continue
+            if max(last["travel_mm"], 3.0 * last["turn_deg"]) >= travelled_mm:
+                return arm
+        return None
 
     def truth(self) -> dict[str, Any]:
         """What nobody in the cell knows."""
@@ -161,7 +170,7 @@ class Bench:
         reached: Callable[[Shown], Any],
         *,
         timeout_s: float = 60.0,
-        ends: frozenset[str] = frozenset({"Aborted"}),
+        ends: frozenset[str] = OVER,
     ) -> Shown:
         """Until the line sees it; ``NotReached`` when it ends elsewhere or takes too long."""
         deadline = time.monotonic() + timeout_s

@@ -128,11 +128,7 @@ class Campaign:
         seen = self.results.get(trial.key)
         if seen is None:
             return f"{trial.key}: NOT REACHED, {self.not_reached.get(trial.key)}"
-        stands, travel, peak, shown, record, found, verdict = table.row(seen)
-        return (
-            f"{trial.key}: {stands} s, {travel} mm, {peak} N, {shown}, record {record}; "
-            f"then {found}; {verdict.strip('*')}"
-        )
+        return " | ".join([trial.key, *table.row(seen)])
 
 
 def campaign(  # noqa: PLR0917  # options of the command line

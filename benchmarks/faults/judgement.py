@@ -1,6 +1,6 @@
 """Whether a fault ended as it must: a pure function of what was seen."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from benchmarks.faults.observation import Effect, Moved, Observation
@@ -22,6 +22,8 @@ class Judgement:
     """From the fault to the end of the last motion; None if it never ended."""
     travel_mm: float
     """The longest way of any arm after the fault."""
+    turn_deg: float
+    """The greatest turn of any arm after the fault."""
     backed_off_mm: float
     wrong: Sequence[str]
 
@@ -37,10 +39,6 @@ def judge(seen: Observation) -> Judgement:
     others = [motion for motion in seen.motions if motion not in leaving]
     ends = [motion.ended_s for motion in others]
     standstill_s = None if None in ends else max((end for end in ends if end), default=0.0)
-    ways_mm = [
-        sum(motion.travel_mm for motion in others if motion.arm == arm)
-        for arm in {motion.arm for motion in others}
-    ]
     wrong = [
         *_motion(seen, others, standstill_s),
         *_force(seen),
@@ -49,10 +47,18 @@ def judge(seen: Observation) -> Judgement:
     ]
     return Judgement(
         standstill_s,
-        max(ways_mm, default=0.0),
+        _greatest(others, lambda motion: motion.travel_mm),
+        _greatest(others, lambda motion: motion.turn_deg),
         sum(motion.travel_mm for motion in leaving),
         wrong,
     )
+
+
+def _greatest(motions: Sequence[Moved], size: Callable[[Moved], float]) -> float:
+    """Of the arms, each with all its motions together."""
+    arms = {motion.arm for motion in motions}
+    sums = [sum(size(motion) for motion in motions if motion.arm == arm) for arm in arms]
+    return max(sums, default=0.0)
 
 
 def _back_off(seen: Observation) -> list[Moved]:
@@ -74,8 +80,10 @@ def _motion(seen: Observation, others: Sequence[Moved], standstill_s: float | No
     expected = seen.expected
     if expected.effect is not Effect.AT_NEXT_USE and standstill_s > expected.bound_s:
         wrong.append(f"stood after {standstill_s:.2f} s, bound {expected.bound_s:.2f} s")
-    if expected.effect is Effect.MOVE_ENDS and any(motion.begun_s > 0 for motion in others):
-        wrong.append("a move began after the fault")
+    if expected.effect is Effect.MOVE_ENDS and any(
+        motion.begun_s > expected.noticed_s for motion in others
+    ):
+        wrong.append("a move began when the fault was known")
     if seen.ended_s is not None:
         late = [motion for motion in seen.motions if motion.begun_s > seen.ended_s + AFTER_END_S]
         wrong += [f"{motion.arm} moved again after {seen.state}" for motion in late]

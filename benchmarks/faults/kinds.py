@@ -12,6 +12,7 @@ Begin = Callable[[Bench, str], None]
 """Gets the arm that moves."""
 End = Callable[[Bench], None]
 
+STOP_S = 2.5
 NO_SENSOR_ARM = "the arm that moves here carries no force sensor"
 NO_IMAGES = "no image is taken here, nor later in this job"
 LINE_MAY_FINISH = (
@@ -29,12 +30,14 @@ class Fault:
     title: str
     begin: Begin
     effect: Effect = Effect.AT_ONCE
-    bound_s: float = 2.5
+    bound_s: float = STOP_S
     """Until all motion has ended: detection, stop latency, and 0.8 s of a joint ramp."""
     patience_s: float = 60.0
     """Until the line has seen where it ends."""
     silent_s: float = 0.0
     """The line sees nothing for so long; then the fault goes over by itself (``resume``)."""
+    noticed_s: float = 0.0
+    """Nobody can know of it earlier."""
     resume: End | None = None
     line_silent: bool = False
     """The line sees nothing until the daemon is started again."""
@@ -148,6 +151,7 @@ FAULTS = (
         Effect.MOVE_ENDS,
         bound_s=60.0,
         patience_s=120.0,
+        noticed_s=3.5,  # ``heartbeat_timeout_s`` of the cell file, and a beat
         reason_not=_line_finishes,
     ),
     Fault(
@@ -200,12 +204,11 @@ FAULTS = (
     ),
 )
 
-_STOPS_AT_LINE_LOSS_S = 5.5
-"""``heartbeat_timeout_s`` of the cell file, and a stop."""
-
 
 def demanded(fault: Fault, phase: Phase) -> tuple[Effect, float]:
     """Effect and bound of a fault in a phase."""
     if fault.effect is Effect.MOVE_ENDS and phase.line_stops_at_once:
-        return Effect.AT_ONCE, _STOPS_AT_LINE_LOSS_S
+        return Effect.AT_ONCE, fault.noticed_s + STOP_S
+    if fault.effect is Effect.AT_ONCE and phase.starts:
+        return Effect.AT_NEXT_USE, fault.bound_s  # other arms may begin to move
     return fault.effect, fault.bound_s

@@ -29,6 +29,8 @@ class Expected:
     """The daemon is dead: the line sees nothing at all."""
     may_restart: bool = False
     """Clear and Reset alone do not help: the daemon has to be started again."""
+    noticed_s: float = 0.0
+    """Nobody can know of the fault earlier: until then other moves may begin."""
     has_record: bool = True
     """The job has a record that must be closed."""
 
@@ -42,6 +44,7 @@ class Moved:
     ended_s: float | None
     travel_mm: float
     rise_mm: float
+    turn_deg: float
 
 
 @dataclass(frozen=True, slots=True)

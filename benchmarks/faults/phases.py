@@ -3,11 +3,12 @@
 Whether the cell is there is asked of the line's registers and of the fake cell's arms.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from benchmarks.faults.bench import Bench
+from benchmarks.faults.bench import ARMS, OVER, Bench
+from benchmarks.faults.line import Shown
 from fakes.demo.deck_calibration import PROCEDURES
 
 PRODUCTION, MAINTENANCE = 1, 2
@@ -19,7 +20,10 @@ LIMIT_N = 50.0
 """The recipe's ``limit_force_n``."""
 FOREIGN_BODY = {"x_mm": 0.0, "y_mm": 0.0, "height_mm": 0.2}
 """Met in the slow travel: the mating ends with F522 and backs off."""
+UNDER_WAY_MM, CREEPING_MM = 3.0, 0.03
+"""How far an arm has come when the fault is injected; the latter at the speeds of a contact."""
 REACH_S = 150.0
+RESET_OVER = frozenset({"Idle", "Aborted"})
 
 Reach = Callable[[Bench], str]
 """Brings the cell into the phase; the arm that moves or is in contact. Raises ``NotReached``."""
@@ -51,16 +55,23 @@ def start_run(bench: Bench) -> None:
     bench.command("Start", mode=PRODUCTION, recipe=1, serial="FAULT.1")
 
 
-def _moving(bench: Bench, what: str, step: int) -> str:
-    """The arm that moves in a step."""
+def _arm_under_way(
+    bench: Bench,
+    what: str,
+    travelled_mm: float,
+    step: int | None = None,
+    arms: Sequence[str] = ARMS,
+) -> str:
+    """The arm that moves, in a step if one is given."""
     found: list[str] = []
 
-    def there(shown_step: int) -> bool:
-        arm = bench.moving_arm() if shown_step == step else None
+    def there(shown: Shown) -> bool:
+        arm = bench.moving_arm(travelled_mm, arms) if step in {None, shown.step} else None
         found.extend([arm] if arm else [])
         return bool(found)
 
-    bench.until(what, lambda shown: there(shown.step), timeout_s=REACH_S)
+    ends = RESET_OVER if step is None else OVER
+    bench.until(what, there, timeout_s=REACH_S, ends=ends)
     return found[0]
 
 
@@ -72,8 +83,7 @@ def _idle(bench: Bench) -> str:
 def _starting(bench: Bench) -> str:
     bench.to_idle(PRODUCTION)
     start_run(bench)
-    bench.until("heads on their way", lambda _shown: bench.moving_arm())
-    return bench.moving_arm() or "aux_1"
+    return _arm_under_way(bench, "heads on their way", UNDER_WAY_MM)
 
 
 def _step_begins(step: int, bench: Bench) -> str:
@@ -86,7 +96,7 @@ def _step_begins(step: int, bench: Bench) -> str:
 def _step_moves(step: int, bench: Bench) -> str:
     bench.to_idle(PRODUCTION)
     start_run(bench)
-    return _moving(bench, f"motion in step {step}", step)
+    return _arm_under_way(bench, f"motion in step {step}", UNDER_WAY_MM, step)
 
 
 def _contact(bench: Bench) -> str:
@@ -116,8 +126,7 @@ def _lift_off(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("lift-off", lambda _shown: bench.moving_arm())
-    return "main"
+    return _arm_under_way(bench, "lift-off", CREEPING_MM)
 
 
 def _reset_home(bench: Bench) -> str:
@@ -127,16 +136,15 @@ def _reset_home(bench: Bench) -> str:
     bench.plc.done(30)
     bench.control.request("watch_begin")
     bench.command("Reset", mode=PRODUCTION)
-    bench.until("way home", lambda _shown: bench.moving_arm())
-    return "main"
+    return _arm_under_way(bench, "way home", UNDER_WAY_MM)
 
 
-def _procedure(number: int, bench: Bench) -> str:
+def _procedure(number: int, arms: Sequence[str], bench: Bench) -> str:
     bench.to_idle(MAINTENANCE)
     procedure = next(one for one in PROCEDURES if one.number == number)
     procedure.prepare(bench.control)
     bench.command("Start", mode=MAINTENANCE, recipe=number, serial="FAULT.1")
-    return _moving(bench, f"motion in procedure {number}", number)
+    return _arm_under_way(bench, f"motion in procedure {number}", UNDER_WAY_MM, number, arms)
 
 
 def _procedure_contact(bench: Bench) -> str:
@@ -154,7 +162,7 @@ def _in_procedure(number: int, title: str, *, sensor_moves: bool, images: bool) 
     return Phase(
         f"procedure-{number}",
         f"procedure {number}, {title}, an arm moves",
-        partial(_procedure, number),
+        partial(_procedure, number, ARMS[:1] if sensor_moves else ARMS),
         sensor_moves=sensor_moves,
         images=images,
     )
@@ -166,7 +174,7 @@ PHASES = (
     Phase("measure-frame", "step 10, measure frame, nothing moves", partial(_step_begins, 10)),
     Phase("measure-deck", "step 20, measure deck, the arm moves", partial(_step_moves, 20)),
     Phase("pre-assembly", "step 30, pre-assembly, the arm moves", partial(_step_moves, 30)),
-    Phase("correct-pose", "step 40, correct pose, the arm moves", partial(_step_moves, 40)),
+    Phase("correct-pose", "step 40, correct pose, images are taken", partial(_step_begins, 40)),
     Phase(
         "way-down",
         "step 50, mate, the arm moves down",

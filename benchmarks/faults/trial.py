@@ -46,8 +46,10 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
     watched, after = bench.watched(), bench.truth()
     record = _record(bench, before)
     found = _next_start(bench, fault)
-    if fault.line_silent:  # its next start closes the record, and tells the line
+    if found.restarted or (last is not None and last.state == "Held"):
+        # The next start of the daemon closes the record, and so does the Stop of a held run.
         record = _record(bench, before)
+    if fault.line_silent:
         alarms |= _alarms(bench, bench.shown(), known)
     _tidy(bench)
     return Observation(
@@ -72,7 +74,13 @@ def _expected(fault: Fault, phase: Phase) -> Expected:
     effect, bound_s = demanded(fault, phase)
     has_record = phase.has_record and not (phase.starts and fault.line_silent)
     return Expected(
-        effect, bound_s, phase.peak_bound_n, fault.line_silent, fault.may_restart, has_record
+        effect,
+        bound_s,
+        phase.peak_bound_n,
+        line_silent=fault.line_silent,
+        may_restart=fault.may_restart,
+        noticed_s=fault.noticed_s,
+        has_record=has_record,
     )
 
 
@@ -166,6 +174,7 @@ def _motions(watched: Mapping[str, Any]) -> list[Moved]:
             motion["ended_s"],
             motion["travel_mm"],
             motion["rise_mm"],
+            motion["turn_deg"],
         )
         for arm, motions in watched["motions"].items()
         for motion in motions

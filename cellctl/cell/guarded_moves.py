@@ -17,7 +17,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.guard.limits import Six
 from cellctl.guard.report import GuardTrip
-from cellctl.interfaces import Robot, RobotState
+from cellctl.interfaces import Robot, RobotMode, RobotState
 
 POLL_S = 0.01
 REPORT_WAIT_S = 0.5
@@ -75,6 +75,9 @@ async def guarded_moves(
 async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip | None:
     """Run a robot move; None at its target, the trip when the guard stopped it.
 
+    A robot that was stopped at its own panel, or by an error of its own, raises that fault and not
+    the trip which its brakes have caused.
+
     The guard has sent its own stop before it reports; the stop sent here is the second one and
     waits for standstill. Faults of the robot and its link are raised as they are.
     """
@@ -100,14 +103,23 @@ async def _outcome(
         await moving
     # The robot may report its end before the guard's report of the trip has reached the daemon.
     # Then the abort is the consequence and the trip is the reason.
-    except (MotionAborted, NotRearmed):
+    except (MotionAborted, NotRearmed) as fault:
         trip = await _late_trip(guard)
         if trip is None:
             raise
         await _second_stop(robot, guard)
+        if _braked_by_itself(robot.state()):
+            fault.add_note(f"the guard felt it too: {trip.detail}")
+            raise
         return trip
     # Not None: the guard may have tripped in the moment in which the robot arrived.
     return guard.trip
+
+
+def _braked_by_itself(state: RobotState) -> bool:
+    """Its brakes shake the payload beyond the limits of the guard, which is no contact then."""
+    panel = state.emergency_stop or state.mode is not RobotMode.REMOTE
+    return panel or not state.drives_on or state.error_code != 0
 
 
 async def _second_stop(robot: Robot, guard: GuardPort) -> None:

@@ -16,6 +16,10 @@ from cellctl.procedures.stop_latency import StopLatency, measure_stop_latency
 from cellctl.runtime.steps import HeldMeanwhile
 
 UP = np.array([0.0, 0.0, 1.0])
+SAME_STOPS = {"latency_jitter": 0.0, "stop_jitter": 0.0}
+"""Every stop takes the time that the test has chosen."""
+LINEAR_SENSOR = {"sensor_nonlinearity": 0.0, "sensor_hysteresis": 0.0}
+"""Its matrix says all about it."""
 
 
 async def go_on(_number: int, _total: int) -> None:
@@ -23,7 +27,7 @@ async def go_on(_number: int, _total: int) -> None:
 
 
 def measured(latency_s: float) -> tuple[MatingCell, StopLatency]:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=latency_s)
+    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=latency_s, imperfections=SAME_STOPS)
 
     async def run() -> StopLatency:
         return await measure_stop_latency(
@@ -104,7 +108,7 @@ def test_a_hold_is_obeyed_before_each_stop() -> None:
 
 
 def test_a_still_wrench_is_the_mean_of_steady_readings(monkeypatch: pytest.MonkeyPatch) -> None:
-    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05, imperfections=LINEAR_SENSOR)
 
     async def run() -> tuple[object, np.ndarray]:
         return await still_wrench(cell.robot, cell.guard, cell.flange_T_sensor)

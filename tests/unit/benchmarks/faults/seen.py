@@ -3,7 +3,7 @@
 from benchmarks.faults.observation import Effect, Expected, Moved, Observation
 
 EXPECTED = Expected(Effect.AT_ONCE, bound_s=2.0, peak_bound_n=50.0)
-BRAKED = Moved("main", begun_s=0.0, ended_s=0.4, travel_mm=12.0, rise_mm=-12.0)
+BRAKED = Moved("main", begun_s=0.0, ended_s=0.4, travel_mm=12.0, rise_mm=-12.0, turn_deg=0.5)
 CALM = Observation(
     fault="emergency-stop",
     phase="contact",

@@ -9,8 +9,8 @@ from benchmarks.faults.judgement import judge
 from benchmarks.faults.observation import Effect, Moved, Observation
 from tests.unit.benchmarks.faults.seen import BRAKED, CALM, EXPECTED
 
-UP = Moved("main", begun_s=1.2, ended_s=4.0, travel_mm=2.0, rise_mm=2.0)
-LATER = Moved("aux_1", begun_s=2.5, ended_s=3.0, travel_mm=1.0, rise_mm=0.0)
+UP = Moved("main", begun_s=1.2, ended_s=4.0, travel_mm=2.0, rise_mm=2.0, turn_deg=0.0)
+LATER = Moved("aux_1", begun_s=2.5, ended_s=3.0, travel_mm=1.0, rise_mm=0.0, turn_deg=0.0)
 
 
 def with_effect(effect: Effect, **changes: Any) -> Observation:
@@ -22,6 +22,7 @@ def test_figures_of_a_stop() -> None:
     assert judgement.passed
     assert judgement.standstill_s == 0.9
     assert judgement.travel_mm == 24.0
+    assert judgement.turn_deg == 1.0
     assert judgement.backed_off_mm == 0.0
 
 
@@ -73,7 +74,10 @@ def test_a_move_may_end_but_none_begin() -> None:
     long = replace(BRAKED, ended_s=1.8)
     assert judge(with_effect(Effect.MOVE_ENDS, motions=[long], state="Held")).passed
     seen = judge(with_effect(Effect.MOVE_ENDS, motions=[BRAKED, replace(UP, ended_s=1.9)]))
-    assert "a move began after the fault" in seen.wrong
+    assert "a move began when the fault was known" in seen.wrong
+    known_later = replace(EXPECTED, effect=Effect.MOVE_ENDS, noticed_s=1.5)
+    motions = [BRAKED, replace(UP, ended_s=1.9)]
+    assert judge(replace(CALM, expected=known_later, motions=motions, ended_s=2.0)).passed
 
 
 def test_what_is_not_used_may_go_on_until_the_job_ends() -> None:
