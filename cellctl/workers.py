@@ -14,6 +14,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from cellctl.clock import now_s
 from cellctl.errors.internal import WorkerDied, WorkerSilent
+from cellctl.parent_death import die_with_parent
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -170,6 +171,9 @@ def _deaf_children() -> Iterator[None]:
 
 
 def _initialise() -> None:
+    # A worker notices a daemon that was killed only when it has ended its work, which may take
+    # long, and a new daemon needs the processors. A worker holds nothing that could be lost.
+    die_with_parent(signal.SIGKILL)
     os.nice(NICE)  # before the imports, which compute for a second
     import cv2
 

@@ -3,6 +3,10 @@
 import asyncio
 import os
 import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
 
 import pytest
 
@@ -61,6 +65,33 @@ async def test_an_ending_daemon_does_not_wait_for_a_worker_that_hangs(
     await asyncio.wait_for(asyncio.to_thread(workers.close), 10)
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+KILLED_DAEMON = """
+import asyncio, os, signal, time
+from cellctl.workers import VisionWorkers
+
+async def main():
+    workers = VisionWorkers(count=1)
+    print(await workers.run(os.getpid), flush=True)
+    asyncio.create_task(workers.run(time.sleep, 60.0))
+    await asyncio.sleep(0.1)
+    os.kill(os.getpid(), signal.SIGKILL)
+
+if __name__ == "__main__":
+    asyncio.run(main())
+"""
+
+
+def test_a_worker_that_is_at_work_ends_with_its_daemon(tmp_path: Path) -> None:
+    program = tmp_path / "daemon.py"
+    program.write_text(KILLED_DAEMON)
+    daemon = subprocess.run([sys.executable, program], check=False, capture_output=True, text=True)
+    assert daemon.returncode == -signal.SIGKILL, daemon.stderr
+    deadline_s = time.monotonic() + 5.0
+    while Path(f"/proc/{int(daemon.stdout)}").exists():
+        assert time.monotonic() < deadline_s, "still at work"
+        time.sleep(0.02)
 
 
 async def test_workers_give_way_to_the_daemon() -> None:

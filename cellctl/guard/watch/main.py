@@ -21,6 +21,7 @@ from cellctl.guard.watch.monitor import WrenchMonitor
 from cellctl.guard.watch.stop_supervisor import StopSupervisor
 from cellctl.interfaces.ft_sensor import FtSensor
 from cellctl.interfaces.stop_channel import StopChannel
+from cellctl.parent_death import die_with_parent
 
 
 def main(loop_type: type[GuardLoop] = GuardLoop) -> int:
@@ -28,7 +29,8 @@ def main(loop_type: type[GuardLoop] = GuardLoop) -> int:
 
     ``loop_type`` lets a benchmark run the same process with a loop that goes on after each trip.
     """
-    realtime.die_with_parent()
+    # In case the end of the link to the daemon is missed.
+    die_with_parent(signal.SIGTERM)
     # Ctrl-C in a terminal reaches every process of its group. The daemon handles it and then ends
     # the guard; a guard that ended first would look like a crash.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

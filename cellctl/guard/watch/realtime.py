@@ -8,10 +8,8 @@ import ctypes
 import gc
 import os
 import resource
-import signal
 from collections.abc import Callable
 
-_PR_SET_PDEATHSIG = 1
 _MCL_CURRENT_AND_FUTURE = 3
 _FALLBACK_NICE = -15
 """Taken when SCHED_FIFO is refused. Under load the slowest answers then took two to three times as
@@ -44,15 +42,6 @@ def enter(fifo_priority: int, cpu: int | None, *, lock_memory: bool) -> list[str
             refused += _attempt(f"no nice {_FALLBACK_NICE}", _nice)
         degraded += refused
     return degraded
-
-
-def die_with_parent() -> None:
-    """Let the kernel send SIGTERM when the daemon ends, in case the end of the link is missed.
-
-    Linux ties this to the thread that started the process, in the daemon the one of its event loop.
-    """
-    if _libc().prctl(_PR_SET_PDEATHSIG, signal.SIGTERM, 0, 0, 0) != 0:
-        raise OSError(ctypes.get_errno(), "prctl")
 
 
 def resident_peak_bytes() -> int:
