@@ -32,7 +32,8 @@ def test_the_deck_cell_says_how_large_each_one_is(shipped_scenario: DeckScenario
 def test_a_scale_of_the_caller_replaces_that_of_the_file() -> None:
     scenario = load(SHIPPED, {"reducer_ripple": 5.0})
     assert scenario.size_of("reducer_ripple") == 5.0 * CATALOGUE["reducer_ripple"].size
-    assert scenario.size_of("base_drift") == CATALOGUE["base_drift"].size
+    written = load(SHIPPED).imperfections["base_drift"]
+    assert scenario.size_of("base_drift") == written * CATALOGUE["base_drift"].size
     assert scenario.without_imperfections().size_of("reducer_ripple") == 0.0
 
 
