@@ -94,9 +94,8 @@ test-parallel: venv
 	$(BIN)/pytest -n 2 -m "not cell and not long" --durations 25
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
-# rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python. The worker pool is
-# left out because its test of a hanging worker does not end on 3.13, which is still to be mended.
-COMPUTES := vision calibration force processes procedures fakes benchmarks test_workers.py
+# rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python.
+COMPUTES := vision calibration force processes procedures fakes benchmarks
 test-version: venv
 	$(BIN)/pytest -n 2 -m "not cell and not long" $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/unit
 

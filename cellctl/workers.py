@@ -79,6 +79,8 @@ class VisionWorkers:
         self, patience_s: float, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs
     ) -> R:
         """The same with another patience, in which waiting for a free worker counts."""
+        if self._broken:
+            raise WorkerDied("the vision workers were ended and not yet replaced")
         loop = asyncio.get_running_loop()
         try:
             with _deaf_children():
@@ -111,7 +113,8 @@ class _Pool:
 
     def kill(self) -> None:
         """End the processes, whatever they do; who waits for them gets ``BrokenProcessPool``."""
-        self.executor.shutdown(wait=False, cancel_futures=True)
+        # No `shutdown` of the executor here: since Python 3.13 it waits for a lock that the
+        # executor holds while it waits for the very processes that hang.
         for process in self._processes:
             process.kill()
         for process in self._processes:
