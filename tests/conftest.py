@@ -6,6 +6,8 @@ import hypothesis
 import pytest
 from xdist.scheduler import LoadScopeScheduling
 
+pytest_plugins = ["tests.machine_pauses"]
+
 _WHOLE_CELLS = Path(__file__).parent / "cell"
 _SHARED_IMAGES = (
     "tests/unit/vision/",
