@@ -8,7 +8,9 @@ CellError
 ├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
 ├── VisionError       4xx   errors.vision       images, holes, part poses
 ├── ForceError        5xx   errors.force        sensor, guard, mating
+├── PluggingError     56x   errors.plugging     plan and insertion of a plug
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
+│   └── ReferenceMoved 64x  errors.plug_calibration  plugging by two cameras
 ├── LineError         7xx   errors.line         line PLC and commands
 │   └── LocalError    71x   errors.local        operator commands on the cell's PC
 ├── RecordsError      8xx   errors.records      run store and artefacts
@@ -25,6 +27,8 @@ from cellctl.errors import (
     line,
     link,
     local,
+    plug_calibration,
+    plugging,
     records,
     robot,
     vision,
@@ -44,6 +48,8 @@ __all__ = [
     "line",
     "link",
     "local",
+    "plug_calibration",
+    "plugging",
     "records",
     "robot",
     "vision",

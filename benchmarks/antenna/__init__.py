@@ -1,0 +1,1 @@
+"""Figures of the second process: vision, chain and insertion of a plug."""

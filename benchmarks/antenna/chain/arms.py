@@ -1,0 +1,110 @@
+"""Arms of several grades: the controller's kinematics, the true ones, and how they warm up."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.geometry.pose import Array
+from fakes.sections import Chain
+from fakes.world.arm import Links, forward, inverse, nominal_links, perturbed_links
+
+CHAIN = Chain(d1=400.0, a1=0.0, a2=440.0, elbow=40.0, d4=440.0, d6=80.0)
+"""Reach 0.9 m."""
+READY_RAD = np.radians([0.0, -48.0, 100.0, 0.0, 38.0, 0.0])
+"""The way the arm is folded, in all poses."""
+EXPANSION_PER_K = 20e-6
+JOINT_DRIFT_RAD_PER_K = 2e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Grade:
+    """How exactly an arm is built or calibrated: standard deviations of every link and joint."""
+
+    name: str
+    link_m: float
+    link_rad: float
+    joint_rad: float
+
+
+def _grade(name: str, scale: float) -> Grade:
+    # Chosen so that the mean absolute error in the working volume is that of the grade.
+    return Grade(name, 1e-4 * scale, 1e-4 * scale, 1e-4 * scale)
+
+
+UNCALIBRATED = _grade("uncalibrated", 1.95)
+FACTORY = _grade("factory", 0.63)
+TRACKER = _grade("tracker-calibrated", 0.25)
+IDEAL = _grade("ideal kinematics", 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Repeatability:
+    """Of one approach, standard deviations per axis."""
+
+    name: str
+    position_m: float
+    rotation_rad: float
+
+
+def _repeatability(rp_mm: float, rotation_deg: float) -> Repeatability:
+    # ISO 9283: RP is mean plus three standard deviations of the radius, 3.616 per axis.
+    return Repeatability(f"RP {rp_mm:g}", rp_mm * 1e-3 / 3.616, float(np.radians(rotation_deg)))
+
+
+RP_002 = _repeatability(0.02, 0.001)
+RP_005 = _repeatability(0.05, 0.0025)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DrawnArm:
+    """One arm."""
+
+    links: Links
+    repeatability: Repeatability
+    nominal: Links = field(default_factory=lambda: nominal_links(CHAIN))
+
+    @classmethod
+    def draw(
+        cls, rng: np.random.Generator, grade: Grade, repeatability: Repeatability
+    ) -> "DrawnArm":
+        """An arm of this grade."""
+        links = perturbed_links(CHAIN, rng, grade.link_m, grade.link_rad, grade.joint_rad)
+        return cls(links, repeatability)
+
+    def joints(self, base_T_flange: RigidTransform) -> Array:
+        """What the controller drives to for a commanded pose, rad."""
+        return inverse(CHAIN, base_T_flange, READY_RAD)
+
+    def mean_place(self, base_T_flange: RigidTransform) -> RigidTransform:
+        """Where the flange stands on average when this pose was commanded."""
+        return forward(self.links, self.joints(base_T_flange))
+
+    def place(self, base_T_flange: RigidTransform, rng: np.random.Generator) -> RigidTransform:
+        """Where one approach of a commanded pose ends."""
+        return self._scattered(self.mean_place(base_T_flange), rng)
+
+    def reported(self, place: RigidTransform, rng: np.random.Generator) -> RigidTransform:
+        """The pose that the controller reports while the flange is held at a place."""
+        target = self._scattered(place, rng)
+        commanded = target
+        # The errors are small and change slowly, so three rounds leave nothing.
+        for _ in range(3):
+            commanded = commanded * self.mean_place(commanded).inv() * target
+        return commanded
+
+    def _scattered(self, pose: RigidTransform, rng: np.random.Generator) -> RigidTransform:
+        noise = self.repeatability
+        turn = Rotation.from_rotvec(rng.normal(0, noise.rotation_rad, 3))
+        return RigidTransform.from_components(
+            pose.translation + rng.normal(0, noise.position_m, 3), turn * pose.rotation
+        )
+
+    def warmed(self, rng: np.random.Generator, kelvin: float) -> "DrawnArm":
+        """The arm after its links and joints have warmed up, each by itself."""
+        matrices = self.links.matrices.copy()
+        # All links but the base grow along their length, each by its own temperature.
+        growth = 1 + EXPANSION_PER_K * rng.normal(0, kelvin, len(matrices))
+        matrices[1:, :3, 3] *= growth[1:, None]
+        offsets = self.links.joint_offsets_rad + JOINT_DRIFT_RAD_PER_K * rng.normal(0, kelvin, 6)
+        return replace(self, links=Links(matrices, offsets))

@@ -1,0 +1,224 @@
+"""Teaching and plugging in a drawn cell, by every scheme with the same looks."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from benchmarks.antenna.chain.arms import DrawnArm, Grade
+from benchmarks.antenna.chain.drawn_cell import (
+    BIAS_M,
+    CONTACT_PX,
+    FLANGE_T_MARKS,
+    FLANGE_T_PLUG,
+    MARKS_M,
+    PLUG_STATION,
+    SOCKET,
+    DrawnCell,
+    base_T_flange_over_socket,
+    small,
+)
+from cellctl.geometry.pose import Array, pose_error
+from cellctl.processes.antenna_module.chain.cell_figures import (
+    ArmFigures,
+    CameraFigures,
+    MountedCamera,
+    PlugCell,
+)
+from cellctl.processes.antenna_module.chain.compose import correction_of, target_pose
+from cellctl.processes.antenna_module.chain.looks import (
+    Look,
+    Looks,
+    PlateLook,
+    PlugLook,
+    SocketLook,
+)
+from cellctl.processes.antenna_module.chain.plan import ContactPattern
+from cellctl.processes.antenna_module.chain.schemes import Scheme
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, TeachLimits, teach_plug
+
+PITCH_M = 1.27e-3
+_ROWS = [(i - 3.5, 0.5) for i in range(8)] + [(i - 3.0, -0.5) for i in range(7)]
+CONTACTS_M = np.array([[x * PITCH_M, y * PITCH_M, 0.0] for x, y in _ROWS])
+"""Micro-D, 8 and 7 contacts."""
+PATTERN = ContactPattern(tuple(str(n + 1) for n in range(15)), CONTACTS_M[:, :2])
+GAUGE_M, GAUGE_DEG = 5e-6, 0.01
+DRIFT_OF_ARM_M_PER_K = 8e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """What is varied from row to row of the table."""
+
+    teachings: int = 4
+    socket_looks: int = 1
+    kelvin: float = 0.0
+    slot_m: float = 0.0
+    """From the taught slot to the one that is plugged."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Situation:
+    """One module in the gripper, and the socket that it is for: the truth, and the looks."""
+
+    looks: Looks
+    flange_T_plug: RigidTransform
+    base_T_socket: RigidTransform
+
+
+def believed_cell(
+    cell: DrawnCell, grade: Grade, absolute_error_m: float, kelvin: float
+) -> PlugCell:
+    """What a commissioning engineer would state of this cell."""
+    noise = cell.arm.repeatability
+    return PlugCell(
+        cam1=MountedCamera("hand-eye 1", "camera 1", cell.flange_T_cam1),
+        cam2=MountedCamera("hand-eye 2", "camera 2", cell.base_T_cam2),
+        arm=ArmFigures(
+            noise.position_m, noise.rotation_rad, absolute_error_m, DRIFT_OF_ARM_M_PER_K * kelvin
+        ),
+        cameras=CameraFigures(BIAS_M, 4e-6 * (kelvin > 0), float(np.radians(0.001)) * (kelvin > 0)),
+        gripper=f"gripper, {grade.name}",
+        flange_T_marks=FLANGE_T_MARKS,
+    )
+
+
+def look_at_both(
+    cell: DrawnCell, rng: np.random.Generator, *, looks: int = 1, slot_m: float = 0.0
+) -> Situation:
+    """A module gripped within ± 1 mm and ± 1°, a socket within ± 1 mm and ± 0.5°."""
+    flange_T_plug = FLANGE_T_PLUG * _placed(rng, 1.0)
+    shift = RigidTransform.from_translation([0.0, slot_m, 0.0])
+    base_T_socket = shift * SOCKET * _placed(rng, 0.5)
+    plug = _see_plug(cell, flange_T_plug, rng)
+    sockets = tuple(_see_socket(cell, base_T_socket, shift, rng) for _ in range(looks))
+    return Situation(Looks(plug, sockets, _see_plate(cell, rng)), flange_T_plug, base_T_socket)
+
+
+def teach(
+    cell: DrawnCell,
+    believed: PlugCell,
+    scheme: Scheme,
+    situations: Sequence[Situation],
+    rng: np.random.Generator,
+) -> PlugCorrection:
+    """Plug by hand as often as there are situations, each as exact as the gauge."""
+    plugs = []
+    for number, situation in enumerate(situations):
+        plugged = situation.base_T_socket * small(rng, GAUGE_M, GAUGE_DEG)
+        place = plugged * situation.flange_T_plug.inv()
+        reported = cell.arm.reported(place, rng)
+        plugs.append(TaughtPlug(f"plug {number + 1}", situation.looks, reported))
+    # The scatter is counted by the campaign, not refused: a row shows what a scheme does.
+    limits = TeachLimits(len(plugs), 1.0, 1.0)
+    return teach_plug({"slot": plugs}, believed, scheme, limits=limits)
+
+
+def plug_error(
+    cell: DrawnCell,
+    believed: PlugCell,
+    scheme: Scheme,
+    situation: Situation,
+    correction: PlugCorrection | None,
+    rng: np.random.Generator,
+) -> Array:
+    """x, y (m) and yaw (rad) of the plug against its socket after the last approach, shape (3,)."""
+    slot = None if correction is None else correction.slots[0]
+    target = target_pose(situation.looks, believed, scheme, correction_of(slot), 0.0)
+    place = cell.arm.place(target.pose, rng)
+    socket_T_plug = situation.base_T_socket.inv() * place * situation.flange_T_plug
+    shift, turn = pose_error(RigidTransform.identity(), socket_T_plug)
+    return np.array([shift[0], shift[1], turn[2]])
+
+
+def _placed(rng: np.random.Generator, yaw_deg: float) -> RigidTransform:
+    x, y = rng.uniform(-1e-3, 1e-3, 2)
+    tilt = rng.normal(0, 0.1, 2)
+    turn = Rotation.from_euler("xyz", [*tilt, rng.uniform(-yaw_deg, yaw_deg)], degrees=True)
+    return RigidTransform.from_components([x, y, rng.normal(0, 1e-4)], turn)
+
+
+def _see_plug(cell: DrawnCell, flange_T_plug: RigidTransform, rng: np.random.Generator) -> PlugLook:
+    commanded = PLUG_STATION * FLANGE_T_PLUG.inv()
+    cam2_T_flange = cell.mounting.base_T_cam2.inv() * cell.arm.place(commanded, rng)
+    optics, plane = cell.optics2, cell.cam2_T_plane
+    cam2_T_plug, cam2_T_marks = (
+        optics.look(cam2_T_flange * on_flange, points, plane(error), CONTACT_PX, rng)
+        for on_flange, points, error in (
+            (flange_T_plug, CONTACTS_M, 0),
+            (cell.mounting.flange_T_marks, MARKS_M, 2),
+        )
+    )
+    common = _common(cell.arm, commanded, "camera 2")
+    return PlugLook(*common, cam2_T_plug, cam2_T_marks, "micro-d-15 pins")
+
+
+def _see_socket(
+    cell: DrawnCell, base_T_socket: RigidTransform, shift: RigidTransform, rng: np.random.Generator
+) -> SocketLook:
+    commanded = shift * base_T_flange_over_socket()
+    base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
+    seen = cell.optics1.look(
+        base_T_cam1.inv() * base_T_socket, CONTACTS_M, cell.cam1_T_plane, CONTACT_PX, rng
+    )
+    return SocketLook(*_common(cell.arm, commanded, "camera 1"), seen, "micro-d-15 holes")
+
+
+def _see_plate(cell: DrawnCell, rng: np.random.Generator) -> PlateLook:
+    # The same offset from the plug's place as camera I has from the socket's: what the arm's error
+    # does over this distance then happens twice and drops out.
+    commanded = PLUG_STATION * SOCKET.inv() * base_T_flange_over_socket()
+    base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
+    plate = cell.mounting.base_T_plate
+    by_1 = cell.optics1.look(base_T_cam1.inv() * plate, MARKS_M, cell.cam1_T_plane, CONTACT_PX, rng)
+    base_T_cam2 = cell.mounting.base_T_cam2
+    by_2 = cell.optics2.look(
+        base_T_cam2.inv() * plate, MARKS_M, cell.cam2_T_plane(), CONTACT_PX, rng
+    )
+    return PlateLook(Look(*_common(cell.arm, commanded, "camera 1")), by_1, by_2, "camera 2")
+
+
+def _common(
+    arm: DrawnArm, commanded: RigidTransform, camera: str
+) -> tuple[RigidTransform, Array, float, str]:
+    return commanded, arm.joints(commanded), 0.0, camera
+
+
+Errors = Mapping[str, Array]
+"""By scheme: shape (n, 3), see ``plug_error``."""
+
+
+def run_cell(
+    cell: DrawnCell,
+    believed: PlugCell,
+    schemes: Sequence[Scheme],
+    conditions: Conditions,
+    plugs: int,
+    rng: np.random.Generator,
+) -> tuple[Errors, Mapping[str, PlugCorrection]]:
+    """Teach cold, warm up, plug."""
+    taught = [
+        look_at_both(cell, rng, looks=conditions.socket_looks) for _ in range(conditions.teachings)
+    ]
+    corrections = {
+        scheme.name: teach(cell, believed, scheme, taught, rng)
+        for scheme in schemes
+        if scheme.taught
+    }
+    warm = cell.warmed(rng, conditions.kelvin)
+    situations = [
+        look_at_both(warm, rng, looks=conditions.socket_looks, slot_m=conditions.slot_m)
+        for _ in range(plugs)
+    ]
+    errors = {
+        scheme.name: np.array(
+            [
+                plug_error(warm, believed, scheme, one, corrections.get(scheme.name), rng)
+                for one in situations
+            ]
+        )
+        for scheme in schemes
+    }
+    return errors, corrections

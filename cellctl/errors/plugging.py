@@ -1,0 +1,139 @@
+"""56x–57x: planning where a plug goes, and judging how it went in.
+
+PluggingError
+├── StaleLook, PlugUncertain, OutOfTaughtRange, CalibrationsDoNotBelongTogether,
+│   WristConfigurationsDiffer, LooksIncomplete, SocketImplausible        560–566  the plan
+└── PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce,
+    PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
+"""
+
+from cellctl.errors.base import CellError, Reaction
+
+
+class PluggingError(CellError):
+    """A plug may not be moved to its socket, or did not go in as it should."""
+
+    reaction = Reaction.STOP
+
+
+class StaleLook(PluggingError):
+    """A look at plug or socket is too old, or lies in the future."""
+
+    number = 560
+    text = "A look at plug or socket is too old"
+    cause = "The cell waited between looking and plugging, so drift and slip are not bounded."
+    remedy = "Look at plug and socket again, then plan."
+
+
+class PlugUncertain(PluggingError):
+    """The predicted error of the worst contact is beyond the tolerance."""
+
+    number = 561
+    text = "The plug's place is too uncertain"
+    cause = (
+        "The largest term in the detail: repeatability of the robot, a poor image, an uncertain "
+        "calibration, or drift."
+    )
+    remedy = "Look more often, teach more plugs, or use the scheme with gripper marks."
+
+
+class OutOfTaughtRange(PluggingError):
+    """No taught slot is near enough to the socket."""
+
+    number = 562
+    text = "The socket is too far from every taught slot"
+    cause = "The correction holds near the slots that it was taught at; the arm's error changes."
+    remedy = "Teach this slot with `cellctl calibrate plug`."
+
+
+class CalibrationsDoNotBelongTogether(PluggingError):
+    """Calibrations, looks and correction were not made with one another."""
+
+    number = 563
+    text = "Calibrations do not belong together"
+    cause = (
+        "Intrinsics were exchanged after the hand-eye calibration, or the plug correction was "
+        "taught with another camera, gripper, connector or scheme."
+    )
+    remedy = "Calibrate hand-eye with the intrinsics in use, then teach the plug correction again."
+
+
+class WristConfigurationsDiffer(PluggingError):
+    """Poses were reached with the arm or the wrist folded in different ways."""
+
+    number = 564
+    text = "Robot poses of different wrist configurations are mixed"
+    cause = "A joint that says how the arm is folded has another sign in one of the poses."
+    remedy = "Reach all poses in one configuration; see the joint in the detail."
+
+
+class LooksIncomplete(PluggingError):
+    """The scheme needs a look or a measurement that is not there."""
+
+    number = 565
+    text = "A look that the scheme needs is missing"
+    cause = "No look at plug or socket, no gripper marks in the image, or no reference plate."
+    remedy = "Take the look in the detail, or choose a scheme that does without it."
+
+
+class SocketImplausible(PluggingError):
+    """Two looks at one socket disagree."""
+
+    number = 566
+    text = "Looks at the socket contradict each other"
+    cause = "The panel moved between looks, or another socket was measured."
+    remedy = "Check that the panel is fixed; look again."
+
+
+class PlugEarlyContact(PluggingError):
+    """Axial force before the contact springs begin."""
+
+    number = 570
+    text = "Plug touched too early"
+    cause = "A bent pin, an offset, a turned module, or a foreign body on the socket."
+    remedy = "Put the module into quarantine; inspect its pins and the socket."
+
+
+class PlugSideForce(PluggingError):
+    """Side force or moment beyond what an aligned plug shows."""
+
+    number = 571
+    text = "Side force while plugging"
+    cause = "An offset or a turn beyond the play of the contacts, or a bent pin."
+    remedy = "Put the module into quarantine; inspect its pins and the socket."
+
+
+class PlugShortSeat(PluggingError):
+    """The seat was felt at another depth than the drawing says, or not at all."""
+
+    number = 572
+    text = "Plug is not seated at its depth"
+    cause = "A foreign body, a shell that catches, or a socket at another height."
+    remedy = "Put the module into quarantine; inspect socket and shell."
+
+
+class PlugOverForce(PluggingError):
+    """The axial force is beyond what the contacts may take."""
+
+    number = 573
+    text = "Insertion force beyond its limit"
+    cause = "Pins stand on the socket's face, or a lot of contacts that are too tight."
+    remedy = "Put the module into quarantine; inspect its pins and the socket."
+
+
+class PlugBentPin(PluggingError):
+    """Force and moment before the springs point at one contact."""
+
+    number = 574
+    text = "A contact met the socket's face"
+    cause = "A pin that is bent; the detail names the contact that the moment points at."
+    remedy = "Put the module into quarantine; inspect the contact in the detail."
+
+
+class InsertionCurveInvalid(PluggingError):
+    """A file with an insertion curve cannot be used."""
+
+    number = 575
+    text = "Insertion curve cannot be judged"
+    cause = "Missing columns, text where numbers belong, time that runs back, or too few samples."
+    remedy = "See the line in the detail; the columns are in docs/antenna-module.md."

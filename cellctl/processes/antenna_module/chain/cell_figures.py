@@ -1,0 +1,71 @@
+"""What calibrations, the robot's data sheet and the gripper's drawing say of the cell."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import UncertainPose
+
+
+def isotropic(position_m: float, rotation_rad: float) -> Array:
+    """Covariance with one standard deviation for positions, one for rotations; shape (6, 6)."""
+    return np.diag([position_m**2] * 3 + [rotation_rad**2] * 3)
+
+
+@dataclass(frozen=True, slots=True)
+class ArmFigures:
+    """How well the robot repeats and reaches poses, per axis."""
+
+    repeatability_m: float
+    """Standard deviation of the position of one approach: RP of ISO 9283 over 3.616."""
+    repeatability_rad: float
+    absolute_error_m: float
+    """Mean distance between commanded and reached positions in the working volume."""
+    drift_m: float
+    """Standard deviation of what warming moves one place against another, since calibration."""
+
+    @property
+    def approach_covariance(self) -> Array:
+        """Of one approach, shape (6, 6)."""
+        return isotropic(self.repeatability_m, self.repeatability_rad)
+
+
+@dataclass(frozen=True, slots=True)
+class CameraFigures:
+    """What stays wrong in every look of a camera."""
+
+    feature_bias_m: float
+    """Light and chamfers move every contact of a kind by this, per axis, always alike."""
+    drift_m: float
+    """Standard deviation of what warming moves a camera."""
+    drift_rad: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MountedCamera:
+    """A hand-eye calibration."""
+
+    id: str
+    camera_id: str
+    """Of the intrinsics that it was made with. Exchanging them afterwards moves what is measured
+    by the difference of the principal points, which the hand-eye calibration had absorbed."""
+    pose: UncertainPose
+    """flange_T_cam1 or base_T_cam2."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlugCell:
+    """Everything that a scheme may use besides the looks."""
+
+    cam1: MountedCamera
+    """On the flange: flange_T_cam1."""
+    cam2: MountedCamera
+    """Beside the robot: base_T_cam2."""
+    arm: ArmFigures
+    cameras: CameraFigures
+    gripper: str
+    """Name of the gripper's drawing."""
+    flange_T_marks: RigidTransform = field(default_factory=RigidTransform.identity)
+    """Of the gripper's marks by its drawing; what it is wrong by is taught."""

@@ -1,0 +1,91 @@
+"""What the cameras saw, and where the flange was."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import UncertainPose
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Look:
+    """One picture: the robot's report and the time of it."""
+
+    base_T_flange: RigidTransform
+    joints_rad: Array
+    """Shape (6,), as the controller reports them."""
+    time_s: float
+    camera_id: str
+    """Of the intrinsics that the picture was measured with."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlugLook(Look):
+    """Camera II on the plug in the gripper."""
+
+    camera_T_plug: UncertainPose
+    camera_T_marks: UncertainPose | None
+    """Gripper marks in the same picture; None when they were not measured."""
+    connector: str
+    """Name of the connector's drawing."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SocketLook(Look):
+    """Camera I on the socket."""
+
+    camera_T_socket: UncertainPose
+    connector: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlateLook:
+    """Both cameras on the plate beside camera II."""
+
+    by_flange_camera: Look
+    """Where the flange was when camera I looked."""
+    cam1_T_plate: UncertainPose
+    cam2_T_plate: UncertainPose
+    fixed_camera_id: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Looks:
+    """All looks of one plugging."""
+
+    plug: PlugLook
+    sockets: tuple[SocketLook, ...]
+    """One or more, each after an approach of its own."""
+    plate: PlateLook | None = None
+
+    def all(self) -> tuple[Look, ...]:
+        """Every look that was taken with the robot at a place of its own."""
+        plate = () if self.plate is None else (self.plate.by_flange_camera,)
+        return (self.plug, *self.sockets, *plate)
+
+    @property
+    def camera_1_ids(self) -> set[str]:
+        """Intrinsics that pictures of camera I were measured with."""
+        plate = set() if self.plate is None else {self.plate.by_flange_camera.camera_id}
+        return {look.camera_id for look in self.sockets} | plate
+
+    @property
+    def camera_2_ids(self) -> set[str]:
+        """Intrinsics that pictures of camera II were measured with."""
+        plate = set() if self.plate is None else {self.plate.fixed_camera_id}
+        return {self.plug.camera_id} | plate
+
+
+WRIST_JOINTS = (2, 4)
+"""Elbow (A3) and wrist (A5): their signs, with the shoulder's, say how a six-axis arm is folded."""
+_STRAIGHT_RAD = float(np.radians(1.0))
+
+
+def wrist_configuration(joints_rad: Array) -> tuple[int, ...]:
+    """Signs of the elbow and of the wrist joint; 0 within 1° of straight, where it may change."""
+    return tuple(
+        0 if abs(joints_rad[joint]) < _STRAIGHT_RAD else int(np.sign(joints_rad[joint]))
+        for joint in WRIST_JOINTS
+    )
