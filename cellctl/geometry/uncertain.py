@@ -26,12 +26,7 @@ class UncertainPose:
 
     def __mul__(self, other: "UncertainPose") -> "UncertainPose":
         """``a_T_c = a_T_b * b_T_c`` with independent errors."""
-        rotation = self.pose.rotation.as_matrix()
-        arm = rotation @ other.pose.translation
-        from_self = np.eye(6)
-        # A turn of the first pose by dr moves the origin of c by dr × arm = −arm × dr.
-        from_self[:3, 3:] = -skew(arm)
-        from_other = np.kron(np.eye(2), rotation)
+        from_self, from_other = product_jacobians(self.pose, other.pose)
         covariance = (
             from_self @ self.covariance @ from_self.T + from_other @ other.covariance @ from_other.T
         )
@@ -39,18 +34,37 @@ class UncertainPose:
 
     def inv(self) -> "UncertainPose":
         """``b_T_a`` from ``a_T_b``."""
-        rotation_t = self.pose.rotation.inv().as_matrix()
-        jacobian = np.zeros((6, 6))
-        jacobian[:3, :3] = -rotation_t
-        # t' = −Rᵀ t: a turn of b by dr changes Rᵀ, and with it t', by −Rᵀ (t × dr).
-        jacobian[:3, 3:] = -rotation_t @ skew(self.pose.translation)
-        jacobian[3:, 3:] = -rotation_t
+        jacobian = inverse_jacobian(self.pose)
         return UncertainPose(self.pose.inv(), jacobian @ self.covariance @ jacobian.T)
 
     @property
     def sigma(self) -> Array:
         """Standard deviations x, y, z (m), rx, ry, rz (rad)."""
         return np.sqrt(np.diag(self.covariance))
+
+
+def product_jacobians(a_T_b: RigidTransform, b_T_c: RigidTransform) -> tuple[Array, Array]:
+    """By what small errors of two poses change their product, in the convention of this module.
+
+    Shape (6, 6) each: of ``a_T_b`` and of ``b_T_c``.
+    """
+    rotation = a_T_b.rotation.as_matrix()
+    arm = rotation @ b_T_c.translation
+    from_first = np.eye(6)
+    # A turn of the first pose by dr moves the origin of c by dr × arm = −arm × dr.
+    from_first[:3, 3:] = -skew(arm)
+    return from_first, np.kron(np.eye(2), rotation)
+
+
+def inverse_jacobian(a_T_b: RigidTransform) -> Array:
+    """By what small errors of a pose change its inverse, shape (6, 6)."""
+    rotation_t = a_T_b.rotation.inv().as_matrix()
+    jacobian = np.zeros((6, 6))
+    jacobian[:3, :3] = -rotation_t
+    # t' = −Rᵀ t: a turn of b by dr changes Rᵀ, and with it t', by −Rᵀ (t × dr).
+    jacobian[:3, 3:] = -rotation_t @ skew(a_T_b.translation)
+    jacobian[3:, 3:] = -rotation_t
+    return jacobian
 
 
 def perturbed(pose: RigidTransform, delta: Array) -> RigidTransform:

@@ -42,7 +42,8 @@ FLANGE_T_CAM1 = _pose(0.08, 0.0, LEVER_M - WORKING_DISTANCE_M)
 BASE_T_CAM2 = PLUG_STATION * _pose(0.0, 0.0, -WORKING_DISTANCE_M)
 """Looks up."""
 FLANGE_T_MARKS = FLANGE_T_PLUG
-PLATE = PLUG_STATION * _pose(0.03, 0.0, 0.0)
+PLATE = PLUG_STATION
+"""Camera II sees the plate where it sees plugs, while no module is there."""
 
 
 def small(rng: np.random.Generator, position_m: float, rotation_deg: float) -> RigidTransform:
@@ -121,23 +122,21 @@ def draw_cell(rng: np.random.Generator, grade: Grade, repeatability: Repeatabili
         flange_T_cam1=FLANGE_T_CAM1 * small(rng, 5e-4, 0.3),
         base_T_cam2=BASE_T_CAM2 * small(rng, 5e-4, 0.3),
         flange_T_marks=FLANGE_T_MARKS * small(rng, 1.5e-4, 0.1),
-        base_T_plate=PLATE * small(rng, 5e-4, 0.1),
+        base_T_plate=PLATE * small(rng, 1e-4, 0.1),
     )
-    noise = RobotNoise(max(grade.link_m * 1.5, 2e-5), max(grade.link_rad * 1.5, 2e-5))
-    in_hand = _hand_eye(arm, optics[0], mounting, Setup.EYE_IN_HAND, noise, rng)
-    to_hand = _hand_eye(arm, optics[1], mounting, Setup.EYE_TO_HAND, noise, rng)
+    in_hand = _hand_eye((arm, optics[0], mounting), Setup.EYE_IN_HAND, grade, rng)
+    to_hand = _hand_eye((arm, optics[1], mounting), Setup.EYE_TO_HAND, grade, rng)
     return DrawnCell(arm, *optics, mounting, in_hand, to_hand, rng.normal(0, PLANE_SIGMA_M, 3))
 
 
 def _hand_eye(
-    arm: DrawnArm,
-    optics: DrawnOptics,
-    mounting: Mounting,
+    truth: tuple[DrawnArm, DrawnOptics, Mounting],
     setup: Setup,
-    noise: RobotNoise,
+    grade: Grade,
     rng: np.random.Generator,
 ) -> UncertainPose:
     """Twenty poses around the working one, with the corners of a board."""
+    arm, optics, mounting = truth
     believed = CameraModel(optics.believed.matrix, np.zeros(5))
     poses = []
     for number in range(HAND_EYE_POSES):
@@ -150,7 +149,10 @@ def _hand_eye(
         pixels = optics.pixels(camera_T_board, _BOARD_M, CORNERS_PX, rng)
         seen, _ = board_in_camera(believed, _BOARD_M, pixels, CORNERS_PX)
         poses.append(HandEyePose(f"pose {number}", commanded, seen))
-    return calibrate_hand_eye(poses, setup, noise=noise).camera
+    # The noise is what the arm's errors scatter, not its repeatability.
+    noise = RobotNoise(max(grade.link_m * 1.5, 2e-5), max(grade.link_rad * 3.0, 2e-5))
+    result = calibrate_hand_eye(poses, setup, noise=noise)
+    return UncertainPose(result.camera.pose, result.camera.covariance * result.chi2_ratio)
 
 
 def _board_pose(setup: Setup, rng: np.random.Generator) -> RigidTransform:

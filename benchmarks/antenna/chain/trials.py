@@ -1,7 +1,7 @@
 """Teaching and plugging in a drawn cell, by every scheme with the same looks."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -34,7 +34,7 @@ from cellctl.processes.antenna_module.chain.looks import (
     PlugLook,
     SocketLook,
 )
-from cellctl.processes.antenna_module.chain.plan import ContactPattern
+from cellctl.processes.antenna_module.chain.plan import ContactPattern, compose_plan
 from cellctl.processes.antenna_module.chain.schemes import Scheme
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, TeachLimits, teach_plug
@@ -68,16 +68,27 @@ class Situation:
     base_T_socket: RigidTransform
 
 
-def believed_cell(
-    cell: DrawnCell, grade: Grade, absolute_error_m: float, kelvin: float
-) -> PlugCell:
+@dataclass(frozen=True, slots=True, eq=False)
+class CellResult:
+    """By scheme."""
+
+    errors: Mapping[str, Array]
+    """Shape (n, 3), see ``Bench.plug_error``."""
+    predicted_p99_m: Mapping[str, float]
+    """Of one plug, from the propagated covariance."""
+
+
+def believed_cell(cell: DrawnCell, grade: Grade, kelvin: float) -> PlugCell:
     """What a commissioning engineer would state of this cell."""
     noise = cell.arm.repeatability
     return PlugCell(
         cam1=MountedCamera("hand-eye 1", "camera 1", cell.flange_T_cam1),
         cam2=MountedCamera("hand-eye 2", "camera 2", cell.base_T_cam2),
         arm=ArmFigures(
-            noise.position_m, noise.rotation_rad, absolute_error_m, DRIFT_OF_ARM_M_PER_K * kelvin
+            noise.position_m,
+            noise.rotation_rad,
+            grade.absolute_error_m,
+            DRIFT_OF_ARM_M_PER_K * kelvin,
         ),
         cameras=CameraFigures(BIAS_M, 4e-6 * (kelvin > 0), float(np.radians(0.001)) * (kelvin > 0)),
         gripper=f"gripper, {grade.name}",
@@ -97,40 +108,59 @@ def look_at_both(
     return Situation(Looks(plug, sockets, _see_plate(cell, rng)), flange_T_plug, base_T_socket)
 
 
-def teach(
-    cell: DrawnCell,
-    believed: PlugCell,
-    scheme: Scheme,
-    situations: Sequence[Situation],
-    rng: np.random.Generator,
-) -> PlugCorrection:
-    """Plug by hand as often as there are situations, each as exact as the gauge."""
-    plugs = []
-    for number, situation in enumerate(situations):
-        plugged = situation.base_T_socket * small(rng, GAUGE_M, GAUGE_DEG)
-        place = plugged * situation.flange_T_plug.inv()
-        reported = cell.arm.reported(place, rng)
-        plugs.append(TaughtPlug(f"plug {number + 1}", situation.looks, reported))
-    # The scatter is counted by the campaign, not refused: a row shows what a scheme does.
-    limits = TeachLimits(len(plugs), 1.0, 1.0)
-    return teach_plug({"slot": plugs}, believed, scheme, limits=limits)
+@dataclass(frozen=True, slots=True, eq=False)
+class Bench:
+    """One cell, what is believed of it, and the chance that acts on it."""
 
+    cell: DrawnCell
+    believed: PlugCell
+    rng: np.random.Generator
 
-def plug_error(
-    cell: DrawnCell,
-    believed: PlugCell,
-    scheme: Scheme,
-    situation: Situation,
-    correction: PlugCorrection | None,
-    rng: np.random.Generator,
-) -> Array:
-    """x, y (m) and yaw (rad) of the plug against its socket after the last approach, shape (3,)."""
-    slot = None if correction is None else correction.slots[0]
-    target = target_pose(situation.looks, believed, scheme, correction_of(slot), 0.0)
-    place = cell.arm.place(target.pose, rng)
-    socket_T_plug = situation.base_T_socket.inv() * place * situation.flange_T_plug
-    shift, turn = pose_error(RigidTransform.identity(), socket_T_plug)
-    return np.array([shift[0], shift[1], turn[2]])
+    def teach(self, scheme: Scheme, situations: Sequence[Situation]) -> PlugCorrection:
+        """Plug by hand as often as there are situations, each as exact as the gauge."""
+        plugs = []
+        for number, situation in enumerate(situations):
+            plugged = situation.base_T_socket * small(self.rng, GAUGE_M, GAUGE_DEG)
+            place = plugged * situation.flange_T_plug.inv()
+            reported = self.cell.arm.reported(place, self.rng)
+            plugs.append(TaughtPlug(f"plug {number + 1}", situation.looks, reported))
+        # Wide limits: a row of the table shows what a scheme does, also where it scatters.
+        limits = TeachLimits(len(plugs), 1.0, 1.0)
+        return teach_plug({"slot": plugs}, self.believed, scheme, limits=limits)
+
+    def plug_error(
+        self, scheme: Scheme, situation: Situation, correction: PlugCorrection | None
+    ) -> Array:
+        """x, y (m) and yaw (rad) of plug in socket after the last approach, shape (3,)."""
+        slot = None if correction is None else correction.slots[0]
+        target = target_pose(situation.looks, self.believed, scheme, correction_of(slot), 0.0)
+        place = self.cell.arm.place(target.pose, self.rng)
+        socket_T_plug = situation.base_T_socket.inv() * place * situation.flange_T_plug
+        shift, turn = pose_error(RigidTransform.identity(), socket_T_plug)
+        return np.array([shift[0], shift[1], turn[2]])
+
+    def run(self, schemes: Sequence[Scheme], conditions: Conditions, plugs: int) -> CellResult:
+        """Teach cold, warm up, plug."""
+        looks = conditions.socket_looks
+        taught = [
+            look_at_both(self.cell, self.rng, looks=looks) for _ in range(conditions.teachings)
+        ]
+        corrections = {
+            scheme.name: self.teach(scheme, taught) for scheme in schemes if scheme.taught
+        }
+        warm = replace(self, cell=self.cell.warmed(self.rng, conditions.kelvin))
+        situations = [
+            look_at_both(warm.cell, self.rng, looks=looks, slot_m=conditions.slot_m)
+            for _ in range(plugs)
+        ]
+        errors, predicted = {}, {}
+        for scheme in schemes:
+            correction = corrections.get(scheme.name)
+            each = [warm.plug_error(scheme, one, correction) for one in situations]
+            errors[scheme.name] = np.array(each)
+            plan = compose_plan(situations[0].looks, self.believed, scheme, PATTERN, correction)
+            predicted[scheme.name] = plan.worst.p99_m
+        return CellResult(errors, predicted)
 
 
 def _placed(rng: np.random.Generator, yaw_deg: float) -> RigidTransform:
@@ -184,41 +214,3 @@ def _common(
     arm: DrawnArm, commanded: RigidTransform, camera: str
 ) -> tuple[RigidTransform, Array, float, str]:
     return commanded, arm.joints(commanded), 0.0, camera
-
-
-Errors = Mapping[str, Array]
-"""By scheme: shape (n, 3), see ``plug_error``."""
-
-
-def run_cell(
-    cell: DrawnCell,
-    believed: PlugCell,
-    schemes: Sequence[Scheme],
-    conditions: Conditions,
-    plugs: int,
-    rng: np.random.Generator,
-) -> tuple[Errors, Mapping[str, PlugCorrection]]:
-    """Teach cold, warm up, plug."""
-    taught = [
-        look_at_both(cell, rng, looks=conditions.socket_looks) for _ in range(conditions.teachings)
-    ]
-    corrections = {
-        scheme.name: teach(cell, believed, scheme, taught, rng)
-        for scheme in schemes
-        if scheme.taught
-    }
-    warm = cell.warmed(rng, conditions.kelvin)
-    situations = [
-        look_at_both(warm, rng, looks=conditions.socket_looks, slot_m=conditions.slot_m)
-        for _ in range(plugs)
-    ]
-    errors = {
-        scheme.name: np.array(
-            [
-                plug_error(warm, believed, scheme, one, corrections.get(scheme.name), rng)
-                for one in situations
-            ]
-        )
-        for scheme in schemes
-    }
-    return errors, corrections

@@ -32,6 +32,9 @@ class Scheme:
     flange_T_plug: Callable[[Looks, PlugCell], TermedPose]
     taught: bool
     """Whether it needs the correction from taught plugs."""
+    cam1_cancels: bool
+    """Whether an error of flange_T_cam1 drops out: because it was as wrong while teaching, or
+    because the camera looks at the plate and at the socket in one orientation."""
     kinematic_share: float
     """Share of the arm's mean absolute error that stays, standard deviation per axis, at a taught
     slot. A hand-eye calibration absorbs what is common to its poses, a correction all but the
@@ -68,11 +71,9 @@ def base_T_socket(looks: Looks, cell: PlugCell, scheme: Scheme) -> TermedPose:
 
 
 def _one_socket(look: SocketLook, cell: PlugCell, scheme: Scheme) -> TermedPose:
-    # With a correction, the camera's place on the flange was as wrong while teaching as it is here.
-    camera = cell.cam1.pose
-    mounted = (
-        TermedPose.exact(camera.pose) if scheme.taught else TermedPose.of(Term.HAND_EYE, camera)
-    )
+    mounted = TermedPose.of(Term.HAND_EYE, cell.cam1.pose)
+    if scheme.cam1_cancels:
+        mounted = TermedPose.exact(mounted.pose)
     seen = TermedPose.of(Term.LOOK_SOCKET, look.camera_T_socket)
     return approach(look.base_T_flange, cell) * mounted * seen
 
@@ -113,10 +114,38 @@ def _difference(looks: Looks, cell: PlugCell) -> TermedPose:
     return TermedPose.exact(cell.flange_T_marks) * cam2_T_marks.inv() * cam2_T_plug
 
 
-DIFFERENCE = Scheme("difference", _difference, taught=True, kinematic_share=0.005, arm_drifts=False)
-ABSOLUTE = Scheme("absolute", _absolute, taught=False, kinematic_share=0.12, arm_drifts=True)
-GOLDEN = Scheme("golden", _golden, taught=True, kinematic_share=0.005, arm_drifts=True)
-RETICLE = Scheme("reticle", _reticle, taught=False, kinematic_share=0.077, arm_drifts=False)
+DIFFERENCE = Scheme(
+    "difference",
+    _difference,
+    taught=True,
+    cam1_cancels=True,
+    kinematic_share=0.005,
+    arm_drifts=False,
+)
+ABSOLUTE = Scheme(
+    "absolute",
+    _absolute,
+    taught=False,
+    cam1_cancels=False,
+    kinematic_share=0.12,
+    arm_drifts=True,
+)
+GOLDEN = Scheme(
+    "golden",
+    _golden,
+    taught=True,
+    cam1_cancels=True,
+    kinematic_share=0.005,
+    arm_drifts=True,
+)
+RETICLE = Scheme(
+    "reticle",
+    _reticle,
+    taught=False,
+    cam1_cancels=True,
+    kinematic_share=0.077,
+    arm_drifts=False,
+)
 
 SCHEMES: Mapping[str, Scheme] = {
     scheme.name: scheme for scheme in (DIFFERENCE, ABSOLUTE, GOLDEN, RETICLE)

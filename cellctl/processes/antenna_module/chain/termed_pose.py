@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
-from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.uncertain import UncertainPose, inverse_jacobian, product_jacobians
 
 
 class Term(StrEnum):
@@ -50,20 +50,20 @@ class TermedPose:
 
     def __mul__(self, other: "TermedPose") -> "TermedPose":
         """``a_T_c = a_T_b * b_T_c``."""
-        composed = {
-            term: (self.because_of(term) * other.because_of(term)).covariance
-            for term in {*self.terms, *other.terms}
-        }
+        composed: dict[Term, Array] = {}
+        for pose, jacobian in zip(
+            (self, other), product_jacobians(self.pose, other.pose), strict=True
+        ):
+            for term, covariance in pose.terms.items():
+                carried = jacobian @ covariance @ jacobian.T
+                composed[term] = composed.get(term, _NONE) + carried
         return TermedPose(self.pose * other.pose, composed)
 
     def inv(self) -> "TermedPose":
         """``b_T_a``."""
-        inverted = {term: self.because_of(term).inv().covariance for term in self.terms}
+        jacobian = inverse_jacobian(self.pose)
+        inverted = {term: jacobian @ one @ jacobian.T for term, one in self.terms.items()}
         return TermedPose(self.pose.inv(), inverted)
-
-    def because_of(self, term: Term) -> UncertainPose:
-        """The pose with the covariance of one cause."""
-        return UncertainPose(self.pose, self.terms.get(term, _NONE))
 
     @property
     def total(self) -> UncertainPose:

@@ -1,0 +1,95 @@
+"""Which device has moved since the cell was taught, from what both cameras see of it.
+
+Four places are compared with the taught ones, all in the axes of the base:
+
+| moved | axis in camera II | marks beside the axis | plate in camera I | plate in camera II |
+|---|---|---|---|---|
+| camera II by d | −d | | | −d |
+| gripper marks by d | | d | | |
+| plate by d | | | d | d |
+| camera I by d | | | −d | |
+| what the robot reaches | d | | e | |
+
+A device is named when its row explains all four within their noise.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.errors.plug_calibration import (
+    ArmMoved,
+    FixedCameraMoved,
+    FlangeCameraMoved,
+    GripperMarksMoved,
+    ReferenceMoved,
+    ReferencePlateMoved,
+)
+from cellctl.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReferenceReading:
+    """One reference check. Each is x and y in the axes of the base, m, shape (2,)."""
+
+    axis_in_camera_2: Array
+    marks_from_axis: Array
+    plate_in_camera_1: Array
+    plate_in_camera_2: Array
+    sigma_m: float
+    """Standard deviation of each of them, per axis."""
+
+    def stacked(self) -> Array:
+        """In the order of the table, shape (4, 2)."""
+        return np.stack(
+            [
+                self.axis_in_camera_2,
+                self.marks_from_axis,
+                self.plate_in_camera_1,
+                self.plate_in_camera_2,
+            ]
+        )
+
+
+_ROWS: Mapping[type[ReferenceMoved], Array] = {
+    FixedCameraMoved: np.array([[-1.0, 0.0, 0.0, -1.0]]),
+    GripperMarksMoved: np.array([[0.0, 1.0, 0.0, 0.0]]),
+    ReferencePlateMoved: np.array([[0.0, 0.0, 1.0, 1.0]]),
+    FlangeCameraMoved: np.array([[0.0, 0.0, -1.0, 0.0]]),
+    # The robot's error is another one at every place, so it explains two of them by two vectors.
+    ArmMoved: np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]),
+}
+_MAX_CHI2 = 22.5
+"""Of six numbers, the most that a single device leaves unexplained: exceeded once in 1000."""
+MOVED_M = 10e-6
+"""A place that is farther from the taught one than this has moved. Four times the noise of a check
+with eight angles, and half of what must be found."""
+
+
+def require_reference(
+    taught: ReferenceReading, now: ReferenceReading, limit_m: float = MOVED_M
+) -> None:
+    """Raise the fault of the device that moved; ``ReferenceMoved`` when none explains it alone."""
+    deltas = now.stacked() - taught.stacked()
+    if np.linalg.norm(deltas, axis=1).max() <= limit_m:
+        return
+    variance = taught.sigma_m**2 + now.sigma_m**2
+    words = "axis in camera II {}, marks {}, plate in camera I {}, in camera II {} µm".format(
+        *(f"({x * 1e6:.0f}, {y * 1e6:.0f})" for x, y in deltas)
+    )
+    # One vector explains before two do, so the robot is asked last.
+    single = {fault: row for fault, row in _ROWS.items() if len(row) == 1}
+    unexplained = {fault: _chi2(deltas, row) / variance for fault, row in single.items()}
+    best = min(unexplained, key=lambda fault: unexplained[fault])
+    if unexplained[best] <= _MAX_CHI2:
+        raise best(words)
+    if _chi2(deltas, _ROWS[ArmMoved]) / variance <= _MAX_CHI2:
+        raise ArmMoved(words)
+    raise ReferenceMoved(words)
+
+
+def _chi2(deltas: Array, row: Array) -> float:
+    """Squares that remain when the displacements of a row are fitted, m²."""
+    explained = row.T @ np.linalg.lstsq(row.T, deltas, rcond=None)[0]
+    return float(((deltas - explained) ** 2).sum())

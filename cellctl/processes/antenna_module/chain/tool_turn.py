@@ -1,0 +1,112 @@
+"""Where a feature on the gripper lies beside the flange axis, by turning it before camera II.
+
+Only the scale of camera II enters: ``seen_k = centre + R(±angle_k) · offset``, linear in both.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
+from cellctl.errors.plug_calibration import TurnInvalid
+from cellctl.geometry.pose import MM, Array
+
+_MIN_SPAN_RAD = float(np.radians(180))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TurnStop:
+    """One angle of the last joint, and where the feature was seen."""
+
+    angle_rad: float
+    seen_m: Array
+    """x and y in the plane of the feature, in the axes of the camera, shape (2,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ToolTurnResult:
+    """The flange axis in the camera, and the feature beside it."""
+
+    axis_m: Array
+    """Where the axis meets the plane, in the axes of the camera, shape (2,)."""
+    offset_m: Array
+    """From the axis to the feature at angle 0, in the axes of the camera, shape (2,)."""
+    sigma_m: float
+    """Standard deviation of either, per axis, from the residuals."""
+    residual_rms_m: float
+    """Per axis."""
+    stops: int
+    checks: Checks
+
+    method = "circle about the flange axis"
+
+    @property
+    def passed(self) -> bool:
+        """The verdict."""
+        return all_passed(self.checks)
+
+    def to_record(self) -> dict[str, Any]:
+        """Plain data: mm."""
+        return {
+            **evidence_to_record(self.method, self.checks),
+            "axis_mm": (self.axis_m / MM).tolist(),
+            "offset_mm": (self.offset_m / MM).tolist(),
+            "sigma_mm": self.sigma_m / MM,
+            "residual_rms_mm": self.residual_rms_m / MM,
+            "stops": self.stops,
+        }
+
+
+def calibrate_tool_turn(
+    stops: Sequence[TurnStop], *, residual_limit_m: float = 30e-6, sigma_limit_m: float = 20e-6
+) -> ToolTurnResult:
+    """Solve for axis and offset.
+
+    Raises ``TurnInvalid`` with fewer than three angles, with angles that lie within half a turn,
+    or when the points lie on no circle that turns with the joint.
+    """
+    if len(stops) < 3:
+        raise TurnInvalid(f"{len(stops)} angles, at least 3 needed")
+    angles = np.array([stop.angle_rad for stop in stops])
+    gap = _largest_gap(angles)
+    # With all angles on one side, centre and offset are known only together.
+    if gap > _MIN_SPAN_RAD + 1e-6:
+        raise TurnInvalid(f"angles leave a gap of {np.degrees(gap):.0f}°, allowed 180°")
+    seen = np.array([stop.seen_m for stop in stops])
+    # A camera that looks against the axis sees the joint turn the other way.
+    (axis, offset, rms), (_, _, other) = sorted(
+        (_fit(sign * angles, seen) for sign in (1.0, -1.0)), key=lambda fit: fit[2]
+    )
+    radius = float(np.linalg.norm(offset))
+    if rms > residual_limit_m and rms > 0.1 * radius:
+        raise TurnInvalid(
+            f"residual {rms * 1e6:.0f} µm at a radius of {radius / MM:.3f} mm; "
+            f"turning the other way {other * 1e6:.0f} µm"
+        )
+    sigma = rms / float(np.sqrt(len(stops)))
+    checks = (
+        LimitCheck("angles", len(stops), 4, "", "min"),
+        LimitCheck("residual rms", rms / MM, residual_limit_m / MM, "mm"),
+        LimitCheck("sigma of the offset", sigma / MM, sigma_limit_m / MM, "mm"),
+    )
+    return ToolTurnResult(axis, offset, sigma, rms, len(stops), checks)
+
+
+def _largest_gap(angles: Array) -> float:
+    around = np.sort(np.mod(angles, 2 * np.pi))
+    return float(np.diff(np.append(around, around[0] + 2 * np.pi)).max())
+
+
+def _fit(angles: Array, seen: Array) -> tuple[Array, Array, float]:
+    """Centre, offset and residual rms per axis."""
+    cosines, sines = np.cos(angles), np.sin(angles)
+    ones, zeros = np.ones_like(angles), np.zeros_like(angles)
+    of_x = np.column_stack([ones, zeros, cosines, -sines])
+    of_y = np.column_stack([zeros, ones, sines, cosines])
+    matrix, known = np.concatenate([of_x, of_y]), np.concatenate([seen[:, 0], seen[:, 1]])
+    solution = np.linalg.lstsq(matrix, known, rcond=None)[0]
+    residuals = matrix @ solution - known
+    spare = max(1, len(known) - 4)
+    return solution[:2], solution[2:], float(np.sqrt(residuals @ residuals / spare))
