@@ -89,15 +89,16 @@ test: check
 # other, and waiting costs them a third of the processors' time.
 test-parallel test-version test-cell test-long coverage: export OPENBLAS_NUM_THREADS = 1
 
-# Two workers also where there are more processors: time limits within tests are those of two cores.
+# Three workers fill two processors, since some tests wait. Not more where there are more processors:
+# time limits within tests are those of two.
 test-parallel: venv
-	$(BIN)/pytest -n 2 -m "not cell and not long" --durations 25
+	$(BIN)/pytest -n 3 -m "not cell and not long" --durations 25
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
 # rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python.
 COMPUTES := vision calibration force processes procedures fakes benchmarks
 test-version: venv
-	$(BIN)/pytest -n 2 -m "not cell and not long" $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/unit
+	$(BIN)/pytest -n 3 -m "not cell and not long" $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv

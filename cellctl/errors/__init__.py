@@ -7,6 +7,7 @@ CellError
 ├── GripperError      34x   errors.gripper      grippers
 ├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
 ├── VisionError       4xx   errors.vision       images, holes, part poses
+│   └── ConnectorError 46x  errors.connector    connectors and their contacts in one image
 ├── ForceError        5xx   errors.force        sensor, guard, mating
 ├── PluggingError     56x   errors.plugging     plan and insertion of a plug
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
@@ -20,6 +21,7 @@ CellError
 from cellctl.errors import (
     calibration,
     config,
+    connector,
     digital_io,
     force,
     gripper,
@@ -41,6 +43,7 @@ __all__ = [
     "calibration",
     "catalogue",
     "config",
+    "connector",
     "digital_io",
     "force",
     "gripper",

@@ -1,93 +1,18 @@
-"""What a user does wrong, and what is not there: numbered faults, exit codes, no traceback."""
+"""What is not there, or not well, while a cell runs: numbered faults, and the daemon stays."""
 
 import json
-import os
-import socket
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from shutil import copytree
-from typing import Any
 
 import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
+from tests.cell.endings import refuses, taken, waits
 from tests.cell.outside_plc import OutsidePlc
-from tests.cell.own_cell import ROOT, OwnCell, Program, cellctl
+from tests.cell.own_cell import ROOT, OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(120)
-
-
-def refuses(program: Program, *words: str, code: int = 1, timeout_s: float = 40) -> str:
-    """It ends with that code and these words; what it said on standard error."""
-    assert program.end(timeout_s) == code, program.stdout + program.stderr
-    program.nobody_left()
-    said = program.stderr
-    assert "Traceback" not in said
-    for word in words:
-        assert word in said
-    assert "remedy: " in said
-    return said
-
-
-def waits(daemon: Program, *words: str, timeout_s: float = 40) -> str:
-    """It stays, Aborted, and says these words; the fault."""
-    said: dict[str, Any] = daemon.until(
-        "what is missing",
-        lambda: next((m for m in daemon.messages if m.get("ready") is False), None),
-        timeout_s,
-    )
-    for word in words:
-        assert word in said["error"]
-    assert "Traceback" not in daemon.stderr
-    return str(said["error"])
-
-
-@contextmanager
-def taken(port: int, host: str = "127.0.0.1") -> Iterator[None]:
-    """Another program listens there."""
-    with socket.create_server((host, port)):
-        yield
-
-
-def test_every_error_of_a_cell_file_at_once(own: OwnCell) -> None:
-    own.change("d1_mm = 1045.0", "d1_mm = -5.0")
-    own.change("max_iterations = 10", "max_iterations = 1000")
-    own.change("[robots.main]\n", "[robots.main]\ncolour = 'red'\n")
-    own.change('transport = "tcp"', 'transport = "telepathy"')
-    checked = cellctl("check", str(own.cell))
-    assert checked.returncode == 1
-    assert checked.stderr == ""
-    for key in ("robots.main.d1_mm", "max_iterations", "robots.main.colour"):
-        assert key in checked.stdout
-    said = refuses(own.daemon(), "F102", "robots.main.d1_mm", "max_iterations", "colour")
-    assert "cellctl check" in said
-
-
-def test_settings_of_drivers_are_checked_too(own: OwnCell) -> None:
-    own.change('transport = "tcp"', 'transport = "telepathy"')
-    own.change('driver = "target-server"', 'driver = "crystal-ball"')
-    checked = cellctl("check", str(own.cell))
-    assert checked.returncode == 1
-    assert "force_sensors.force.settings.transport" in checked.stdout
-    assert "crystal-ball" in checked.stdout
-    assert "target-server" in checked.stdout  # what is installed
-
-
-def test_cell_file_that_does_not_exist(own: OwnCell) -> None:
-    own.cell.unlink()
-    refuses(own.daemon(), "F101", "cell.toml")
-
-
-def test_cell_file_that_is_no_toml(own: OwnCell) -> None:
-    own.cell.write_text("name = fake", encoding="utf-8")
-    refuses(own.daemon(), "F101", "line 1")
-
-
-def test_modbus_port_is_taken(own: OwnCell) -> None:
-    with taken(own.modbus_port):
-        refuses(own.daemon(), "F206", f":{own.modbus_port}")
 
 
 @pytest.mark.parametrize("shipped", [7002, pytest.param(7003, marks=pytest.mark.long)])
@@ -142,17 +67,6 @@ def test_store_is_in_use(visited: OwnCell) -> None:
     daemon.ready()
     refuses(visited.daemon(), "F802", str(visited.data))
     assert daemon.process.poll() is None
-
-
-def test_store_cannot_be_written(own: OwnCell) -> None:
-    (own.folder / "a-file").write_text("not a folder", encoding="utf-8")
-    refuses(own.daemon(data=own.folder / "a-file" / "store"), "F801", "a-file")
-
-
-@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is forbidden to the superuser")
-def test_store_may_not_be_written(own: OwnCell) -> None:
-    own.data.mkdir(mode=0o500)
-    refuses(own.daemon(), "F801", str(own.data))
 
 
 def test_calibrations_that_cannot_be_used(visited: OwnCell) -> None:
@@ -242,39 +156,3 @@ def test_demonstration_tells_the_fault(own: OwnCell) -> None:
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert not result["passed"]
     assert (out / "report" / "report.html").is_file()
-
-
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--fault", "head_1:measles"], ["no such fault", "no_hole"]),
-        (["--fault", "nobody:silent"], ["unknown device", "head_1"]),
-    ],
-)
-def test_demonstration_refuses_nonsense(own: OwnCell, options: list[str], words: list[str]) -> None:
-    demo = own.demo(own.folder / "run", *options)
-    assert demo.end(60) == 1
-    demo.nobody_left()
-    assert "Traceback" not in demo.stderr
-    for word in words:
-        assert word in demo.stderr
-
-
-def test_demonstration_beside_another_one(own: OwnCell) -> None:
-    with taken(own.ports[4008]):
-        demo = own.demo(own.folder / "run")
-        assert demo.end(60) == 1
-    demo.nobody_left()
-    assert "Traceback" not in demo.stderr
-    assert f"{own.ports[4008]}" in demo.stderr
-    assert "in use" in demo.stderr
-
-
-def test_demonstration_with_a_wrong_cell_file(own: OwnCell) -> None:
-    own.change("d1_mm = 1045.0", "d1_mm = -5.0")
-    demo = own.demo(own.folder / "run")
-    assert demo.end(60) == 1
-    demo.nobody_left()
-    assert "F102" in demo.stderr
-    assert "robots.main.d1_mm" in demo.stderr
-    assert "Traceback" not in demo.stderr

@@ -70,9 +70,11 @@ async def test_cut_links_stay_away_until_the_fault_is_cleared() -> None:
         device.faults.inject("cut")
         for line in lines:
             await asyncio.wait_for(line.ended.wait(), 2)
-        async with asyncio.timeout(2):  # the end of a line is seen here before the controller's own
-            while device.open_channels:
-                await asyncio.sleep(0.01)
+        for _ in range(200):  # the PC may see the end of a line before the controller does
+            if not device.open_channels:
+                break
+            await asyncio.sleep(0.01)
+        assert device.open_channels == []
         assert device.logic.latched
         with pytest.raises(TimeoutError):
             await asyncio.wait_for(pc.accepted("CMD"), 1.0)

@@ -272,7 +272,7 @@ def test_stereo_with_wrong_inputs(images: Path, tmp_path: Path) -> None:
     out = tmp_path / "head.json"
     result = stereo(images, out, board="8x6")
     assert isinstance(result.exception, WrongBoard)
-    result = call("stereo", "--left", images / "r-*.png", "--right", images / "l-*.png",
+    result = call("stereo", "--left", images / "r-0[0-7].png", "--right", images / "l-0[0-7].png",
                   "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
     assert isinstance(result.exception, CalibrationCamerasSwapped)
     result = call("stereo", "--left", images / "l-0*.png", "--right", images / "r-*.png",

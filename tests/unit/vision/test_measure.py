@@ -95,7 +95,7 @@ def test_the_papers_steps_stay_selectable(pair: Pair) -> None:
 def test_white_discs_are_measured_alike() -> None:
     discs = holes_triangle(("disc", "disc", "disc"))
     images = render_pair(HEAD, POSE, discs, Light(), seed=3)
-    result = measure_pair(*images, HEAD, discs)
+    result = measure_pair(*images, HEAD, discs, camera_T_part=POSE)
     truth = POSE.apply(np.array([disc.position_m for disc in discs]))
     assert np.abs(result.positions_m - truth).max() < 8e-6
     assert all(abs(hole.diameter_m / 20e-3 - 1) < 1e-3 for hole in result.holes)
@@ -161,7 +161,7 @@ def test_an_image_out_of_focus_is_called_that(pair: Pair) -> None:
     left, right = pair
     soft = np.asarray(cv2.GaussianBlur(right, (0, 0), 3.5), dtype=np.uint8)
     with pytest.raises(ImageBlurred, match=r"right: the rim of P\d is blurred"):
-        measure_pair(left, soft, HEAD, HOLES)
+        measure_pair(left, soft, HEAD, HOLES, camera_T_part=POSE)
 
 
 def test_averages_shrink_the_random_part_only(pair: Pair) -> None:

@@ -85,6 +85,7 @@ def test_bow_costs_nothing_when_the_board_is_released(
     assert rms(flat)[1] < 6e-6
 
 
+@pytest.mark.long
 def test_bow_ruins_a_rigid_board_without_showing_in_the_residuals(
     bowed: list[StereoResult],
 ) -> None:

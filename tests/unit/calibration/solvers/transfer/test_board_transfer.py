@@ -110,7 +110,7 @@ def test_equation_4() -> None:
     assert result.sigma[3:] == pytest.approx(1e-6, rel=1e-6)
 
 
-@pytest.mark.parametrize("placements", [1, 3])
+@pytest.mark.parametrize("placements", [1, pytest.param(3, marks=pytest.mark.long)])
 def test_covariances_are_honest_for_each_pose(placements: int) -> None:
     results = [calibrate(seed, placements) for seed in range(40)]
     assert all(result.passed for result in results)
