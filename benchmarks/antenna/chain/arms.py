@@ -87,6 +87,14 @@ class DrawnArm:
         """Where one approach of a commanded pose ends."""
         return self._scattered(self.mean_place(base_T_flange), rng)
 
+    def turned(
+        self, base_T_flange: RigidTransform, angle_rad: float, rng: np.random.Generator
+    ) -> RigidTransform:
+        """Where the flange ends when the last joint alone has turned on from a commanded pose."""
+        joints = self.joints(base_T_flange)
+        joints[5] += angle_rad
+        return self._scattered(forward(self.links, joints), rng)
+
     def reported(self, place: RigidTransform, rng: np.random.Generator) -> RigidTransform:
         """The pose that the controller reports while the flange is held at a place."""
         target = self._scattered(place, rng)

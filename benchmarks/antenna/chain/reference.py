@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 
 from benchmarks.antenna.chain.drawn_cell import (
     CONTACT_PX,
@@ -82,8 +82,7 @@ def _places(cell: DrawnCell, rng: np.random.Generator) -> Array:
     base_R_cam2 = cell.base_T_cam2.pose.rotation
     stops = []
     for angle in 2 * np.pi * np.arange(ANGLES) / ANGLES:
-        turn = RigidTransform.from_rotation(Rotation.from_euler("z", angle))
-        place = cell.arm.place(PLUG_STATION * FLANGE_T_PLUG.inv() * turn, rng)
+        place = cell.arm.turned(PLUG_STATION * FLANGE_T_PLUG.inv(), float(angle), rng)
         marks = cell.mounting.base_T_cam2.inv() * place * cell.mounting.flange_T_marks
         seen = cell.optics2.look(marks, MARKS_M, cell.cam2_T_plane(2), CONTACT_PX, rng)
         stops.append(TurnStop(float(angle), base_R_cam2.apply(seen.pose.translation)[:2]))

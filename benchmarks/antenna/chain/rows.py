@@ -2,14 +2,20 @@
 
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from benchmarks.antenna.chain.arms import Grade, Repeatability
 from benchmarks.antenna.chain.closing_look import close_by_steps, draw_taught_offset
-from benchmarks.antenna.chain.drawn_cell import draw_cell
-from benchmarks.antenna.chain.trials import PATTERN, Bench, Conditions, believed_cell
+from benchmarks.antenna.chain.drawn_cell import DrawnCell, draw_cell
+from benchmarks.antenna.chain.trials import (
+    PATTERN,
+    Bench,
+    CellResult,
+    Conditions,
+    believed_cell,
+)
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES
 from cellctl.processes.antenna_module.chain.worst_contact import contact_offsets
@@ -37,6 +43,8 @@ class Row:
             parts.append(f"slot {self.conditions.slot_m * 1e3:.0f} mm away")
         if self.conditions.socket_looks > 1:
             parts.append(f"{self.conditions.socket_looks} looks")
+        if self.conditions.teachings != Conditions().teachings:
+            parts.append(f"{self.conditions.teachings} taught")
         if self.misaligned is not None:
             parts.append("hand-eye wrong")
         return ", ".join(parts)
@@ -82,42 +90,41 @@ class Drawn:
         }
 
 
-def draw_row(
-    pool: Executor, row: Row, seeds: Sequence[int], plugs_per_cell: int
-) -> Mapping[str, Drawn]:
-    """All cells of a row; by scheme."""
-    jobs = [(row, seed, plugs_per_cell) for seed in seeds]
-    results = list(pool.map(_one_cell, jobs))
+def draw_rows(
+    pool: Executor, rows: Sequence[Row], seeds: Sequence[int], plugs_per_cell: int
+) -> list[Mapping[str, Drawn]]:
+    """Rows of one arm and one repeatability, in the same cells; by row, then by scheme."""
+    jobs = [(tuple(rows), seed, plugs_per_cell) for seed in seeds]
+    by_cell = list(pool.map(_one_cell, jobs))
+    return [_together([cell[index] for cell in by_cell]) for index in range(len(rows))]
+
+
+def _together(cells: Sequence[CellResult]) -> Mapping[str, Drawn]:
     return {
         name: Drawn(
-            np.concatenate([errors[name] for errors, _ in results]),
-            float(np.mean([predicted[name] for _, predicted in results if name in predicted])),
+            np.concatenate([cell.errors[name] for cell in cells]),
+            float(np.mean([cell.predicted_p99_m.get(name, np.nan) for cell in cells])),
         )
-        for name in results[0][0]
+        for name in cells[0].errors
     }
 
 
-def _one_cell(job: tuple[Row, int, int]) -> tuple[dict[str, Array], dict[str, float]]:
-    row, seed, plugs = job
-    # The cell and what happens in it have streams of their own: rows of one grade and one seed
-    # differ in what they vary and in nothing else.
-    cell = draw_cell(np.random.default_rng([seed, 1]), row.grade, row.repeatability)
+def _one_cell(job: tuple[tuple[Row, ...], int, int]) -> list[CellResult]:
+    rows, seed, plugs = job
+    # The cell and what happens in it have streams of their own: rows of one seed differ in what
+    # they vary and in nothing else.
+    cell = draw_cell(np.random.default_rng([seed, 1]), rows[0].grade, rows[0].repeatability)
+    return [_one_row(row, cell, seed, plugs) for row in rows]
+
+
+def _one_row(row: Row, cell: DrawnCell, seed: int, plugs: int) -> CellResult:
     if row.misaligned is not None:
         cell = cell.misaligned(np.random.default_rng([seed, 2]), *row.misaligned)
     rng = np.random.default_rng([seed, 3])
     believed = believed_cell(cell, row.grade, row.conditions.kelvin)
     schemes = [SCHEMES[name] for name in row.schemes]
     result = Bench(cell, believed, rng).run(schemes, row.conditions, plugs)
-    errors, predicted = dict(result.errors), dict(result.predicted_p99_m)
-    if "difference" in errors:
-        offset = draw_taught_offset(rng)
-        closed = [close_by_steps(error, offset, rng) for error in errors["difference"]]
-        errors[CLOSED] = np.array(closed)
-        # The plan predicts the place before the last look; what follows it has its own budget.
-        predicted[CLOSED] = float("nan")
-    return errors, predicted
-
-
-def at_distance(row: Row, slot_m: float) -> Row:
-    """The row with a slot that was not taught."""
-    return replace(row, conditions=replace(row.conditions, slot_m=slot_m))
+    offset = draw_taught_offset(rng)
+    closed = [close_by_steps(error, offset, rng) for error in result.errors["difference"]]
+    # The plan predicts the place before the closing look, so that has no prediction.
+    return CellResult({**result.errors, CLOSED: np.array(closed)}, result.predicted_p99_m)

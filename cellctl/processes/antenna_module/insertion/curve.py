@@ -1,0 +1,99 @@
+"""Samples of one insertion."""
+
+import csv
+import io
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.errors.plugging import InsertionCurveInvalid
+from cellctl.geometry.pose import MM, Array
+
+COLUMNS = ("t_s", "z_mm", "fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
+_FEWEST = 20
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InsertionSample:
+    """One reading, after tare."""
+
+    t_s: float
+    depth_m: float
+    force_n: Array
+    """Shape (3,)."""
+    moment_n_m: Array
+    """Shape (3,)."""
+
+    @property
+    def axial_n(self) -> float:
+        """Resistance to the insertion."""
+        return float(self.force_n[2])
+
+    @property
+    def side_n(self) -> float:
+        """Across it."""
+        return float(np.hypot(self.force_n[0], self.force_n[1]))
+
+    def centre_of_pressure_m(self, least_n: float) -> Array | None:
+        """x and y of where the axial force acts, shape (2,); None below ``least_n``."""
+        if self.force_n[2] <= least_n:
+            return None
+        return np.array([-self.moment_n_m[1], self.moment_n_m[0]]) / self.force_n[2]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InsertionCurve:
+    """A whole insertion; n samples."""
+
+    t_s: Array
+    """Rising, shape (n,)."""
+    depth_m: Array
+    """Shape (n,)."""
+    force_n: Array
+    """Shape (n, 3)."""
+    moment_n_m: Array
+    """Shape (n, 3)."""
+
+    def __iter__(self) -> Iterator[InsertionSample]:
+        for t_s, depth_m, force, moment in zip(
+            self.t_s, self.depth_m, self.force_n, self.moment_n_m, strict=True
+        ):
+            yield InsertionSample(float(t_s), float(depth_m), force, moment)
+
+
+def parse_curve(text: str) -> InsertionCurve:
+    """The CSV file: columns ``COLUMNS``, in any order, others are ignored.
+
+    Raises ``InsertionCurveInvalid`` with the line.
+    """
+    reader = csv.DictReader(io.StringIO(text))
+    missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+    if missing:
+        raise InsertionCurveInvalid(f"missing column {', '.join(missing)}")
+    rows: list[list[float]] = []
+    try:
+        for row in reader:
+            rows.append(_numbers(row, reader.line_num))
+    except csv.Error as error:
+        raise InsertionCurveInvalid(f"line {reader.line_num}: {error}") from error
+    if len(rows) < _FEWEST:
+        raise InsertionCurveInvalid(f"{len(rows)} samples, at least {_FEWEST} needed")
+    table = np.array(rows)
+    back = np.flatnonzero(np.diff(table[:, 0]) <= 0)
+    if back.size:
+        raise InsertionCurveInvalid(f"sample {back[0] + 2}: time does not rise")
+    return InsertionCurve(table[:, 0], table[:, 1] * MM, table[:, 2:5], table[:, 5:8])
+
+
+def _numbers(row: dict[str, str | None], line: int) -> list[float]:
+    values = []
+    for name in COLUMNS:
+        try:
+            value = float(row[name] or "")
+        except ValueError as error:
+            raise InsertionCurveInvalid(f"line {line}: {name} is {row[name]!r}") from error
+        if not np.isfinite(value):
+            raise InsertionCurveInvalid(f"line {line}: {name} is {row[name]!r}")
+        values.append(value)
+    return values

@@ -1,0 +1,137 @@
+"""What a whole insertion curve shows, in a few numbers."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, Phase
+
+
+@dataclass(frozen=True, slots=True)
+class InsertionFeatures:
+    """All largest values are of means over a few samples."""
+
+    early_axial_n: float
+    """Largest resistance in the entry, before the contact springs."""
+    early_side_n: float
+    early_moment_n_m: float
+    """Largest moment about the axes across the insertion there."""
+    early_pressure_m: tuple[float, float] | None
+    """Centre of pressure when that resistance was largest: where it touched. None without one."""
+    side_n: float
+    """Largest of the whole insertion."""
+    moment_z_n_m: float
+    pressure_m: float
+    """Farthest centre of pressure from the middle, once the axial force makes it certain."""
+    peak_n: float
+    """Largest resistance before the seat."""
+    total_n: float
+    """Largest resistance altogether."""
+    seat_depth_m: float | None
+    """Where the force rose as it does at a seat; None when it did not."""
+    depth_m: float
+    """Deepest point reached."""
+
+    def to_record(self) -> dict[str, float | list[float] | None]:
+        """Plain data; lengths in mm."""
+        record: dict[str, float | list[float] | None] = {}
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name.endswith("_m") and not field.name.endswith("_n_m"):
+                in_mm = (
+                    None
+                    if value is None
+                    else [x / MM for x in value]
+                    if isinstance(value, tuple)
+                    else value / MM
+                )
+                record[f"{field.name.removesuffix('_m')}_mm"] = in_mm
+            else:
+                record[field.name] = value
+        return record
+
+
+def features_of(
+    curve: InsertionCurve, limits: InsertionLimits, mean_of: int = 5
+) -> InsertionFeatures:
+    """The features; means over ``mean_of`` samples. A phase that was not reached gives zeros."""
+    force, moment = _smooth(curve.force_n, mean_of), _smooth(curve.moment_n_m, mean_of)
+    axial = force[:, 2]
+    side = np.hypot(force[:, 0], force[:, 1])
+    early = np.array([limits.phase_at(depth) is Phase.ENTRY for depth in curve.depth_m])
+    seat = _seat(curve.depth_m, axial, limits)
+    before_seat = (
+        np.ones(len(axial), dtype=bool) if seat is None else curve.depth_m < curve.depth_m[seat]
+    )
+    return InsertionFeatures(
+        early_axial_n=_largest(axial[early]),
+        early_side_n=_largest(side[early]),
+        early_moment_n_m=_largest(np.hypot(moment[early, 0], moment[early, 1])),
+        early_pressure_m=_touch(axial, moment, early, limits),
+        side_n=_largest(side),
+        moment_z_n_m=_largest(np.abs(moment[:, 2])),
+        pressure_m=_pressure(axial, moment, curve.depth_m >= limits.spring_depth_m, limits),
+        peak_n=_largest(axial[before_seat]),
+        total_n=_largest(axial),
+        seat_depth_m=None if seat is None else float(curve.depth_m[seat]),
+        depth_m=float(curve.depth_m.max()),
+    )
+
+
+def _smooth(values: Array, mean_of: int) -> Array:
+    """Means of the last ``mean_of`` samples; at the beginning, of as many as there are."""
+    summed = np.cumsum(values, axis=0)
+    summed[mean_of:] -= summed[:-mean_of].copy()
+    counts = np.minimum(np.arange(1, len(values) + 1), mean_of)
+    return np.asarray(summed / counts[:, None])
+
+
+def _largest(values: Array) -> float:
+    return float(values.max()) if len(values) else 0.0
+
+
+def _touch(
+    axial: Array, moment: Array, early: Array, limits: InsertionLimits
+) -> tuple[float, float] | None:
+    """Where the plug stood when the resistance of the entry was largest."""
+    if not early.any():
+        return None
+    at = int(np.flatnonzero(early)[np.argmax(axial[early])])
+    if axial[at] < limits.entry_axial_n:
+        return None
+    return float(-moment[at, 1] / axial[at]), float(moment[at, 0] / axial[at])
+
+
+def _pressure(axial: Array, moment: Array, sliding: Array, limits: InsertionLimits) -> float:
+    sure = sliding & (axial > limits.least_pressure_n)
+    if not sure.any():
+        return 0.0
+    return float((np.hypot(moment[sure, 0], moment[sure, 1]) / axial[sure]).max())
+
+
+def _seat(depth_m: Array, axial: Array, limits: InsertionLimits) -> int | None:
+    """Index where the force has risen by the seat's rise within the seat's depth."""
+    deep = np.flatnonzero(depth_m >= limits.spring_depth_m)
+    least = 0
+    for at in deep:
+        while depth_m[deep[least]] < depth_m[at] - limits.seat_within_m:
+            least += 1
+        window = axial[deep[least] : at + 1]
+        # The rise of the contact springs is as long as it is high: over 0.4 mm. A seat is short.
+        if axial[at] - window.min() > limits.seat_rise_n and _is_steep(
+            depth_m[deep[least] : at + 1], window, limits
+        ):
+            return int(deep[least] + int(window.argmin()))
+    return None
+
+
+def _is_steep(depth_m: Array, axial: Array, limits: InsertionLimits) -> bool:
+    """Whether the rise is beyond the slope with which contact springs come into play at most."""
+    low = int(axial.argmin())
+    run_m = max(float(depth_m[-1] - depth_m[low]), 1e-6)
+    spring_slope = limits.greatest_n / 0.4e-3
+    return bool(
+        (axial[-1] - axial[low]) / run_m > 1.2 * spring_slope or axial[-1] > limits.greatest_n
+    )

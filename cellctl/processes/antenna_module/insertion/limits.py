@@ -1,0 +1,102 @@
+"""What each depth of an insertion allows."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from cellctl.processes.antenna_module.connector.connector import Connector
+
+
+class Phase(Enum):
+    """Where the plug is."""
+
+    ABOVE = "above"
+    """Nothing may be felt."""
+    ENTRY = "entry"
+    """From just above the first touch to where the contact springs begin. Axial force here means
+    that a pin stands on the face or at a wall, and nothing later can tell that any more."""
+    SLIDING = "sliding"
+    """Springs, sliding, and the seat."""
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseLimits:
+    """Bounds of one phase; N, N·m, m/s."""
+
+    phase: Phase
+    speed_m_s: float
+    axial_n: float
+    side_n: float
+    moment_z_n_m: float
+    centre_of_pressure_m: float
+    """Distance of the centre of pressure from the middle of the connector."""
+
+
+@dataclass(frozen=True, slots=True)
+class InsertionLimits:
+    """Depths and forces of one connector, for a holder of at most 50 N/mm sideways."""
+
+    spring_depth_m: float
+    seat_depth_m: float
+    greatest_n: float
+    """Axial force of a good plugging, at most."""
+    entry_height_m: float = 0.5e-3
+    """Above the first touch, from where on the plug moves slowly."""
+    travel_m_s: float = 5e-3
+    entry_m_s: float = 0.4e-3
+    """As slow as connectors are tested; one standing pin then meets less than its collapse force
+    before a stop that takes 250 ms takes effect."""
+    above_n: float = 3.0
+    entry_axial_n: float = 1.0
+    entry_rise_n: float = 0.15
+    """By how much the axial force must exceed its own mean of the last 0.1 s: a hose that pulls
+    steadily is not a contact."""
+    entry_most_n: float = 3.0
+    """Whatever it was before."""
+    entry_side_n: float = 1.5
+    sliding_side_n: float = 3.0
+    moment_z_n_m: float = 0.02
+    over_n: float = 10.0
+    """Above ``greatest_n``: allowed at the seat."""
+    centre_of_pressure_m: float = 1e-3
+    least_pressure_n: float = 5.0
+    """Below this axial force the centre of pressure is noise."""
+    seat_rise_n: float = 10.0
+    seat_within_m: float = 0.1e-3
+    """The force rises by ``seat_rise_n`` within this depth at the seat."""
+    seat_tolerance_m: float = 0.15e-3
+
+    @classmethod
+    def of(cls, connector: Connector) -> "InsertionLimits":
+        """The limits of a drawing."""
+        return cls(connector.spring_depth_m, connector.seat_depth_m, connector.force_n[1])
+
+    def phase_at(self, depth_m: float) -> Phase:
+        """The phase at a depth."""
+        if depth_m < -self.entry_height_m:
+            return Phase.ABOVE
+        return Phase.ENTRY if depth_m < self.spring_depth_m else Phase.SLIDING
+
+    def at(self, depth_m: float) -> PhaseLimits:
+        """Speed and bounds at a depth."""
+        infinite = float("inf")
+        phase = self.phase_at(depth_m)
+        if phase is Phase.ABOVE:
+            above = self.above_n
+            return PhaseLimits(phase, self.travel_m_s, above, above, infinite, infinite)
+        if phase is Phase.ENTRY:
+            return PhaseLimits(
+                phase,
+                self.entry_m_s,
+                self.entry_most_n,
+                self.entry_side_n,
+                self.moment_z_n_m,
+                infinite,
+            )
+        return PhaseLimits(
+            phase,
+            self.entry_m_s,
+            self.greatest_n + self.over_n,
+            self.sliding_side_n,
+            self.moment_z_n_m,
+            self.centre_of_pressure_m,
+        )

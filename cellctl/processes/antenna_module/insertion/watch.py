@@ -1,0 +1,103 @@
+"""Watches a live insertion, sample by sample."""
+
+from collections import deque
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from cellctl.processes.antenna_module.insertion.curve import InsertionSample
+from cellctl.processes.antenna_module.insertion.limits import (
+    InsertionLimits,
+    Phase,
+    PhaseLimits,
+)
+
+_TREND_S = 0.1
+
+
+class TripCause(Enum):
+    """Which bound was passed."""
+
+    AXIAL_EARLY = "axial force before the contact springs"
+    SIDE = "side force"
+    MOMENT = "moment about the insertion axis"
+    OVER = "axial force"
+    PRESSURE = "centre of pressure"
+
+
+@dataclass(frozen=True, slots=True)
+class InsertionTrip:
+    """Why and where to stop."""
+
+    cause: TripCause
+    phase: Phase
+    t_s: float
+    depth_m: float
+    value: float
+    """N, N·m or m."""
+    limit: float
+
+
+class InsertionWatch:
+    """Holds the last samples; the first bound passed wins, and stays."""
+
+    def __init__(self, limits: InsertionLimits, mean_of: int = 5) -> None:
+        """``mean_of``: samples whose mean is compared, against the sensor's noise."""
+        self._limits = limits
+        self._latest: deque[InsertionSample] = deque(maxlen=mean_of)
+        self._trend: deque[tuple[float, float]] = deque()
+        self.trip: InsertionTrip | None = None
+
+    def feed(self, sample: InsertionSample) -> InsertionTrip | None:
+        """The next sample; the trip, once there is one."""
+        self._latest.append(sample)
+        smooth = _mean(self._latest)
+        if self.trip is None:
+            self.trip = self._judge(smooth)
+        self._trend.append((sample.t_s, smooth.axial_n))
+        while self._trend[0][0] < sample.t_s - _TREND_S:
+            self._trend.popleft()
+        return self.trip
+
+    def _judge(self, sample: InsertionSample) -> InsertionTrip | None:
+        bounds = self._limits.at(sample.depth_m)
+        if bounds.phase is Phase.ENTRY and self._rises(sample.axial_n):
+            early_n = self._limits.entry_axial_n
+            return _trip(TripCause.AXIAL_EARLY, bounds, sample, sample.axial_n, early_n)
+        over = TripCause.OVER if bounds.phase is Phase.SLIDING else TripCause.AXIAL_EARLY
+        pressure = sample.centre_of_pressure_m(self._limits.least_pressure_n)
+        lever_m = 0.0 if pressure is None else float(np.linalg.norm(pressure))
+        for cause, value, limit in (
+            (over, abs(sample.axial_n), bounds.axial_n),
+            (TripCause.SIDE, sample.side_n, bounds.side_n),
+            (TripCause.MOMENT, abs(float(sample.moment_n_m[2])), bounds.moment_z_n_m),
+            (TripCause.PRESSURE, lever_m, bounds.centre_of_pressure_m),
+        ):
+            # Written so that a value that is not a number trips.
+            if not value <= limit:
+                return _trip(cause, bounds, sample, value, limit)
+        return None
+
+    def _rises(self, axial_n: float) -> bool:
+        if axial_n <= self._limits.entry_axial_n:
+            return False
+        before = [force for _, force in self._trend]
+        return not before or axial_n > float(np.mean(before)) + self._limits.entry_rise_n
+
+
+def _trip(
+    cause: TripCause, bounds: PhaseLimits, sample: InsertionSample, value: float, limit: float
+) -> InsertionTrip:
+    return InsertionTrip(cause, bounds.phase, sample.t_s, sample.depth_m, value, limit)
+
+
+def _mean(samples: deque[InsertionSample]) -> InsertionSample:
+    """Mean wrench at the newest depth."""
+    newest = samples[-1]
+    return InsertionSample(
+        newest.t_s,
+        newest.depth_m,
+        np.mean([sample.force_n for sample in samples], axis=0),
+        np.mean([sample.moment_n_m for sample in samples], axis=0),
+    )
