@@ -18,6 +18,8 @@ DIGITAL_IO = "cellctl.digital_io"
 PROCESS = "cellctl.process"
 COMMAND = "cellctl.command"
 """Offline commands of a process: functions that add themselves to a Typer application."""
+CALIBRATE = "cellctl.calibrate"
+"""The same below `cellctl calibrate`."""
 
 
 def names(group: str) -> list[str]:

@@ -1,7 +1,8 @@
 """The commands of `cellctl` by name, each loaded only when it is asked for.
 
 Offline commands of a process are found as entry points of the group ``cellctl.command``: a name and
-a function that takes a Typer application and adds the command of that name to it.
+a function that takes a Typer application and adds the command of that name to it. Those of the
+group ``cellctl.calibrate`` are added to `cellctl calibrate`.
 """
 
 from collections.abc import Callable, Mapping
@@ -27,7 +28,7 @@ def whole_app() -> typer.Typer:
     for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload"):
         _ADD[name](app)
     for name in _from_processes():
-        _add_from_process(app, name)
+        _add_from_process(app, plugins.COMMAND, name)
     return app
 
 
@@ -51,9 +52,9 @@ def _from_processes() -> list[str]:
     return [name for name in plugins.names(plugins.COMMAND) if name not in {*_ADD, *OPERATOR_NAMES}]
 
 
-def _add_from_process(app: typer.Typer, name: str) -> None:
+def _add_from_process(app: typer.Typer, group: str, name: str) -> None:
     try:
-        plugins.load_function(plugins.COMMAND, name)(app)
+        plugins.load_function(group, name)(app)
     except UnknownDriver as fault:
         # The help of all other commands must not fail because one package is incomplete. Whoever
         # asks for this command by its name gets the fault.
@@ -99,6 +100,11 @@ def _faults(app: typer.Typer) -> None:
 def _calibrate(app: typer.Typer) -> None:
     from cellctl.cli.offline import calibrate
 
+    # The application of `calibrate` lasts longer than this one, so a name may be there already.
+    known = {command.name for command in calibrate.app.registered_commands}
+    for name in plugins.names(plugins.CALIBRATE):
+        if name not in known:
+            _add_from_process(calibrate.app, plugins.CALIBRATE, name)
     app.add_typer(calibrate.app, name="calibrate", rich_help_panel=OFFLINE)
 
 

@@ -28,7 +28,7 @@ class Demand:
 def demands_met(
     results: Mapping[str, Mapping[str, Drawn]], reference: ReferenceCounts, *, whole: bool
 ) -> list[Demand]:
-    """B6 to B10 and B14. The band of the published chain is judged by a whole campaign only."""
+    """B6 to B10 and B14. A campaign that is not whole judges what few cells can tell."""
     demands = [_b6(results[row]["difference"], row) for row in (UNCALIBRATED_WARM, FACTORY_WARM)]
     demands.append(_b8(results))
     for row, scheme in (
@@ -36,9 +36,9 @@ def demands_met(
         (FACTORY_WARM, "difference"),
         (FACTORY_RP_005, CLOSED),
     ):
-        demands.append(_b9(row, scheme, results[row][scheme]))
-    demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50), whole))
-    demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75), whole))
+        demands.append(_b9(row, scheme, results[row][scheme], whole=whole))
+    demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50), whole=whole))
+    demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75), whole=whole))
     demands.append(_b14(reference))
     return demands
 
@@ -68,19 +68,21 @@ def _b8(results: Mapping[str, Mapping[str, Drawn]]) -> Demand:
     )
 
 
-def _b9(row: str, scheme: str, drawn: Drawn) -> Demand:
+def _b9(row: str, scheme: str, drawn: Drawn, *, whole: bool) -> Demand:
     plugs = len(drawn.errors)
+    # Correction and drift are one draw per cell, so few cells do not give their rms.
+    limit_m = 13e-6 if whole else 17e-6
     return Demand(
         "B9",
         f"{scheme}, {row}",
-        f"{plugs} of {plugs} within 50 µm, rms ≤ 13 µm",
+        f"{plugs} of {plugs} within 50 µm, rms ≤ {limit_m * 1e6:.0f} µm",
         f"{drawn.within} of {plugs}, rms {drawn.rms_m * 1e6:.1f} µm, "
         f"worst {drawn.worst_m.max() * 1e6:.0f} µm",
-        drawn.within == plugs and drawn.rms_m <= 13e-6,
+        drawn.within == plugs and drawn.rms_m <= limit_m,
     )
 
 
-def _b10(drawn: Drawn, drift: str, band: tuple[float, float], whole: bool) -> Demand:
+def _b10(drawn: Drawn, drift: str, band: tuple[float, float], *, whole: bool) -> Demand:
     share = drawn.within / len(drawn.errors)
     return Demand(
         "B10",

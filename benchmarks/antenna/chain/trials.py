@@ -145,18 +145,19 @@ class Bench:
         taught = [
             look_at_both(self.cell, self.rng, looks=looks) for _ in range(conditions.teachings)
         ]
-        corrections = {
-            scheme.name: self.teach(scheme, taught) for scheme in schemes if scheme.taught
-        }
         warm = replace(self, cell=self.cell.warmed(self.rng, conditions.kelvin))
         situations = [
             look_at_both(warm.cell, self.rng, looks=looks, slot_m=conditions.slot_m)
             for _ in range(plugs)
         ]
         errors, predicted = {}, {}
+        luck = int(self.rng.integers(2**62))
         for scheme in schemes:
-            correction = corrections.get(scheme.name)
-            each = [warm.plug_error(scheme, one, correction) for one in situations]
+            # The same chance for every scheme, so that rows and schemes differ in nothing else.
+            rng = np.random.default_rng(luck)
+            cold, hot = replace(self, rng=rng), replace(warm, rng=rng)
+            correction = cold.teach(scheme, taught) if scheme.taught else None
+            each = [hot.plug_error(scheme, one, correction) for one in situations]
             errors[scheme.name] = np.array(each)
             plan = compose_plan(situations[0].looks, self.believed, scheme, PATTERN, correction)
             predicted[scheme.name] = plan.worst.p99_m

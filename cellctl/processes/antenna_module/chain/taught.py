@@ -13,6 +13,7 @@ from cellctl.errors.plugging import CalibrationsDoNotBelongTogether, OutOfTaught
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
+from cellctl.processes.antenna_module.chain.looks import WRIST_JOINTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,9 +126,12 @@ class PlugCorrection:
         slots = tuple(_slot_from_record(slot) for slot in record["slots"])
         if not slots:
             raise ValueError("a plug correction has at least one slot")
+        wrist = tuple(int(sign) for sign in record["wrist"])
+        if len(wrist) != len(WRIST_JOINTS) or not {*wrist} <= {-1, 1}:
+            raise ValueError(f"a wrist configuration is the signs of two joints, got {wrist}")
         return cls(
             made_with=MadeWith.from_record(record["made_with"]),
-            wrist=tuple(int(sign) for sign in record["wrist"]),
+            wrist=wrist,
             range_m=float(record["range_mm"]) * MM,
             slots=slots,
             checks=checks_from_record(record["checks"]),

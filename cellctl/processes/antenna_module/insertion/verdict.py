@@ -23,7 +23,7 @@ from cellctl.processes.antenna_module.insertion.features import InsertionFeature
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 
 _BESIDE_MIDDLE_M = 1.0e-3
-"""A resistance that acts farther than this from the middle comes from few contacts, not from all."""
+"""A resistance that acts farther than this from the middle comes from few contacts."""
 
 
 class InsertionVerdict(StrEnum):
@@ -92,7 +92,7 @@ def judge_insertion(curve: InsertionCurve, connector: Connector) -> InsertionJud
     checks = _checks(features, limits)
     failed = {check.name for check in checks if not check.passed}
     suspect = _suspect(features, connector) if _EARLY in failed else None
-    verdict = _verdict(features, failed, suspect is not None)
+    verdict = _verdict(failed, points_at_one=suspect is not None)
     return InsertionJudgement(
         verdict, features, checks, suspect if verdict is InsertionVerdict.BENT_PIN else None
     )
@@ -118,9 +118,7 @@ def _checks(features: InsertionFeatures, limits: InsertionLimits) -> Checks:
     )
 
 
-def _verdict(
-    features: InsertionFeatures, failed: set[str], points_at_one: bool
-) -> InsertionVerdict:
+def _verdict(failed: set[str], *, points_at_one: bool) -> InsertionVerdict:
     if not failed:
         return InsertionVerdict.SEATED
     # The entry comes first: what goes wrong there explains what follows.

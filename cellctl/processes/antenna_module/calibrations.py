@@ -1,0 +1,54 @@
+"""The calibration kinds of this process that its chain of poses uses."""
+
+from typing import Any
+
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult
+from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.errors.plug_calibration import (
+    ArmMoved,
+    FixedCameraMoved,
+    FlangeCameraMoved,
+    GripperMarksMoved,
+    ReferenceMoved,
+)
+from cellctl.errors.plugging import PlugOverForce
+from cellctl.errors.robot import ControllerFault
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+
+# A fault stands in ``invalidated_by`` when what caused it has moved what the calibration holds
+# for. A robot reports a collision as an error of its controller.
+
+FLANGE_CAMERA = CalibrationKind(
+    name="flange_T_cam1",
+    parse=HandEyeResult.from_record,
+    invalidated_by=frozenset({ControllerFault, FlangeCameraMoved, ArmMoved, ReferenceMoved}),
+)
+"""Camera I on the flange."""
+
+FIXED_CAMERA = CalibrationKind(
+    name="base_T_cam2",
+    parse=HandEyeResult.from_record,
+    invalidated_by=frozenset({ControllerFault, FixedCameraMoved, ArmMoved, ReferenceMoved}),
+)
+"""Camera II beside the robot."""
+
+PLUG_CORRECTION = CalibrationKind(
+    name="plug_correction",
+    parse=PlugCorrection.from_record,
+    invalidated_by=frozenset(
+        {
+            ControllerFault,
+            FlangeCameraMoved,
+            GripperMarksMoved,
+            ArmMoved,
+            ReferenceMoved,
+            # The gripper was pressed harder than it is made for, its marks with it.
+            PlugOverForce,
+        }
+    ),
+    per_recipe=True,
+)
+"""What teaching has found, for the connector of each recipe. A camera II that moved is not among
+its faults: marks and plug lie in one picture of it."""
+
+CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (FLANGE_CAMERA, FIXED_CAMERA, PLUG_CORRECTION)

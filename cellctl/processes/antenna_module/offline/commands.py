@@ -1,0 +1,175 @@
+"""`cellctl plan-plug`, `judge-insertion`, `calibrate plug` and `calibrate tool-turn`.
+
+Exit codes: 0 planned, seated or calibrated; 3 when a result was found but is not good; 1 for a
+fault, which is named with its number.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from cellctl.calibration.checks import Checks
+from cellctl.calibration.input_file import read_input
+from cellctl.errors.calibration import CalibrationRecordInvalid
+from cellctl.errors.config import FileInvalid
+from cellctl.errors.plugging import InsertionCurveInvalid
+from cellctl.geometry.pose import pose_to_xyzabc
+from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
+from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching import teach_plug
+from cellctl.processes.antenna_module.chain.tool_turn import calibrate_tool_turn
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.insertion.curve import parse_curve
+from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
+from cellctl.processes.antenna_module.offline.trial_file import (
+    TeachFile,
+    TrialFile,
+    looks_of,
+    read_cell_file,
+)
+from cellctl.processes.antenna_module.offline.turn_file import TurnFile
+
+T = TypeVar("T")
+NOT_GOOD = 3
+"""Exit code when there is a result, but a figure of it is beyond its limit."""
+PANEL = "From files, without a cell"
+
+InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/antenna-module.md.")]
+OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]
+Drawing = Annotated[Path, typer.Option("--connector", help="Drawing of the connector, TOML.")]
+
+
+def add_plan_plug(app: typer.Typer) -> None:
+    """Add the command to an application."""
+    app.command("plan-plug", rich_help_panel=PANEL)(plan_plug_from_file)
+
+
+def add_judge_insertion(app: typer.Typer) -> None:
+    """Add the command to an application."""
+    app.command("judge-insertion", rich_help_panel=PANEL)(judge_insertion_from_file)
+
+
+def add_calibrate_plug(app: typer.Typer) -> None:
+    """Add the command to `cellctl calibrate`."""
+    app.command("plug")(calibrate_plug)
+
+
+def add_calibrate_tool_turn(app: typer.Typer) -> None:
+    """Add the command to `cellctl calibrate`."""
+    app.command("tool-turn")(calibrate_turn)
+
+
+def plan_plug_from_file(file: InFile, connector: Drawing, out: OutFile = None) -> None:
+    """Where the flange goes to plug a connector, with the predicted error of its worst contact."""
+    trial = read_cell_file(file, TrialFile)
+    drawing = read_connector(connector)
+    looks = _valued(file, lambda: looks_of(trial.looks))
+    if looks.plug.connector != drawing.name:
+        raise FileInvalid(f"{file}: the plug is a {looks.plug.connector}, not a {drawing.name}")
+    plan = plan_plug(
+        looks,
+        trial.cell(),
+        _scheme(file, trial.scheme),
+        ContactPattern(drawing.contacts, drawing.positions_m),
+        now_s=trial.now_s(),
+        correction=_correction(file, trial.correction),
+        tolerance=PlugTolerance(worst_contact_m=trial.tolerance_um * 1e-6),
+    )
+    x, y, z, a, b, c = pose_to_xyzabc(plan.base_T_flange.pose)
+    _say(f"base_T_flange: X {x:.4f}, Y {y:.4f}, Z {z:.4f} mm, A {a:.5f}, B {b:.5f}, C {c:.5f}°")
+    _say(f"worst contact {plan.worst.name}: 99 % within {plan.worst.p99_m * 1e6:.1f} µm")
+    for term, value_m in sorted(plan.terms_m.items(), key=lambda item: -item[1]):
+        _say(f"  {term}: {value_m * 1e6:.1f} µm")
+    _write(out, plan.to_record())
+
+
+def judge_insertion_from_file(
+    curve: Annotated[Path, typer.Option(help="CSV of the insertion, see docs/antenna-module.md.")],
+    connector: Drawing,
+    out: OutFile = None,
+) -> None:
+    """Whether a plug is seated, or which fault its force curve shows."""
+    try:
+        text = curve.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InsertionCurveInvalid(f"{curve}: {error}") from error
+    judgement = judge_insertion(parse_curve(text), read_connector(connector))
+    _show_checks(judgement.checks)
+    _say(judgement.verdict.value)
+    if judgement.fault is not None:
+        _say(str(judgement.fault))
+    _write(out, judgement.to_record())
+    if judgement.verdict is not InsertionVerdict.SEATED:
+        raise typer.Exit(NOT_GOOD)
+
+
+def calibrate_plug(file: InFile, out: OutFile = None) -> None:
+    """The correction from taught plugs: what all constant errors of a cell come to at a slot."""
+    data = read_cell_file(file, TeachFile)
+    correction = teach_plug(
+        _valued(file, data.by_slot),
+        data.cell(),
+        _scheme(file, data.scheme),
+        range_m=data.range_mm * 1e-3,
+    )
+    for slot in correction.slots:
+        x, y, z = slot.socket_T_plug.pose.translation * 1e3
+        _say(f"slot {slot.name}: {x:.4f}, {y:.4f}, {z:.4f} mm from {slot.plugs} plugs")
+    _show_checks(correction.checks)
+    _write(out, correction.to_record())
+
+
+def calibrate_turn(file: InFile, out: OutFile = None) -> None:
+    """Where a feature of the gripper lies beside the flange axis, from turns before camera II."""
+    result = calibrate_tool_turn([entry.stop() for entry in read_input(file, TurnFile).turns])
+    x, y = result.offset_m * 1e3
+    _say(f"offset {x:.4f}, {y:.4f} mm, sigma {result.sigma_m * 1e6:.1f} µm")
+    _show_checks(result.checks)
+    _write(out, result.to_record())
+    if not result.passed:
+        raise typer.Exit(NOT_GOOD)
+
+
+def _scheme(file: Path, name: str) -> Scheme:
+    if name not in SCHEMES:
+        raise FileInvalid(f"{file}: no scheme {name!r}; there are {', '.join(SCHEMES)}")
+    return SCHEMES[name]
+
+
+def _correction(file: Path, record: Mapping[str, Any] | None) -> PlugCorrection | None:
+    if record is None:
+        return None
+    try:
+        return PlugCorrection.from_record(record)
+    except (KeyError, TypeError, ValueError) as error:
+        raise CalibrationRecordInvalid(f"{file}: plug correction: {error!r}") from error
+
+
+def _valued(file: Path, make: Callable[[], T]) -> T:
+    """What the content of a file comes to; raises ``FileInvalid`` with its place."""
+    try:
+        return make()
+    except ValueError as error:
+        raise FileInvalid(f"{file}: {error}") from error
+
+
+def _show_checks(checks: Checks) -> None:
+    for check in checks:
+        _say(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
+
+
+def _say(text: str) -> None:
+    typer.echo(text)
+
+
+def _write(out: Path | None, record: Mapping[str, Any]) -> None:
+    if out is None:
+        return
+    try:
+        out.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise FileInvalid(f"cannot write {out}: {error.strerror or error}") from error
