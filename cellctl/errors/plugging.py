@@ -136,4 +136,4 @@ class InsertionCurveInvalid(PluggingError):
     number = 575
     text = "Insertion curve cannot be judged"
     cause = "Missing columns, text where numbers belong, time that runs back, or too few samples."
-    remedy = "See the line in the detail; the columns are in docs/antenna-module.md."
+    remedy = "See the line in the detail; the columns are in docs/plugging.md."

@@ -68,11 +68,12 @@ def demanded_rows() -> list[list[Row]]:
     """What the demands are judged by; each list shares its cells."""
     warm, cold = Conditions(kelvin=3.0), Conditions()
     several = Conditions(kelvin=3.0, teachings=8, socket_looks=2)
+    compared = ("difference", "absolute")
     return [
-        [Row(UNCALIBRATED, RP_002, warm), Row(UNCALIBRATED, RP_002, several, _ONLY)],
+        [Row(UNCALIBRATED, RP_002, warm), Row(UNCALIBRATED, RP_002, several, compared)],
         [
             Row(FACTORY, RP_002, warm),
-            Row(FACTORY, RP_002, several, _ONLY),
+            Row(FACTORY, RP_002, several, compared),
             Row(FACTORY, RP_002, cold),
             Row(FACTORY, RP_002, warm, _ONLY, HAND_EYE_WRONG),
         ],

@@ -11,6 +11,8 @@ from benchmarks.antenna.chain.rows import CLOSED, Drawn
 UNCALIBRATED_WARM = "uncalibrated, RP 0.02, 3 K"
 FACTORY_WARM = "factory, RP 0.02, 3 K"
 FACTORY_COLD = "factory, RP 0.02, 0 K"
+SEVERAL = ", 2 looks, 8 taught"
+"""What production is meant to do. The rows with four taught plugs and one look stand beside it."""
 FACTORY_RP_005 = "factory, RP 0.05, 3 K"
 
 
@@ -32,8 +34,8 @@ def demands_met(
     demands = [_b6(results[row]["difference"], row) for row in (UNCALIBRATED_WARM, FACTORY_WARM)]
     demands.append(_b8(results))
     for row, scheme in (
-        (UNCALIBRATED_WARM, "difference"),
-        (FACTORY_WARM, "difference"),
+        (UNCALIBRATED_WARM + SEVERAL, "difference"),
+        (FACTORY_WARM + SEVERAL, "difference"),
         (FACTORY_RP_005, CLOSED),
     ):
         demands.append(_b9(row, scheme, results[row][scheme], whole=whole))

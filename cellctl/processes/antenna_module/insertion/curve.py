@@ -68,13 +68,11 @@ def parse_curve(text: str) -> InsertionCurve:
     Raises ``InsertionCurveInvalid`` with the line.
     """
     reader = csv.DictReader(io.StringIO(text))
-    missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
-    if missing:
-        raise InsertionCurveInvalid(f"missing column {', '.join(missing)}")
-    rows: list[list[float]] = []
     try:
-        for row in reader:
-            rows.append(_numbers(row, reader.line_num))
+        missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+        if missing:
+            raise InsertionCurveInvalid(f"missing column {', '.join(missing)}")
+        rows = [_numbers(row, reader.line_num) for row in reader]
     except csv.Error as error:
         raise InsertionCurveInvalid(f"line {reader.line_num}: {error}") from error
     if len(rows) < _FEWEST:

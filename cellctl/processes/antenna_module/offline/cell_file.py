@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.input_file import InputFile, InputPose, numbers, read_input
 from cellctl.calibration.pose_record import covariance_from_written
 from cellctl.calibration.store.envelope import content_id
+from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import (
@@ -120,7 +121,19 @@ class CellEntries(InputFile):
         return self
 
     def cell(self) -> PlugCell:
-        """The cell of these entries."""
+        """The cell of these entries.
+
+        Raises ``CalibrationsDoNotBelongTogether`` when a hand-eye calibration was made with other
+        intrinsics than those in use.
+        """
+        for used, mounted in (
+            (self.cameras.cam1, self.flange_T_cam1),
+            (self.cameras.cam2, self.base_T_cam2),
+        ):
+            if used != mounted.camera_id:
+                raise CalibrationsDoNotBelongTogether(
+                    f"intrinsics {used}, hand-eye made with {mounted.camera_id}"
+                )
         return PlugCell(
             cam1=self.flange_T_cam1.mounted(_identity(self.flange_T_cam1), in_hand=True),
             cam2=self.base_T_cam2.mounted(_identity(self.base_T_cam2), in_hand=False),

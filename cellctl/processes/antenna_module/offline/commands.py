@@ -38,7 +38,7 @@ NOT_GOOD = 3
 """Exit code when there is a result, but a figure of it is beyond its limit."""
 PANEL = "From files, without a cell"
 
-InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/antenna-module.md.")]
+InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/plugging.md.")]
 OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]
 Drawing = Annotated[Path, typer.Option("--connector", help="Drawing of the connector, TOML.")]
 
@@ -63,10 +63,19 @@ def add_calibrate_tool_turn(app: typer.Typer) -> None:
     app.command("tool-turn")(calibrate_turn)
 
 
-def plan_plug_from_file(file: InFile, connector: Drawing, out: OutFile = None) -> None:
+def plan_plug_from_file(
+    file: InFile,
+    connector: Annotated[
+        Path | None, typer.Option(help="Drawing of the plug, TOML; else the file's 'connector'.")
+    ] = None,
+    out: OutFile = None,
+) -> None:
     """Where the flange goes to plug a connector, with the predicted error of its worst contact."""
     trial = read_cell_file(file, TrialFile)
-    drawing = read_connector(connector)
+    named = trial.connector
+    if connector is None and named is None:
+        raise FileInvalid(f"{file}: missing 'connector'; or give --connector")
+    drawing = read_connector(connector or file.parent / str(named))
     looks = _valued(file, lambda: looks_of(trial.looks))
     if looks.plug.connector != drawing.name:
         raise FileInvalid(f"{file}: the plug is a {looks.plug.connector}, not a {drawing.name}")
@@ -88,7 +97,7 @@ def plan_plug_from_file(file: InFile, connector: Drawing, out: OutFile = None) -
 
 
 def judge_insertion_from_file(
-    curve: Annotated[Path, typer.Option(help="CSV of the insertion, see docs/antenna-module.md.")],
+    curve: Annotated[Path, typer.Option(help="CSV of the insertion, see docs/plugging.md.")],
     connector: Drawing,
     out: OutFile = None,
 ) -> None:

@@ -87,6 +87,8 @@ class TrialFile(CellEntries):
     looks: tuple[LookEntry, ...]
     correction: dict[str, Any] | None = None
     """As ``cellctl calibrate plug`` has written it."""
+    connector: str | None = None
+    """Name of the file with the plug's drawing, beside this one."""
     tolerance_um: float = Field(default=50.0, gt=0, le=1000)
     time_s: float | None = None
     """When it is planned, on the clock of the looks; without it, when the last look was taken."""

@@ -1,0 +1,271 @@
+"""The commands from files: results, and every mistake by its name."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from cellctl.calibration.pose_record import covariance_to_written, pose_to_record
+from cellctl.errors import CellError
+from cellctl.errors.config import FileInvalid
+from cellctl.errors.plug_calibration import TooFewTeachings, TurnInvalid
+from cellctl.errors.plugging import (
+    CalibrationsDoNotBelongTogether,
+    InsertionCurveInvalid,
+    OutOfTaughtRange,
+    StaleLook,
+    WristConfigurationsDiffer,
+)
+from cellctl.geometry.pose import pose_to_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.antenna_module.chain.looks import Looks, PlugLook
+from cellctl.processes.antenna_module.offline import commands
+from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.unit.processes.antenna_module.insertion.curves import Shape, as_csv, curve
+
+DRAWING = "config/connectors/micro-d-15-pins.toml"
+Json = dict[str, Any]
+
+
+def application() -> typer.Typer:
+    app = typer.Typer()
+    commands.add_plan_plug(app)
+    commands.add_judge_insertion(app)
+    commands.add_calibrate_plug(app)
+    commands.add_calibrate_tool_turn(app)
+    return app
+
+
+def run(*words: str) -> Any:
+    return CliRunner().invoke(application(), words)
+
+
+def mm(pose: Any) -> list[float]:
+    return [float(value) for value in pose_to_xyzabc(pose)]
+
+
+def measurement(seen: UncertainPose, camera: str, connector: str) -> Json:
+    return {
+        "camera_id": camera,
+        "connector": connector,
+        "camera_T_connector": mm(seen.pose),
+        "covariance": covariance_to_written(seen.covariance).tolist(),
+    }
+
+
+def look_entries(looks: Looks) -> list[Json]:
+    entries = []
+    for look in (looks.plug, *looks.sockets):
+        plug = isinstance(look, PlugLook)
+        seen = look.camera_T_plug if isinstance(look, PlugLook) else look.camera_T_socket
+        found = measurement(seen, look.camera_id, look.connector)
+        if isinstance(look, PlugLook) and look.camera_T_marks is not None:
+            found["marks_T_connector"] = mm(look.camera_T_marks.pose.inv() * seen.pose)
+        entries.append(
+            {
+                "station": "plug" if plug else "socket",
+                "base_T_flange": mm(look.base_T_flange),
+                "joints_deg": np.degrees(look.joints_rad).tolist(),
+                "measurement": found,
+                "time_s": look.time_s,
+            }
+        )
+    return entries
+
+
+def cell_entries() -> Json:
+    cell = exact.cell()
+    cam1, cam2 = pose_to_record(cell.cam1.pose), pose_to_record(cell.cam2.pose)
+    return {
+        "scheme": "difference",
+        "cameras": {"cam1": "camera 1", "cam2": "camera 2"},
+        "flange_T_cam1": {"camera_id": "camera 1", "flange_T_camera": cam1},
+        "base_T_cam2": {"camera_id": "camera 2", "base_T_camera": cam2},
+        "arm": {"rp_mm": 0.02, "rp_deg": 0.001, "absolute_error_mm": 0.26, "drift_mm": 0.024},
+        "gripper": "gripper 3",
+        "flange_T_marks": mm(exact.FLANGE_T_MARKS),
+    }
+
+
+def teach_content() -> Json:
+    plugs = [
+        {
+            "name": plug.name,
+            "looks": look_entries(plug.looks),
+            "plugged_base_T_flange": mm(plug.base_T_flange),
+        }
+        for plug in exact.taught_plugs()
+    ]
+    return {**cell_entries(), "plugs": plugs}
+
+
+@pytest.fixture(scope="module")
+def correction(tmp_path_factory: pytest.TempPathFactory) -> Json:
+    folder = tmp_path_factory.mktemp("teach")
+    out = folder / "correction.json"
+    result = run("plug", "--in", written(folder, teach_content()), "--out", str(out))
+    assert result.exit_code == 0, result.exception
+    content: Json = json.loads(out.read_text())
+    return content
+
+
+def written(folder: Path, content: Json) -> str:
+    path = folder / "in.json"
+    path.write_text(json.dumps(content))
+    return str(path)
+
+
+def trial_content(correction: Json) -> Json:
+    return {**cell_entries(), "looks": look_entries(exact.looks()), "correction": correction}
+
+
+def test_a_plan_from_files(tmp_path: Path, correction: Json) -> None:
+    out = tmp_path / "plan.json"
+    (tmp_path / "correction.json").write_text(json.dumps(correction))
+    content = {
+        **trial_content(correction),
+        "correction": "correction.json",
+        "connector": str(Path(DRAWING).absolute()),
+    }
+    result = run("plan-plug", "--in", written(tmp_path, content), "--out", str(out))
+    assert result.exit_code == 0, result.exception
+    assert "99 % within" in result.output
+    plan = json.loads(out.read_text())
+    assert 20 < plan["p99_um"] < 50
+    np.testing.assert_allclose(
+        plan["base_T_flange"]["xyz_abc_mm_deg"][:3], mm(exact.TARGET)[:3], atol=1e-3
+    )
+    assert set(plan["terms_um"]) >= {
+        "look_plug", "look_socket", "approach", "correction", "drift",
+    }  # fmt: skip
+
+
+def exchanged_intrinsics(content: Json) -> None:
+    content["looks"][0]["measurement"]["camera_id"] = "camera 2, newer"
+
+
+def exchanged_everywhere(content: Json) -> None:
+    content["cameras"]["cam2"] = "camera 2, newer"
+
+
+def foreign_correction(content: Json) -> None:
+    content["gripper"] = "gripper 4"
+
+
+def newer_hand_eye(content: Json) -> None:
+    content["flange_T_cam1"]["flange_T_camera"]["matrix_mm"][0][3] += 0.01
+
+
+def old_look(content: Json) -> None:
+    content["time_s"] = 500.0
+
+
+def mixed_wrists(content: Json) -> None:
+    content["looks"][1]["joints_deg"][4] *= -1
+
+
+def far_slot(content: Json) -> None:
+    content["looks"][1]["base_T_flange"][1] += 300
+
+
+def other_setup(content: Json) -> None:
+    content["base_T_cam2"] = content["flange_T_cam1"]
+
+
+def two_plugs(content: Json) -> None:
+    content["looks"].append(content["looks"][0])
+
+
+def five_joints(content: Json) -> None:
+    content["looks"][0]["joints_deg"].pop()
+
+
+def unknown_scheme(content: Json) -> None:
+    content["scheme"] = "guess"
+
+
+def wrong_connector(content: Json) -> None:
+    content["looks"][0]["measurement"]["connector"] = "da-15"
+
+
+def no_such_file(content: Json) -> None:
+    content["correction"] = "nowhere.json"
+
+
+@pytest.mark.parametrize(
+    ("spoil", "fault"),
+    [
+        (exchanged_intrinsics, CalibrationsDoNotBelongTogether),
+        (exchanged_everywhere, CalibrationsDoNotBelongTogether),
+        (foreign_correction, CalibrationsDoNotBelongTogether),
+        (newer_hand_eye, CalibrationsDoNotBelongTogether),
+        (old_look, StaleLook),
+        (mixed_wrists, WristConfigurationsDiffer),
+        (far_slot, OutOfTaughtRange),
+        (other_setup, FileInvalid),
+        (two_plugs, FileInvalid),
+        (five_joints, FileInvalid),
+        (unknown_scheme, FileInvalid),
+        (wrong_connector, FileInvalid),
+        (no_such_file, FileInvalid),
+    ],
+)
+def test_a_mistake_in_a_trial_is_refused_by_name(
+    tmp_path: Path, correction: Json, spoil: Callable[[Json], None], fault: type[CellError]
+) -> None:
+    content = json.loads(json.dumps(trial_content(correction)))
+    spoil(content)
+    result = run("plan-plug", "--in", written(tmp_path, content), "--connector", DRAWING)
+    assert isinstance(result.exception, fault), result.exception
+
+
+def test_a_trial_without_a_drawing_is_refused(tmp_path: Path, correction: Json) -> None:
+    result = run("plan-plug", "--in", written(tmp_path, trial_content(correction)))
+    assert isinstance(result.exception, FileInvalid)
+
+
+def test_too_few_taught_plugs_are_refused(tmp_path: Path) -> None:
+    content = teach_content()
+    del content["plugs"][3]
+    result = run("plug", "--in", written(tmp_path, content))
+    assert isinstance(result.exception, TooFewTeachings)
+
+
+def test_a_turn_from_a_file(tmp_path: Path) -> None:
+    turns = [
+        {"a6_deg": angle, "position_mm": [3 + np.cos(np.radians(angle)), np.sin(np.radians(angle))]}
+        for angle in range(0, 360, 90)
+    ]
+    out = tmp_path / "turn.json"
+    result = run("tool-turn", "--in", written(tmp_path, {"turns": turns}), "--out", str(out))
+    assert result.exit_code == 0, result.exception
+    np.testing.assert_allclose(json.loads(out.read_text())["offset_mm"], [1, 0], atol=1e-9)
+    few = run("tool-turn", "--in", written(tmp_path, {"turns": turns[:2]}))
+    assert isinstance(few.exception, TurnInvalid)
+
+
+@pytest.mark.parametrize(
+    ("shape", "code", "verdict"),
+    [(Shape(), 0, "seated"), (Shape(pin_n_per_mm=115, pin_mm=(-4.4, 0.5)), 3, "bent_pin")],
+)
+def test_an_insertion_is_judged_from_a_file(
+    tmp_path: Path, shape: Shape, code: int, verdict: str
+) -> None:
+    (tmp_path / "c.csv").write_text(as_csv(curve(shape)))
+    out = tmp_path / "verdict.json"
+    result = run(
+        "judge-insertion",
+        "--curve", str(tmp_path / "c.csv"), "--connector", DRAWING, "--out", str(out),
+    )  # fmt: skip
+    assert result.exit_code == code, result.exception
+    assert json.loads(out.read_text())["verdict"] == verdict
+
+
+def test_a_curve_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
+    result = run("judge-insertion", "--curve", str(tmp_path / "no.csv"), "--connector", DRAWING)
+    assert isinstance(result.exception, InsertionCurveInvalid)
