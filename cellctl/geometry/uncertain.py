@@ -50,10 +50,10 @@ def product_jacobians(a_T_b: RigidTransform, b_T_c: RigidTransform) -> tuple[Arr
     """
     rotation = a_T_b.rotation.as_matrix()
     arm = rotation @ b_T_c.translation
-    from_first = np.eye(6)
+    from_first: Array = np.eye(6)
     # A turn of the first pose by dr moves the origin of c by dr × arm = −arm × dr.
     from_first[:3, 3:] = -skew(arm)
-    return from_first, np.kron(np.eye(2), rotation)
+    return from_first, np.asarray(np.kron(np.eye(2), rotation))
 
 
 def inverse_jacobian(a_T_b: RigidTransform) -> Array:

@@ -39,7 +39,8 @@ class InsertionSample:
         """x and y of where the axial force acts, shape (2,); None below ``least_n``."""
         if self.force_n[2] <= least_n:
             return None
-        return np.array([-self.moment_n_m[1], self.moment_n_m[0]]) / self.force_n[2]
+        lever = np.array([-self.moment_n_m[1], self.moment_n_m[0]]) / self.force_n[2]
+        return np.asarray(lever)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

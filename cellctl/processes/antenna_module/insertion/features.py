@@ -3,10 +3,13 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, Phase
+
+Mask = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +96,7 @@ def _largest(values: Array) -> float:
 
 
 def _touch(
-    axial: Array, moment: Array, early: Array, limits: InsertionLimits
+    axial: Array, moment: Array, early: Mask, limits: InsertionLimits
 ) -> tuple[float, float] | None:
     """Where the plug stood when the resistance of the entry was largest."""
     if not early.any():
@@ -104,7 +107,7 @@ def _touch(
     return float(-moment[at, 1] / axial[at]), float(moment[at, 0] / axial[at])
 
 
-def _pressure(axial: Array, moment: Array, sliding: Array, limits: InsertionLimits) -> float:
+def _pressure(axial: Array, moment: Array, sliding: Mask, limits: InsertionLimits) -> float:
     sure = sliding & (axial > limits.least_pressure_n)
     if not sure.any():
         return 0.0

@@ -24,7 +24,7 @@ def stops(
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_axis_and_offset_are_exact_without_noise(sign: float) -> None:
-    result = calibrate_tool_turn(stops(np.arange(0, 360, 90), sign))
+    result = calibrate_tool_turn(stops(np.arange(0.0, 360.0, 90.0), sign))
     np.testing.assert_allclose(result.axis_m, AXIS_M, atol=1e-12)
     np.testing.assert_allclose(result.offset_m, OFFSET_M, atol=1e-12)
     assert result.passed
@@ -48,7 +48,7 @@ def test_few_or_one_sided_angles_are_refused() -> None:
 
 
 def test_a_feature_that_does_not_turn_with_the_joint_is_refused() -> None:
-    right = stops(np.arange(0, 360, 45))
+    right = stops(np.arange(0.0, 360.0, 45.0))
     order = [3, 0, 6, 1, 7, 4, 2, 5]
     shuffled = [
         TurnStop(one.angle_rad, right[other].seen_m)
@@ -59,4 +59,4 @@ def test_a_feature_that_does_not_turn_with_the_joint_is_refused() -> None:
 
 
 def test_noise_beyond_the_limit_does_not_pass() -> None:
-    assert not calibrate_tool_turn(stops(np.arange(0, 360, 45), noise_m=60e-6)).passed
+    assert not calibrate_tool_turn(stops(np.arange(0.0, 360.0, 45.0), noise_m=60e-6)).passed

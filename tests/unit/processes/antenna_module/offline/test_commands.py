@@ -23,7 +23,7 @@ from cellctl.errors.plugging import (
 )
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.antenna_module.chain.looks import Looks, PlugLook
+from cellctl.processes.antenna_module.chain.looks import Look, Looks
 from cellctl.processes.antenna_module.offline import commands
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 from tests.unit.processes.antenna_module.insertion.curves import Shape, as_csv, curve
@@ -58,24 +58,26 @@ def measurement(seen: UncertainPose, camera: str, connector: str) -> Json:
     }
 
 
+def look_entry(station: str, look: Look, found: Json) -> Json:
+    return {
+        "station": station,
+        "base_T_flange": mm(look.base_T_flange),
+        "joints_deg": np.degrees(look.joints_rad).tolist(),
+        "measurement": found,
+        "time_s": look.time_s,
+    }
+
+
 def look_entries(looks: Looks) -> list[Json]:
-    entries = []
-    for look in (looks.plug, *looks.sockets):
-        plug = isinstance(look, PlugLook)
-        seen = look.camera_T_plug if isinstance(look, PlugLook) else look.camera_T_socket
-        found = measurement(seen, look.camera_id, look.connector)
-        if isinstance(look, PlugLook) and look.camera_T_marks is not None:
-            found["marks_T_connector"] = mm(look.camera_T_marks.pose.inv() * seen.pose)
-        entries.append(
-            {
-                "station": "plug" if plug else "socket",
-                "base_T_flange": mm(look.base_T_flange),
-                "joints_deg": np.degrees(look.joints_rad).tolist(),
-                "measurement": found,
-                "time_s": look.time_s,
-            }
-        )
-    return entries
+    plug = looks.plug
+    found = measurement(plug.camera_T_plug, plug.camera_id, plug.connector)
+    assert plug.camera_T_marks is not None
+    found["marks_T_connector"] = mm(plug.camera_T_marks.pose.inv() * plug.camera_T_plug.pose)
+    sockets = [
+        look_entry("socket", one, measurement(one.camera_T_socket, one.camera_id, one.connector))
+        for one in looks.sockets
+    ]
+    return [look_entry("plug", plug, found), *sockets]
 
 
 def cell_entries() -> Json:

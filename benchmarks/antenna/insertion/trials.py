@@ -1,0 +1,210 @@
+"""One insertion under the live watch: good pairs of many lots, and every fault that can be felt."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
+from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, InsertionSample
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
+from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
+from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
+from fakes.world.connector.contact_lot import MatingPair, MatingSizes, Mount, draw_peaks
+from fakes.world.connector.drawing import MICRO_D_15
+from fakes.world.connector.insertion import (
+    PinState,
+    PlugPlace,
+    Response,
+    outside,
+    pressed,
+    respond,
+)
+
+DRAWING = Path("config/connectors/micro-d-15-holes.toml")
+"""Of the socket: the wrench is in its axes."""
+SPEED_M_S = 0.4e-3
+RATE_HZ = 100.0
+LATENCY_S = 0.25
+STEP_M = 0.1e-3
+START_M, END_M = -0.3e-3, 2.6e-3
+SEATED_N = 15.0
+"""Above what sliding takes: there the drive ends."""
+NOISE_N, NOISE_N_M = 0.05, 0.002
+MEAN_OF = 3
+_HOLES_M = np.array(list(MICRO_D_15.positions_m("holes").values()))
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """What is wrong with a pair; nothing by default."""
+
+    name: str = "good"
+    bend_m: float = 0.0
+    """Of one pin, in any direction."""
+    offset_m: float = 0.0
+    """Of the plug, in any direction."""
+    yaw_deg: float = 0.0
+    seat_early_m: float = 0.0
+    missing: bool = False
+
+
+GOOD = Fault()
+FAULTS = (
+    Fault("pin bent 0.15 mm", bend_m=0.15e-3),
+    Fault("pin bent 0.30 mm", bend_m=0.30e-3),
+    Fault("offset 0.10 mm", offset_m=0.10e-3),
+    Fault("offset 0.16 mm", offset_m=0.16e-3),
+    Fault("offset 0.30 mm", offset_m=0.30e-3),
+    Fault("yaw 1°", yaw_deg=1.0),
+    Fault("seat 0.3 mm early", seat_early_m=0.3e-3),
+)
+MISSING = Fault("contact missing", missing=True)
+
+
+@dataclass(frozen=True, slots=True)
+class InsertionOutcome:
+    """How one insertion ended."""
+
+    fault: str
+    caught: bool
+    verdict: str
+    side_n: float
+    """Largest side force on one contact."""
+    standing_n: float
+    """Largest axial force on one contact that stands on the face."""
+    total_n: float
+    collapsed: bool
+    travel_m: float
+    """From the first early contact to where the plug stood still; 0 without a trip in time."""
+
+
+def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> InsertionOutcome:
+    """Drive, watch, stop, judge.
+
+    In steps of 0.1 mm the force is read at standstill only: so it is driven where a stop request
+    may be missed.
+    """
+    rng = np.random.default_rng([seed, int(in_steps)])
+    pair, place = _draw(fault, rng)
+    drive = _Drive(pair, place, rng)
+    watch = InsertionWatch(_LIMITS, MEAN_OF)
+    stop_at = np.inf
+    count = int((END_M - START_M) / SPEED_M_S * RATE_HZ)
+    for number in range(count):
+        t_s = number / RATE_HZ
+        sample = drive.sample(t_s, START_M + SPEED_M_S * t_s)
+        if stop_at == np.inf and watch.feed(sample) is not None:
+            stop_at = _stop_time(t_s, in_steps=in_steps)
+        seated = sample.depth_m > 2e-3 and sample.axial_n > drive.sliding_n + SEATED_N
+        if t_s >= stop_at or seated:
+            break
+    curve = drive.curve()
+    verdict = judge_insertion(curve, _CONNECTOR).verdict
+    stopped = watch.trip is not None
+    return InsertionOutcome(
+        fault=fault.name,
+        caught=stopped or verdict is not InsertionVerdict.SEATED,
+        verdict=verdict.value,
+        side_n=drive.side_n,
+        standing_n=drive.standing_n,
+        total_n=drive.total_n,
+        collapsed=drive.collapsed,
+        travel_m=drive.travel_m if stopped else 0.0,
+    )
+
+
+def _stop_time(t_s: float, *, in_steps: bool) -> float:
+    if not in_steps:
+        return t_s + LATENCY_S
+    # The step under way is finished, whatever is asked for meanwhile.
+    done_m = SPEED_M_S * t_s
+    return float(np.ceil(done_m / STEP_M) * STEP_M / SPEED_M_S)
+
+
+def _draw(fault: Fault, rng: np.random.Generator) -> tuple[MatingPair, PlugPlace]:
+    """Placed as well as the chain places plugs, with pins as straight as good ones are."""
+    sizes = MatingSizes.of(MICRO_D_15)
+    sizes = replace(sizes, seat_m=sizes.seat_m - fault.seat_early_m)
+    pins = _HOLES_M + rng.normal(0, 5e-6, _HOLES_M.shape)
+    present = np.ones(len(pins))
+    which = int(rng.integers(len(pins)))
+    pins[which] += fault.bend_m * _direction(rng)
+    present[which] = 0.0 if fault.missing else 1.0
+    pair = MatingPair(
+        sizes, pins, _HOLES_M, draw_peaks(rng, len(pins)), present, np.zeros(len(pins))
+    )
+    x, y = rng.normal(0, 13e-6, 2) + fault.offset_m * _direction(rng)
+    yaw = np.radians(rng.normal(0, 0.03) + fault.yaw_deg * rng.choice([-1, 1]))
+    tilt = np.radians(rng.normal(0, 0.15, 2))
+    return pair, PlugPlace(float(x), float(y), float(yaw), (float(tilt[0]), float(tilt[1])))
+
+
+def _direction(rng: np.random.Generator) -> Array:
+    angle = rng.uniform(0, 2 * np.pi)
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+class _Drive:
+    """The far end of the axial spring moves; what contacts feel is kept."""
+
+    def __init__(self, pair: MatingPair, place: PlugPlace, rng: np.random.Generator) -> None:
+        self._pair, self._place, self._rng = pair, place, rng
+        self._mount = Mount()
+        self._states = outside(pair)
+        self._samples: list[InsertionSample] = []
+        self._last_n = 0.0
+        self._first_m: float | None = None
+        self.side_n = self.standing_n = self.total_n = 0.0
+        self.sliding_n = float(pair.sizes.sliding_share * pair.peaks_n.sum())
+
+    def sample(self, t_s: float, driven_m: float) -> InsertionSample:
+        depth_m, response = self._settle(driven_m)
+        wrench = response.wrench
+        self._states, self._last_n = response.states, float(wrench[2])
+        self.side_n = max(self.side_n, float(response.side_n.max()))
+        stands = response.states == PinState.STANDING
+        self.standing_n = max(self.standing_n, float((response.axial_n * stands).max()))
+        self.total_n = max(self.total_n, float(wrench[2]))
+        if self._first_m is None and np.abs(wrench[:3]).max() > NOISE_N:
+            self._first_m = depth_m
+        force = wrench[:3] + self._rng.normal(0, NOISE_N, 3)
+        moment = wrench[3:] + self._rng.normal(0, NOISE_N_M, 3)
+        sample = InsertionSample(t_s, depth_m, force, moment)
+        self._samples.append(sample)
+        return sample
+
+    def _settle(self, driven_m: float) -> tuple[float, Response]:
+        depth_m = driven_m - self._last_n / self._mount.axial_n_m
+        place = replace(self._place, depth_m=depth_m)
+        response = respond(self._pair, self._mount, self._states, place)
+        hard = (response.states == PinState.STANDING).any() or depth_m > self._pair.sizes.seat_m
+        if not hard:
+            return depth_m, response
+        # Face and seat are stiffer than the spring, so the place is found by bisection there.
+        there = replace(self._place, depth_m=driven_m)
+        return pressed(self._pair, self._mount, self._states, there)
+
+    @property
+    def collapsed(self) -> bool:
+        return bool((self._states == PinState.COLLAPSED).any())
+
+    @property
+    def travel_m(self) -> float:
+        if self._first_m is None:
+            return 0.0
+        return self._samples[-1].depth_m - self._first_m
+
+    def curve(self) -> InsertionCurve:
+        samples = self._samples
+        return InsertionCurve(
+            np.array([one.t_s for one in samples]),
+            np.array([one.depth_m for one in samples]),
+            np.stack([one.force_n for one in samples]),
+            np.stack([one.moment_n_m for one in samples]),
+        )
+
+
+_CONNECTOR: Connector = read_connector(DRAWING)
+_LIMITS = InsertionLimits.of(_CONNECTOR)
