@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado bench bench-metrology bench-looks bench-guard \
+.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -53,6 +53,11 @@ campaign-faults: venv
 # Takes an hour and more; interrupted, it goes on where it was.
 campaign-tornado: venv
 	$(BIN)/python -m benchmarks.tornado
+
+# Takes half an hour; QUICK=1 draws few cells and insertions, in about a minute each.
+campaign-antenna: venv
+	$(BIN)/python -m benchmarks.antenna.chain.campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.antenna.insertion.campaign $(if $(QUICK),--quick)
 
 bench: bench-metrology bench-looks bench-guard
 
