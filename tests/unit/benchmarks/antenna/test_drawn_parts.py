@@ -36,9 +36,9 @@ def test_a_real_arm_is_off_and_reports_the_pose_that_leads_there(pose: RigidTran
 
 def test_approaches_scatter_as_the_standard_says() -> None:
     one, rng = arm(IDEAL, RP_002), np.random.default_rng(3)
-    places = np.array([one.place(POSES[0], rng).translation for _ in range(300)])
+    places = np.array([one.place(POSES[0], rng).translation for _ in range(120)])
     radii = np.linalg.norm(places - places.mean(axis=0), axis=1)
-    assert radii.mean() + 3 * radii.std() == pytest.approx(20e-6, rel=0.15)
+    assert radii.mean() + 3 * radii.std() == pytest.approx(20e-6, rel=0.2)
 
 
 def test_an_exact_camera_finds_the_contacts_in_their_plane() -> None:
