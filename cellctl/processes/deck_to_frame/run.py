@@ -100,14 +100,19 @@ class AssemblyRun:
         """Head I at its measuring pose."""
         return self.facts.geometry.base_T_c1.pose
 
-    async def measure(self, features: FeatureFile, c1_T_part: RigidTransform) -> PartMeasurement:
-        """Measure a part near a predicted pose, as certainly as the loop needs it."""
+    async def measure(
+        self, features: FeatureFile, c1_T_part: RigidTransform, frames: int | None = None
+    ) -> PartMeasurement:
+        """Measure a part near a predicted pose, as certainly as the loop needs it.
+
+        With at least so many ``frames``; those of the recipe unless said.
+        """
         settings, thresholds = self.recipe.pose_correction, self.thresholds
         wanted = thresholds.vector * thresholds.uncertainty_share * SHARE_OF_ONE_PART
         return await self.measurer.measure(
             features,
             c1_T_part,
-            frames=settings.frames,
+            frames=frames or settings.frames,
             max_frames=settings.max_frames,
             wanted_sigma_mm_deg=in_mm_deg(wanted),
         )
