@@ -139,17 +139,20 @@ class Replay:
             return
         if self.frame is None:
             raise NotReplayable(f"{name} comes before the frame was measured")
-        M_T_D = deck_in_frame(self.frame, part, self._heads, self._method)
+        relative = deck_in_frame(self.frame, part, self._heads, self._method)
         thickness_m = self.recipe.deck_thickness_mm * MM
         if key == "seated":
             holes = self.features["deck"].holes
-            figures, _ = split_document(seat_record(seat_error(M_T_D, thickness_m, holes)))
+            figures, _ = split_document(
+                seat_record(seat_error(relative.cautious, thickness_m, holes))
+            )
             for entry in figures:
                 yield Replayed(
                     name, entry.key, entry.unit, self.record.value(entry.key), entry.value, ROUNDING
                 )
             return
-        error = assembly_error(target_M_T_D(thickness_m, self.recipe.stand_off_mm * MM), M_T_D.pose)
+        M_T_D = relative.part_1_T_part_2.pose
+        error = assembly_error(target_M_T_D(thickness_m, self.recipe.stand_off_mm * MM), M_T_D)
         for passed in self.record.passes:
             if key == f"iteration-{passed.number}":
                 was_error = [component.value for component in passed.components]

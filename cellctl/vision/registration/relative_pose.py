@@ -26,11 +26,17 @@ class RelativePose:
     """Where one part is in the other."""
 
     part_1_T_part_2: UncertainPose
-    """Its covariance contains that of the holes and of the heads' movement."""
+    """With the uncertainties that are stated, of the holes and of the heads' movement."""
     movement: Array
     """Estimated error of ``c1_T_c2``, shape (6,), in the order of ``UncertainPose``."""
     misfit: ChiSquare
     """Whether holes and movement are explained by what is known of them."""
+
+    @property
+    def cautious(self) -> UncertainPose:
+        """The same, more uncertain where what is stated does not explain the holes."""
+        plain = self.part_1_T_part_2
+        return UncertainPose(plain.pose, plain.covariance * self.misfit.growth)
 
 
 def relative_pose(
@@ -59,7 +65,7 @@ def relative_pose(
     freedom = 3 * (len(part_1.names) + len(part_2.names)) - 12
     misfit = ChiSquare(chi2, freedom)
     jacobian = _by_poses(*poses)
-    covariance = jacobian @ np.linalg.inv(normal)[:12, :12] @ jacobian.T * misfit.growth
+    covariance = jacobian @ np.linalg.inv(normal)[:12, :12] @ jacobian.T
     return RelativePose(UncertainPose(poses[0].inv() * poses[1], covariance), movement, misfit)
 
 

@@ -38,6 +38,7 @@ from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.registration.chi_square import ChiSquare
 from cellctl.vision.registration.measured_points import MeasuredPoints
 from cellctl.vision.registration.part_pose import PartPose
+from cellctl.vision.registration.relative_pose import RelativePose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations
@@ -265,7 +266,7 @@ class TruthMeasurer:
     measured: list[str] = field(default_factory=list)
     frames: list[int] = field(default_factory=list)
 
-    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> UncertainPose:
+    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
         return deck_in_frame(frame, deck, self.geometry, "paper")
 
     async def measure(

@@ -25,7 +25,7 @@ from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.registration.average import average
 from cellctl.vision.registration.part_pose import PartPose, part_pose
-from cellctl.vision.registration.relative_pose import relative_pose
+from cellctl.vision.registration.relative_pose import RelativePose, relative_pose
 
 _log = log.get(__name__)
 
@@ -87,7 +87,7 @@ class PartMeasurement:
 
 def deck_in_frame(
     frame: PartPose, deck: PartPose, geometry: HeadGeometry, method: Method
-) -> UncertainPose:
+) -> RelativePose:
     """Measured ``M_T_D`` with its covariance (eq. 9).
 
     Default: both parts and the movement of the heads since their calibration are estimated
@@ -97,9 +97,10 @@ def deck_in_frame(
     c1_T_M, c1_T_D = frame.pose.pose, deck.pose.pose
     if method == "paper":
         own = UncertainPose(c1_T_M, frame.own_covariance).inv()
-        return own * UncertainPose(c1_T_D, deck.own_covariance)
+        M_T_D = own * UncertainPose(c1_T_D, deck.own_covariance)
+        return RelativePose(M_T_D, np.zeros(6), deck.misfit)
     known = geometry.c1_T_c2.covariance
-    return relative_pose(frame.points, deck.points, c1_T_M, c1_T_D, known).part_1_T_part_2
+    return relative_pose(frame.points, deck.points, c1_T_M, c1_T_D, known)
 
 
 class PartMeasurer:
@@ -111,7 +112,7 @@ class PartMeasurer:
         self._method = method
         self._reference = [head.robot.state().base_T_flange for head in cell.heads]
 
-    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> UncertainPose:
+    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
         """``M_T_D`` of two parts that these heads have measured."""
         return deck_in_frame(frame, deck, self._geometry, self._method)
 

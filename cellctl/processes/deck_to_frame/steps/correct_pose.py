@@ -69,7 +69,7 @@ async def _measure(
     run = stand_off.run
     predicted = run.base_T_c1.inv() * stand_off.base_T_flange * stand_off.flange_T_deck
     measurement = await run.measure(run.facts.deck_features, predicted)
-    M_T_D = run.measurer.deck_in_frame(stand_off.frame, measurement.pose)
+    M_T_D = run.measurer.deck_in_frame(stand_off.frame, measurement.pose).part_1_T_part_2
     judgement = judge(run.target_M_T_D, M_T_D, run.thresholds)
     run.board.update(iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()))
     return judgement, measurement, M_T_D

@@ -46,7 +46,7 @@ async def _look(seat: Seated, frames: int | None = None) -> tuple[PartMeasuremen
     flange = run.cell.main.state().base_T_flange
     predicted = run.base_T_c1.inv() * flange * seat.flange_T_deck
     measurement = await run.measure(run.facts.deck_features, predicted, frames)
-    M_T_D = run.measurer.deck_in_frame(seat.frame, measurement.pose)
+    M_T_D = run.measurer.deck_in_frame(seat.frame, measurement.pose).cautious
     thickness_m = run.recipe.deck_thickness_mm * MM
     return measurement, seat_error(M_T_D, thickness_m, run.facts.deck_features.holes)
 
