@@ -80,7 +80,7 @@ class Thresholds:
     """Per axis."""
     rotation_rad: float = float(np.radians(0.005))
     """Per axis."""
-    uncertainty_share: float = 1.0 / 3.0
+    uncertainty_share: float = 0.4
     """Largest standard deviation of a component, in parts of its threshold."""
 
     @property
