@@ -129,7 +129,11 @@ def test_a_port_that_others_reach_names_its_clients(tmp_path: Path, host: str) -
     (problem,) = problems(changed(tmp_path, h=(line, f'host = "{host}"\nport = 5020')))
     assert problem.key == "plc"
     assert "0.0.0.0/0" in problem.allowed
-    opened = f'host = "{host}"\nport = 5020\nallowed_clients = ["0.0.0.0/0"]'
+
+
+def test_a_port_may_be_open_to_everybody_where_that_is_said(tmp_path: Path) -> None:
+    line = 'host = "127.0.0.1"\nport = 5020'
+    opened = 'host = "0.0.0.0"\nport = 5020\nallowed_clients = ["0.0.0.0/0"]'
     assert not problems(changed(tmp_path, h=(line, opened)))
 
 
