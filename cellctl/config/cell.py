@@ -2,9 +2,9 @@
 
 import ipaddress
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, SerializeAsAny, field_validator
+from pydantic import Field, SerializeAsAny, field_validator, model_validator
 
 from cellctl import plugins
 from cellctl.config.base import Section
@@ -33,7 +33,8 @@ class Plc(Section):
     """Order of the two words of a 32-bit value."""
     heartbeat_timeout_s: Annotated[float, Field(ge=0.5, le=10)] = 1.5
     allowed_clients: tuple[str, ...] = ()
-    """Addresses or networks that may connect; empty for any. Names are not looked up."""
+    """Addresses or networks that may connect, ``0.0.0.0/0`` for any; may be empty where only this
+    PC can connect. Names are not looked up."""
 
     @field_validator("allowed_clients")
     @classmethod
@@ -43,6 +44,24 @@ class Plc(Section):
             # may connect.
             ipaddress.ip_network(client, strict=False)
         return clients
+
+    @model_validator(mode="after")
+    def _open_only_if_said(self) -> Self:
+        # Modbus has no password. Whoever reaches the port could command the cell, so that must be
+        # said and not come from a line that was forgotten.
+        if not self.allowed_clients and not _is_this_pc_alone(self.host):
+            raise ValueError(
+                "allowed_clients must list the line's address when host is not of this PC alone; "
+                "0.0.0.0/0 lets every address in"
+            )
+        return self
+
+
+def _is_this_pc_alone(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
 
 
 class LocalApi(Section):

@@ -137,6 +137,19 @@ class RunInterrupted(RecordsError):
     reaction = Reaction.WARN
 
 
+class DiskNearlyFull(RecordsError):
+    """There is too little room to record another run."""
+
+    number = 814
+    text = "Too little space on the disk for another record"
+    cause = "The run store, or something else on the disk, has grown."
+    remedy = (
+        "Nothing has moved. Make room: move the oldest runs with their store to an archive, or "
+        "give the store a larger disk."
+    )
+    reaction = Reaction.STOP
+
+
 class RecordSilent(RecordsError):
     """The disk did not open or close the record of a run in time."""
 

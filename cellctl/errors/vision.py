@@ -204,8 +204,8 @@ class SeatedOffPosition(VisionError):
     number = 452
     text = "The seated deck is off its position"
     cause = (
-        "The deck slipped while it was pressed, something lies between deck and frame, or the last "
-        "measurement was wrong."
+        "The deck slipped while it was pressed, something lies between deck and frame, the last "
+        "measurement was wrong, or it is too uncertain to prove a seat that close to its limit."
     )
     remedy = (
         "Check the pin holes with plug gauges and the joint with feeler gauges; do not fasten "

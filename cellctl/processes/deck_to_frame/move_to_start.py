@@ -17,8 +17,8 @@ async def move_to_start(opened: OpenRun) -> Ready:
     # its measuring pose may meet a deck that is low over the station.
     await main_to_home(cell)
     await heads_to_measuring_poses(cell)
-    geometry = facts.geometry
-    heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+    settings = facts.recipe.pose_correction
+    heads = HeadGeometry.of(facts.geometry, settings)
     # Takes the poses of the heads as the reference that they must keep from here on.
-    measurer = PartMeasurer(cell, heads, facts.recipe.pose_correction.method)
+    measurer = PartMeasurer(cell, heads, settings.method)
     return Ready(AssemblyRun(opened, measurer))

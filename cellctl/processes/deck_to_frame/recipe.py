@@ -23,6 +23,11 @@ class PoseCorrection(Section):
     """Pairs a head takes for one measurement to begin with."""
     max_frames: Annotated[int, Field(ge=1, le=200)] = 12
     """Pairs after which a measurement that is still too uncertain is given up."""
+    heads_drift_mm: Annotated[float, Field(gt=0, le=1)] = 0.1
+    """How far a head may have moved against the other since the board transfer; standard deviation
+    along each axis: a metre of steel at 5 K, twice."""
+    heads_drift_deg: Annotated[float, Field(gt=0, le=0.1)] = 0.01
+    """The same about each axis."""
     rule: Literal["compose", "paper"] = "compose"
     """Pose composition, or the paper's componentwise Euler accumulation for comparison."""
     method: Literal["default", "paper"] = "default"

@@ -18,10 +18,13 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
-from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, combined
+from cellctl.processes.deck_to_frame.poses.part_measurer import (
+    HeadGeometry,
+    combined,
+    deck_in_frame,
+)
 from cellctl.processes.deck_to_frame.poses.pose_correction import (
     assembly_error,
-    deck_in_frame,
     target_M_T_D,
 )
 from cellctl.processes.deck_to_frame.poses.seat_error import seat_error
@@ -42,6 +45,7 @@ from cellctl.records.replayed import Replayed, compare
 from cellctl.records.report.sections import ReadArtefact
 from cellctl.vision.features.feature_file import FeatureFile, parse_features
 from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import Method
 from cellctl.vision.registration.part_pose import PartPose
 
 POSE = (("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("A", "°"), ("B", "°"), ("C", "°"))
@@ -62,7 +66,7 @@ class Replay:
     geometry: CalibrationSet
     features: Mapping[str, FeatureFile]
     """By part."""
-    c1_T_M: RigidTransform | None = None
+    frame: PartPose | None = None
     _images: dict[str, str] = field(default_factory=dict)
 
     def lines(self) -> Iterator[Replayed]:
@@ -84,13 +88,21 @@ class Replay:
             columns = [(f"σ {axis}", unit) for axis, unit in COMPONENTS]
             was, found = in_mm_deg(sigmas), in_mm_deg(pose.pose.sigma)
             yield from compare(name, columns, was.tolist(), found.tolist(), ROUNDING)
-            yield from self._derived(name, source["key"], pose.pose)
+            yield from self._derived(name, source["key"], pose)
         yield from self._forces()
+
+    @property
+    def _heads(self) -> HeadGeometry:
+        return HeadGeometry.of(self.geometry, self.recipe.pose_correction)
+
+    @property
+    def _method(self) -> Method:
+        return self.recipe.pose_correction.method
 
     def _measure(self, source: Mapping[str, Any]) -> PartPose:
         features, predicted = self.features[source["part"]], predicted_pose(source)
-        method = self.recipe.pose_correction.method
-        heads = HeadGeometry(*self.geometry.heads, self.geometry.c1_T_c2)
+        method = self._method
+        heads = self._heads
         predictions = heads.camera_T_part(predicted)
         taken = []
         for images in self._frames(source["images"]):
@@ -114,29 +126,32 @@ class Replay:
             frame = names[begin : begin + IMAGES_PER_FRAME]
             yield [decode(self.read(artefacts[name])) for name in frame]
 
-    def _derived(self, name: str, key: str, c1_T_part: UncertainPose) -> Iterator[Replayed]:
+    def _derived(self, name: str, key: str, part: PartPose) -> Iterator[Replayed]:
         """What the run has concluded from a measurement."""
         if key == FRAME:
-            self.c1_T_M = c1_T_part.pose
+            self.frame = part
             return
         if key == "deck":
             base_T_flange = UncertainPose.exact(_pose(self._last_pose(key, PoseOrigin.REPORTED)))
-            found = deck_on_flange(base_T_flange, self.geometry.base_T_c1, c1_T_part)
+            found = deck_on_flange(base_T_flange, self.geometry.base_T_c1, part.pose)
             was = self._last_pose(FLANGE_T_DECK, PoseOrigin.MEASURED).pose_mm_deg
             yield from compare(FLANGE_T_DECK, POSE, was, _six(found.pose), ROUNDING)
             return
-        if self.c1_T_M is None:
+        if self.frame is None:
             raise NotReplayable(f"{name} comes before the frame was measured")
-        M_T_D = deck_in_frame(self.c1_T_M, c1_T_part.pose)
+        relative = deck_in_frame(self.frame, part, self._heads, self._method)
         thickness_m = self.recipe.deck_thickness_mm * MM
         if key == "seated":
             holes = self.features["deck"].holes
-            figures, _ = split_document(seat_record(seat_error(M_T_D, thickness_m, holes)))
+            figures, _ = split_document(
+                seat_record(seat_error(relative.cautious, thickness_m, holes))
+            )
             for entry in figures:
                 yield Replayed(
                     name, entry.key, entry.unit, self.record.value(entry.key), entry.value, ROUNDING
                 )
             return
+        M_T_D = relative.part_1_T_part_2.pose
         error = assembly_error(target_M_T_D(thickness_m, self.recipe.stand_off_mm * MM), M_T_D)
         for passed in self.record.passes:
             if key == f"iteration-{passed.number}":

@@ -6,6 +6,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.run import AssemblyRun
+from cellctl.vision.registration.part_pose import PartPose
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,8 +20,13 @@ class Ready:
 class FrameMeasured(Ready):
     """After step 10."""
 
-    c1_T_M: UncertainPose
-    """The frame, with the uncertainty of its own measurement."""
+    frame: PartPose
+    """The frame as measured by both heads."""
+
+    @property
+    def c1_T_M(self) -> RigidTransform:
+        """Where the frame stands."""
+        return self.frame.pose.pose
 
 
 @dataclass(frozen=True, slots=True)

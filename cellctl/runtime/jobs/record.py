@@ -13,6 +13,7 @@ from cellctl.errors import CellError
 from cellctl.errors.records import RecordSilent
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.disk_space import require_space
 from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.provenance import cell_artefact, provenance
@@ -129,7 +130,11 @@ class JobRecord:
         await self.store.do(RunStore.add_artefact, self.number, *cell_file)
 
     async def _start(self, **made_with: Any) -> None:
-        """Write the row with what it was made with, and who commanded it."""
+        """Write the row with what it was made with, and who commanded it.
+
+        Raises ``DiskNearlyFull``: better now than with the part in contact.
+        """
+        await self.store.do(_require_space)
         self.number = await self.store.do(
             RunStore.start_run,
             serial=self._command.serial,
@@ -138,3 +143,7 @@ class JobRecord:
             simulated=self._cell.config.simulated,
             **made_with,
         )
+
+
+def _require_space(store: RunStore) -> None:
+    require_space(store.path)

@@ -9,17 +9,24 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
 from cellctl.geometry.pose import MM, Array
-from cellctl.geometry.uncertain import UncertainPose, skew
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.registration.chi_square import ChiSquare, chi_square
+from cellctl.vision.registration.measured_points import MeasuredPoints
 from cellctl.vision.registration.paper_frame import paper_frame
-from cellctl.vision.registration.rigid_fit import by_pose, on_a_line, register
+from cellctl.vision.registration.rigid_fit import (
+    Registration,
+    by_pose,
+    on_a_line,
+    register,
+)
 
 RESIDUAL_LIMIT_M = 0.2e-3
 """Largest distance of a measured hole from its registered nominal position."""
 
 _OUTLIER_SIGMAS = 5.0
+_MOVEMENT_SIGMAS = 5.0
 _OUTLIER_MIN_HOLES = 5
 
 
@@ -31,43 +38,20 @@ class PartPose:
     """``c1_T_part`` with everything that is known to be uncertain, the heads' transform too; wider
     where all that does not explain the residuals: a part off its drawing, a worn calibration."""
     own_covariance: Array
-    """Shape (6, 6): from the hole measurements alone. The error of ``c1_T_c2`` is common to all
-    parts that the same heads measure in the same place and cancels between them."""
+    """Shape (6, 6): from the hole measurements alone, for two parts between which the error of
+    ``c1_T_c2`` cancels (``relative_pose``)."""
     names: tuple[str, ...]
     residuals_m: Array
-    """Measured minus registered, shape (n, 3), in C1, in the order of ``names``."""
+    """Measured minus registered, shape (n, 3), in C1, in the order of ``names``; without what the
+    heads have most likely moved against each other, which is no fault of the part."""
+    movement: Array
+    """Most likely error of ``c1_T_c2``, shape (6,), in the order of ``UncertainPose``."""
     outliers: tuple[str, ...]
     """Holes that were left out of the registration."""
     misfit: ChiSquare
     """Consistency of the holes that were used."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Points:
-    names: tuple[str, ...]
-    nominal_m: Array
-    measured_m: Array
-    covariances_m2: Array
-    """Covariances of the measured points in C1, shape (n, 3, 3)."""
-    by_transfer: Array
-    """Derivative of each point by the error of ``c1_T_c2``, shape (n, 3, 6)."""
-
-    def joint_covariance(self, transfer_covariance: Array) -> Array:
-        """Covariance of all coordinates with the errors shared by ``c1_T_c2``, (3n, 3n)."""
-        shared = self.by_transfer.reshape(-1, 6)
-        return np.asarray(
-            block_diag(*self.covariances_m2) + shared @ transfer_covariance @ shared.T
-        )
-
-    def without(self, index: int) -> "_Points":
-        keep = [i for i in range(len(self.names)) if i != index]
-        return _Points(
-            tuple(self.names[i] for i in keep),
-            self.nominal_m[keep],
-            self.measured_m[keep],
-            self.covariances_m2[keep],
-            self.by_transfer[keep],
-        )
+    points: MeasuredPoints
+    """The holes that were used."""
 
 
 def part_pose(
@@ -86,56 +70,26 @@ def part_pose(
     ``holes``. Raises ``TooFewHoles`` or ``ResidualsTooLarge``.
     """
     transfer_covariance = np.zeros((6, 6)) if c1_T_c2 is None else c1_T_c2.covariance
-    points = _points_in_c1(head_1, head_2, c1_T_c2, holes)
+    points = MeasuredPoints.seen(head_1, head_2, c1_T_c2, holes)
     if on_a_line(points.nominal_m):
         raise TooFewHoles(f"{len(points.names)} usable: {', '.join(points.names) or 'none'}")
     if method == "paper":
         return _by_paper(points, transfer_covariance)
     kept, outliers = _without_outliers(points, transfer_covariance, residual_limit_m)
     fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
-    return _result(points, kept, transfer_covariance, fit.gain, pose=fit.pose, outliers=outliers)
-
-
-def _points_in_c1(
-    head_1: PairMeasurement,
-    head_2: PairMeasurement | None,
-    c1_T_c2: UncertainPose | None,
-    holes: Sequence[Hole],
-) -> _Points:
-    """All measured points in C1, in the order of ``holes``."""
-    rows: dict[str, tuple[Array, Array, Array]] = {
-        hole.name: (hole.position_m, hole.covariance_m2, np.zeros((3, 6))) for hole in head_1.holes
-    }
-    if head_2 is not None:
-        if c1_T_c2 is None:
-            raise ValueError("points of a second head need c1_T_c2")
-        rotation = c1_T_c2.pose.rotation.as_matrix()
-        for hole in head_2.holes:
-            turned = rotation @ hole.position_m
-            rows[hole.name] = (
-                turned + c1_T_c2.pose.translation,
-                rotation @ hole.covariance_m2 @ rotation.T,
-                np.hstack([np.eye(3), -skew(turned)]),
-            )
-    used = [hole for hole in holes if hole.name in rows]
-    return _Points(
-        tuple(hole.name for hole in used),
-        np.array([hole.position_m for hole in used]).reshape(-1, 3),
-        np.array([rows[hole.name][0] for hole in used]).reshape(-1, 3),
-        np.array([rows[hole.name][1] for hole in used]).reshape(-1, 3, 3),
-        np.array([rows[hole.name][2] for hole in used]).reshape(-1, 3, 6),
-    )
+    return _result(points, kept, transfer_covariance, fit, outliers=outliers)
 
 
 def _without_outliers(
-    points: _Points, transfer_covariance: Array, limit_m: float
-) -> tuple[_Points, tuple[str, ...]]:
+    points: MeasuredPoints, transfer_covariance: Array, limit_m: float
+) -> tuple[MeasuredPoints, tuple[str, ...]]:
     """Leave out holes, one by one, that contradict all others; refuse what does not fit then."""
     kept = points
     outliers: list[str] = []
     while True:
         fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
-        distances = np.linalg.norm(fit.residuals_m, axis=1)
+        movement = _movement(kept, fit, transfer_covariance)
+        distances = np.linalg.norm(_own_residuals_m(kept, kept, fit, movement.error), axis=1)
         if distances.max() <= limit_m:
             return kept, tuple(outliers)
         # The hole with the largest residual need not be the wrong one, since a wrong hole drags the
@@ -151,7 +105,9 @@ def _without_outliers(
         kept = kept.without(worst)
 
 
-def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) -> int | None:
+def _contradicting(
+    points: MeasuredPoints, transfer_covariance: Array, limit_m: float
+) -> int | None:
     """The one hole without which the others fit, if it is clearly off their registration."""
     if len(points.names) < _OUTLIER_MIN_HOLES:
         return None
@@ -163,14 +119,17 @@ def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) 
         # The offset is judged against a pose in which this hole had no part; otherwise its own
         # error would be counted on both sides.
         fit = register(rest.nominal_m, rest.measured_m, rest.covariances_m2)
-        offset = points.measured_m[index] - fit.pose.apply(points.nominal_m[index])
-        if np.linalg.norm(fit.residuals_m, axis=1).max() > limit_m:
+        movement = _movement(rest, fit, transfer_covariance)
+        own_m = _own_residuals_m(rest, rest, fit, movement.error)
+        if np.linalg.norm(own_m, axis=1).max() > limit_m:
             continue
+        offset = _own_residuals_m(points, rest, fit, movement.error)[index]
         design = by_pose(fit.pose.rotation.apply(points.nominal_m[index])[None])[0]
+        carried = _carried(points, rest, fit)[index]
         spread = (
-            design @ _pose_covariance(fit.gain, rest, transfer_covariance) @ design.T
+            design @ _pose_covariance(fit.gain, rest, np.zeros((6, 6))) @ design.T
             + points.covariances_m2[index]
-            + points.by_transfer[index] @ transfer_covariance @ points.by_transfer[index].T
+            + carried @ movement.covariance @ carried.T
         )
         sigmas = float(np.sqrt(offset @ np.linalg.solve(spread, offset)))
         if sigmas > _OUTLIER_SIGMAS:
@@ -178,46 +137,87 @@ def _contradicting(points: _Points, transfer_covariance: Array, limit_m: float) 
     return min(found)[1] if found else None
 
 
-def _pose_covariance(gain: Array, points: _Points, transfer_covariance: Array) -> Array:
+def _pose_covariance(gain: Array, points: MeasuredPoints, transfer_covariance: Array) -> Array:
     return np.asarray(gain @ points.joint_covariance(transfer_covariance) @ gain.T)
 
 
 def _result(
-    points: _Points,
-    kept: _Points,
+    points: MeasuredPoints,
+    kept: MeasuredPoints,
     transfer_covariance: Array,
-    gain: Array,
+    fit: Registration,
     *,
-    pose: RigidTransform,
     outliers: tuple[str, ...],
 ) -> PartPose:
+    pose, gain = fit.pose, fit.gain
     design = by_pose(pose.rotation.apply(kept.nominal_m)).reshape(-1, 6)
     joint = kept.joint_covariance(transfer_covariance)
     # The weights of the fit know only the measurement. The errors that points share by ``c1_T_c2``
     # enter here, where the gain carries them to the pose.
     unexplained = chi_square(_residuals_m(kept, pose), joint, design, gain)
+    movement = _movement(kept, fit, transfer_covariance)
     covariance = np.asarray(gain @ joint @ gain.T) * unexplained.growth
     return PartPose(
         UncertainPose(pose, covariance),
         _pose_covariance(gain, kept, np.zeros((6, 6))),
         points.names,
-        _residuals_m(points, pose),
+        _own_residuals_m(points, kept, fit, movement.error),
+        movement.error,
         outliers,
         unexplained,
+        kept,
     )
 
 
-def _residuals_m(points: _Points, pose: RigidTransform) -> Array:
+def _residuals_m(points: MeasuredPoints, pose: RigidTransform) -> Array:
     return np.asarray(points.measured_m - pose.apply(points.nominal_m))
 
 
-def _by_paper(points: _Points, transfer_covariance: Array) -> PartPose:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Movement:
+    """Most likely error of ``c1_T_c2``, (6,), and what stays unknown of it, (6, 6)."""
+
+    error: Array
+    covariance: Array
+
+
+def _movement(points: MeasuredPoints, fit: Registration, transfer_covariance: Array) -> _Movement:
+    """What the registration leaves of the points tells of the heads."""
+    shared = _carried(points, points, fit).reshape(-1, 6)
+    spread = shared @ transfer_covariance @ shared.T + block_diag(*points.covariances_m2)
+    gain = np.linalg.solve(spread, shared @ transfer_covariance).T
+    error = gain @ _residuals_m(points, fit.pose).ravel()
+    # A movement that nobody expects of the heads is none: something else is wrong with the points.
+    if error @ np.linalg.pinv(transfer_covariance) @ error > _MOVEMENT_SIGMAS**2:
+        error = np.zeros(6)
+    return _Movement(error, transfer_covariance - gain @ shared @ transfer_covariance)
+
+
+def _own_residuals_m(
+    points: MeasuredPoints, kept: MeasuredPoints, fit: Registration, movement: Array
+) -> Array:
+    """Residuals of points, (n, 3), without what the movement of the heads does to them."""
+    return _residuals_m(points, fit.pose) - _carried(points, kept, fit) @ movement
+
+
+def _carried(points: MeasuredPoints, kept: MeasuredPoints, fit: Registration) -> Array:
+    """Derivative of the residuals of points by the error of ``c1_T_c2``, (n, 3, 6).
+
+    The pose, which follows from the points that were kept, absorbs a part of it.
+    """
+    absorbed = fit.gain @ kept.by_transfer.reshape(-1, 6)
+    design = by_pose(fit.pose.rotation.apply(points.nominal_m))
+    return np.asarray(points.by_transfer - design @ absorbed)
+
+
+def _by_paper(points: MeasuredPoints, transfer_covariance: Array) -> PartPose:
     """The paper's plane-and-line frame, carried to the drawing's frame by the nominal holes."""
     if len(points.names) != 6:
         raise TooFewHoles(f"the paper's frame needs six holes, got {len(points.names)}")
     pose = _paper_pose(points.nominal_m, points.measured_m)
     gain = _numeric_gain(points.nominal_m, points.measured_m, pose)
-    return _result(points, points, transfer_covariance, gain, pose=pose, outliers=())
+    fit = Registration(pose, _residuals_m(points, pose), gain)
+    return _result(points, points, transfer_covariance, fit, outliers=())
 
 
 def _paper_pose(nominal_m: Array, measured_m: Array) -> RigidTransform:

@@ -24,7 +24,11 @@ from cellctl.packml.unit_command import Options, Source, UnitCommand
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
-from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurement
+from cellctl.processes.deck_to_frame.poses.part_measurer import (
+    HeadGeometry,
+    PartMeasurement,
+    deck_in_frame,
+)
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.settings import DeckSettings
@@ -32,7 +36,9 @@ from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.registration.chi_square import ChiSquare
+from cellctl.vision.registration.measured_points import MeasuredPoints
 from cellctl.vision.registration.part_pose import PartPose
+from cellctl.vision.registration.relative_pose import RelativePose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
 from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations
@@ -258,13 +264,18 @@ class TruthMeasurer:
     geometry: HeadGeometry
     base_T_c1: RigidTransform
     measured: list[str] = field(default_factory=list)
+    frames: list[int] = field(default_factory=list)
+
+    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
+        return deck_in_frame(frame, deck, self.geometry, "paper")
 
     async def measure(
-        self, features: FeatureFile, c1_T_part: RigidTransform, **_: Any
+        self, features: FeatureFile, c1_T_part: RigidTransform, *, frames: int = 2, **_: Any
     ) -> PartMeasurement:
         world, flange = self.bench.world, self.bench.cell.main.state().base_T_flange
         deck = any(hole.kind == "countersink" for hole in features.holes)
         self.measured.append("deck" if deck else "frame")
+        self.frames.append(frames)
         base_T_part = world.base_T_frame
         if deck:
             base_T_part = flange * world.robot_error * world.flange_T_deck
@@ -276,13 +287,14 @@ def measurement(
 ) -> PartMeasurement:
     covariance = np.diag(sigma**2)
     names = tuple(hole.name for hole in features.holes)
+    found = PairMeasurement("default", ())
     pose = PartPose(
         UncertainPose(c1_T_part, covariance), covariance, names,
-        np.zeros((len(names), 3)), (), ChiSquare(12.0, 12),
+        np.zeros((len(names), 3)), np.zeros(6), (), ChiSquare(12.0, 12),
+        MeasuredPoints.seen(found, None, None, ()),
     )  # fmt: skip
     image = np.zeros((4, 6), np.uint8)
     pair = StereoPair(image, image, now_s(), 1)
-    found = PairMeasurement("default", ())
     return PartMeasurement(pose, (found, found), (pair, pair), 2, base_T_flange)
 
 

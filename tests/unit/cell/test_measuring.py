@@ -17,8 +17,10 @@ from cellctl.processes.deck_to_frame.poses.part_measurer import (
     PartMeasurement,
     PartMeasurer,
 )
+from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.registration.chi_square import ChiSquare
+from cellctl.vision.registration.measured_points import MeasuredPoints
 from cellctl.vision.registration.part_pose import PartPose
 from tests.unit.cell.bench import Bench
 
@@ -58,8 +60,10 @@ class Eyes:
             covariance,
             (),
             np.zeros((0, 3)),
+            np.zeros(6),
             (),
             ChiSquare(6.0, 6),
+            MeasuredPoints.seen(one, None, None, ()),
         )
 
 
@@ -72,7 +76,7 @@ def eyes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> Eyes:
 
 def measurer(bench: Bench) -> PartMeasurer:
     geometry = bench.geometry()
-    heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+    heads = HeadGeometry.of(geometry, PoseCorrection())
     return PartMeasurer(bench.deck, heads, "default")
 
 

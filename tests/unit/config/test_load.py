@@ -123,6 +123,20 @@ def test_allowed_clients_are_addresses(tmp_path: Path, client: str) -> None:
     assert problem.key == "plc.allowed_clients"
 
 
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.168.10.1", "cell-pc"])
+def test_a_port_that_others_reach_names_its_clients(tmp_path: Path, host: str) -> None:
+    line = 'host = "127.0.0.1"\nport = 5020'
+    (problem,) = problems(changed(tmp_path, h=(line, f'host = "{host}"\nport = 5020')))
+    assert problem.key == "plc"
+    assert "0.0.0.0/0" in problem.allowed
+
+
+def test_a_port_may_be_open_to_everybody_where_that_is_said(tmp_path: Path) -> None:
+    line = 'host = "127.0.0.1"\nport = 5020'
+    opened = 'host = "0.0.0.0"\nport = 5020\nallowed_clients = ["0.0.0.0/0"]'
+    assert not problems(changed(tmp_path, h=(line, opened)))
+
+
 @pytest.mark.parametrize("client", ["192.168.10.2", "192.168.10.0/24", "fd00::1"])
 def test_addresses_and_networks_may_be_allowed(tmp_path: Path, client: str) -> None:
     line = "heartbeat_timeout_s = 3.0"

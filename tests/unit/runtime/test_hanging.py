@@ -9,11 +9,12 @@ import pytest
 from cellctl.cell import devices
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.errors.link import DeviceAway
-from cellctl.errors.records import RecordSilent
+from cellctl.errors.records import DiskNearlyFull, RecordSilent
 from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.records import disk_space
 from cellctl.records.store import RunStore
 from cellctl.runtime import unit
 from cellctl.runtime.jobs import record as job_record
@@ -92,3 +93,16 @@ async def test_a_device_that_hangs_when_it_is_asked(
     await DevicePoller(rig.bench.as_cell, rig.unit).ask()
     assert rig.shown().alarms == (DeviceAway.number,)
     assert not rig.shown().ready
+
+
+async def test_a_disk_without_room_refuses_the_run_before_anything_moves(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(disk_space, "LEAST_FREE_BYTES", 10**18)
+    await rig.idle()
+    moves = list(rig.bench.cell.main.moves)
+    await rig.take(Command.START)
+    await rig.until(lambda: rig.shown().first_out_alarm == DiskNearlyFull.number)
+    await rig.to(State.STOPPED)
+    assert rig.bench.cell.main.moves == moves, "nothing has moved"
+    assert not await rig.runs()

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -14,6 +15,8 @@ from cellctl.errors.vision import UncertaintyTooLarge
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
+from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
+from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.features.feature_file import FeatureFile
@@ -22,6 +25,7 @@ from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.registration.average import average
 from cellctl.vision.registration.part_pose import PartPose, part_pose
+from cellctl.vision.registration.relative_pose import RelativePose, relative_pose
 
 _log = log.get(__name__)
 
@@ -33,6 +37,15 @@ class HeadGeometry:
     head_1: StereoHead
     head_2: StereoHead
     c1_T_c2: UncertainPose
+    """With the drift since the calibration in its covariance."""
+
+    @classmethod
+    def of(cls, calibrations: CalibrationSet, settings: PoseCorrection) -> Self:
+        """As calibrated; ``c1_T_c2`` as uncertain as it is after the drift that may have been."""
+        drift = np.repeat([settings.heads_drift_mm * MM, np.radians(settings.heads_drift_deg)], 3)
+        calibrated = calibrations.c1_T_c2
+        c1_T_c2 = UncertainPose(calibrated.pose, calibrated.covariance + np.diag(drift**2))
+        return cls(*calibrations.heads, c1_T_c2)
 
     def camera_T_part(self, c1_T_part: RigidTransform) -> tuple[RigidTransform, RigidTransform]:
         """A pose predicted in head I, for both heads."""
@@ -57,11 +70,6 @@ class PartMeasurement:
     """The images of both heads of every frame, the oldest first."""
 
     @property
-    def own(self) -> UncertainPose:
-        """The pose with the uncertainty of the hole measurements alone."""
-        return UncertainPose(self.c1_T_part, self.pose.own_covariance)
-
-    @property
     def c1_T_part(self) -> RigidTransform:
         """The pose alone."""
         return self.pose.pose.pose
@@ -70,11 +78,29 @@ class PartMeasurement:
     def sigma_mm_deg(self) -> Array:
         """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the holes alone.
 
-        Frame and deck are measured through the same C1_T_C2: its error cancels between them and is
-        no part of the uncertainty that the loop is judged by.
+        They say whether more frames help. The error of C1_T_C2 stays with any number of frames, and
+        cancels between frame and deck.
         """
         sigma = np.sqrt(np.diag(self.pose.own_covariance))
         return np.concatenate([sigma[:3] / MM, np.degrees(sigma[3:])])
+
+
+def deck_in_frame(
+    frame: PartPose, deck: PartPose, geometry: HeadGeometry, method: Method
+) -> RelativePose:
+    """Measured ``M_T_D`` with its covariance (eq. 9).
+
+    Default: both parts and the movement of the heads since their calibration are estimated
+    together (docs/metrology.md, "Deck against frame"). ``"paper"``: the poses of the parts, each
+    for itself.
+    """
+    c1_T_M, c1_T_D = frame.pose.pose, deck.pose.pose
+    if method == "paper":
+        own = UncertainPose(c1_T_M, frame.own_covariance).inv()
+        M_T_D = own * UncertainPose(c1_T_D, deck.own_covariance)
+        return RelativePose(M_T_D, np.zeros(6), deck.misfit)
+    known = geometry.c1_T_c2.covariance
+    return relative_pose(frame.points, deck.points, c1_T_M, c1_T_D, known)
 
 
 class PartMeasurer:
@@ -85,6 +111,10 @@ class PartMeasurer:
         self._geometry = geometry
         self._method = method
         self._reference = [head.robot.state().base_T_flange for head in cell.heads]
+
+    def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
+        """``M_T_D`` of two parts that these heads have measured."""
+        return deck_in_frame(frame, deck, self._geometry, self._method)
 
     async def measure(
         self,

@@ -39,20 +39,6 @@ def flange_target(
     return base_T_c1 * c1_T_M * M_T_D * flange_T_deck.inv()
 
 
-def deck_in_frame(c1_T_M: RigidTransform, c1_T_D: RigidTransform) -> RigidTransform:
-    """Measured ``M_T_D`` (eq. 9)."""
-    return c1_T_M.inv() * c1_T_D
-
-
-def uncertain_deck_in_frame(c1_T_M: UncertainPose, c1_T_D: UncertainPose) -> UncertainPose:
-    """Measured ``M_T_D`` with its covariance (eq. 9).
-
-    Give the covariances of the hole measurements alone (``PartPose.own_covariance``): what both
-    parts share, such as the error of ``c1_T_c2``, cancels between them.
-    """
-    return c1_T_M.inv() * c1_T_D
-
-
 def assembly_error(target: RigidTransform, measured: RigidTransform) -> Array:
     """Target minus measured, shape (6,) (eq. 10, 13): x, y, z in m and rx, ry, rz in rad."""
     translation_m, rotation_rad = pose_error(measured, target)
@@ -94,7 +80,7 @@ class Thresholds:
     """Per axis."""
     rotation_rad: float = float(np.radians(0.005))
     """Per axis."""
-    uncertainty_share: float = 1.0 / 3.0
+    uncertainty_share: float = 0.4
     """Largest standard deviation of a component, in parts of its threshold."""
 
     @property

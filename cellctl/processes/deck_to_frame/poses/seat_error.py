@@ -7,8 +7,14 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error
 from cellctl.vision.features.hole import Hole
+from cellctl.vision.registration.rigid_fit import by_pose
+
+COVERAGE_FACTOR = 2.0
+"""An expanded uncertainty is so many standard deviations: one of 44 values lies beyond it on the
+side of the limit (JCGM 100, 6.2; JCGM 106, 8.3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -17,8 +23,12 @@ class SeatError:
 
     error: Array
     """Seat minus measured, shape (6,): x, y, z in m and rx, ry, rz in rad, in the axes of M."""
+    covariance: Array
+    """Of the measured deck in the frame, shape (6, 6), in the order of ``UncertainPose``."""
     offsets_mm: Mapping[str, float]
     """Lateral distance of each judged hole from its place, by the name of the hole."""
+    offset_uncertainties_mm: Mapping[str, float]
+    """Expanded uncertainty of each offset."""
 
     @property
     def gap_mm(self) -> float:
@@ -27,9 +37,20 @@ class SeatError:
         return -float(self.error[2]) / MM
 
     @property
+    def gap_uncertainty_mm(self) -> float:
+        """Expanded uncertainty of the gap."""
+        return COVERAGE_FACTOR * float(np.sqrt(self.covariance[2, 2])) / MM
+
+    @property
     def rotation_deg(self) -> float:
         """About the worst axis."""
         return float(np.degrees(np.abs(self.error[3:]).max()))
+
+    @property
+    def rotation_uncertainty_deg(self) -> float:
+        """Expanded uncertainty of the rotation, of the axis that is known least."""
+        variance = np.diag(self.covariance)[3:].max()
+        return COVERAGE_FACTOR * float(np.degrees(np.sqrt(variance)))
 
 
 def pin_holes(holes: Sequence[Hole]) -> list[Hole]:
@@ -37,11 +58,26 @@ def pin_holes(holes: Sequence[Hole]) -> list[Hole]:
     return [hole for hole in holes if hole.kind == "pin"]
 
 
-def seat_error(M_T_D: RigidTransform, thickness_m: float, holes: Sequence[Hole]) -> SeatError:
+def seat_error(M_T_D: UncertainPose, thickness_m: float, holes: Sequence[Hole]) -> SeatError:
     """Error of a seated deck, judged at its pin holes, or at every hole where it has none."""
     seat = RigidTransform.from_translation([0.0, 0.0, thickness_m])
+    judged = pin_holes(holes) or holes
     offsets_mm = {
-        hole.name: float(np.linalg.norm((M_T_D.apply(hole.position_m) - hole.position_m)[:2])) / MM
-        for hole in pin_holes(holes) or holes
+        hole.name: float(np.linalg.norm(_moved(M_T_D.pose, hole)[:2])) / MM for hole in judged
     }
-    return SeatError(assembly_error(seat, M_T_D), offsets_mm)
+    uncertainties_mm = {hole.name: _lateral_uncertainty_mm(M_T_D, hole) for hole in judged}
+    error = assembly_error(seat, M_T_D.pose)
+    return SeatError(error, M_T_D.covariance, offsets_mm, uncertainties_mm)
+
+
+def _moved(M_T_D: RigidTransform, hole: Hole) -> Array:
+    """From the place of a hole to where it is, shape (3,)."""
+    return np.asarray(M_T_D.apply(hole.position_m) - hole.position_m)
+
+
+def _lateral_uncertainty_mm(M_T_D: UncertainPose, hole: Hole) -> float:
+    """Of the direction in which it is greatest: that of a small offset is not known."""
+    turned_m = M_T_D.pose.rotation.apply(hole.position_m)
+    design = by_pose(turned_m[None])[0, :2]
+    variance = np.linalg.eigvalsh(design @ M_T_D.covariance @ design.T).max()
+    return COVERAGE_FACTOR * float(np.sqrt(variance)) / MM

@@ -19,6 +19,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     PIN_OFFSETS,
     POSITION_ERROR,
     SEAT_ROTATION,
+    UNCERTAINTY,
     WORST_RESIDUAL,
 )
 from cellctl.records.entries import Figure, LoopPass, PassComponent
@@ -98,6 +99,7 @@ def measurement_detail(measured: PartMeasurement) -> dict[str, Any]:
             for name, residual in zip(measured.pose.names, measured.pose.residuals_m, strict=True)
         },
         "outliers": list(measured.pose.outliers),
+        "heads_moved_mm_deg": in_mm_deg(measured.pose.movement).tolist(),
         "fit": fit_verdict(measured.pose.misfit),
     }
 
@@ -132,12 +134,15 @@ def residual_figure(kind: str, measured: PartMeasurement) -> Figure:
 
 
 def seat_record(seat: SeatError) -> dict[str, Any]:
-    """The seated deck as plain data, in mm and degrees."""
+    """The seated deck as plain data, in mm and degrees, with expanded uncertainties."""
     return {
         "seated_error_mm_deg": in_mm_deg(seat.error).tolist(),
         f"{PIN_OFFSETS}_mm": dict(seat.offsets_mm),
         f"{GAP_BY_VISION}_mm": seat.gap_mm,
         f"{SEAT_ROTATION}_deg": seat.rotation_deg,
+        f"{PIN_OFFSETS}_{UNCERTAINTY}_mm": dict(seat.offset_uncertainties_mm),
+        f"{GAP_BY_VISION}_{UNCERTAINTY}_mm": seat.gap_uncertainty_mm,
+        f"{SEAT_ROTATION}_{UNCERTAINTY}_deg": seat.rotation_uncertainty_deg,
     }
 
 
@@ -153,10 +158,14 @@ def gauge_holes(pins: Iterable[Hole], recipe: DeckRecipe) -> dict[str, Any]:
 
 
 def seat_limits_of(seat: SeatError, recipe: DeckRecipe) -> Mapping[str, Limit]:
-    """Limits of the figures of ``seat_record``."""
-    offset, gap_mm = Limit(upper=recipe.seated_limit_mm), recipe.seated_gap_limit_mm
+    """Limits of acceptance of ``seat_record``: those of the recipe less the uncertainty."""
+    gap_mm = recipe.seated_gap_limit_mm - seat.gap_uncertainty_mm
+    rotation_deg = recipe.seated_limit_deg - seat.rotation_uncertainty_deg
     return {
-        **{f"{PIN_OFFSETS}.{name}": offset for name in seat.offsets_mm},
+        **{
+            f"{PIN_OFFSETS}.{name}": Limit(upper=recipe.seated_limit_mm - uncertainty_mm)
+            for name, uncertainty_mm in seat.offset_uncertainties_mm.items()
+        },
         GAP_BY_VISION: Limit(-gap_mm, gap_mm),
-        SEAT_ROTATION: Limit(upper=recipe.seated_limit_deg),
+        SEAT_ROTATION: Limit(upper=rotation_deg),
     }

@@ -18,7 +18,6 @@ from cellctl.processes.deck_to_frame.poses.pose_correction import (
     flange_target,
     judge,
     next_target,
-    uncertain_deck_in_frame,
 )
 from cellctl.processes.deck_to_frame.poses.pose_limits import require_clearance, require_near
 from cellctl.processes.deck_to_frame.recipe import PoseCorrection
@@ -70,7 +69,7 @@ async def _measure(
     run = stand_off.run
     predicted = run.base_T_c1.inv() * stand_off.base_T_flange * stand_off.flange_T_deck
     measurement = await run.measure(run.facts.deck_features, predicted)
-    M_T_D = uncertain_deck_in_frame(stand_off.c1_T_M, measurement.own)
+    M_T_D = run.measurer.deck_in_frame(stand_off.frame, measurement.pose).part_1_T_part_2
     judgement = judge(run.target_M_T_D, M_T_D, run.thresholds)
     run.board.update(iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()))
     return judgement, measurement, M_T_D
@@ -87,7 +86,7 @@ async def _correct(stand_off: AtStandOff, M_T_D: UncertainPose) -> AtStandOff:
     require_clearance(run.recipe, run.facts.deck_features, commanded)
     require_near("commanded deck", run.recipe, run.target_M_T_D, commanded)
     base_T_flange = flange_target(
-        run.base_T_c1, stand_off.c1_T_M.pose, commanded, stand_off.flange_T_deck
+        run.base_T_c1, stand_off.c1_T_M, commanded, stand_off.flange_T_deck
     )
     await run.journal.commanded(base_T_flange)
     await run.move_flange(base_T_flange, stand_off.flange_T_deck)
@@ -99,7 +98,7 @@ def _corrected(
 ) -> Corrected:
     return Corrected(
         stand_off.run,
-        stand_off.c1_T_M,
+        stand_off.frame,
         stand_off.flange_T_deck,
         stand_off.commanded,
         stand_off.base_T_flange,

@@ -44,7 +44,7 @@ async def mate_deck(corrected: Corrected) -> Seated:
     await run.journal.mating_result(result)
     return Seated(
         run,
-        latest.c1_T_M,
+        latest.frame,
         latest.flange_T_deck,
         latest.commanded,
         latest.base_T_flange,

@@ -31,4 +31,4 @@ async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     require_near("deck on flange", run.recipe, nominal, flange_T_deck.pose)
     await run.journal.measurement("deck", measurement)
     await run.journal.deck_on_flange(flange_T_deck)
-    return DeckMeasured(run, frame.c1_T_M, flange_T_deck=flange_T_deck.pose)
+    return DeckMeasured(run, frame.frame, flange_T_deck=flange_T_deck.pose)

@@ -17,4 +17,4 @@ async def measure_frame(ready: Ready) -> FrameMeasured:
     # stands.
     run.cell.memory.base_T_frame = measured
     await run.journal.measurement("frame", measurement)
-    return FrameMeasured(run, c1_T_M=measurement.own)
+    return FrameMeasured(run, frame=measurement.pose)

@@ -17,12 +17,12 @@ async def pre_assembly(deck: DeckMeasured) -> AtStandOff:
     commanded = run.target_M_T_D
     higher = RigidTransform.from_translation([0.0, 0.0, run.recipe.station_tolerance_mm * MM])
     above, base_T_flange = (
-        flange_target(run.base_T_c1, deck.c1_T_M.pose, M_T_D, deck.flange_T_deck)
+        flange_target(run.base_T_c1, deck.c1_T_M, M_T_D, deck.flange_T_deck)
         for M_T_D in (higher * commanded, commanded)
     )
     await run.journal.commanded(base_T_flange)
     await run.move_flange(above, deck.flange_T_deck)
     await run.lower_flange(base_T_flange, deck.flange_T_deck)
     return AtStandOff(
-        run, deck.c1_T_M, deck.flange_T_deck, commanded=commanded, base_T_flange=base_T_flange
+        run, deck.frame, deck.flange_T_deck, commanded=commanded, base_T_flange=base_T_flange
     )

@@ -12,6 +12,7 @@ from cellctl.processes.deck_to_frame.journal import Journal
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
+from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore
@@ -50,7 +51,7 @@ class RunRig:
         workers = cast(VisionWorkers, bench.cell.workers)
         self.journal = Journal(RunRecorder(self.archive, self.number), workers)
         geometry = bench.geometry()
-        heads = HeadGeometry(*geometry.heads, geometry.c1_T_c2)
+        heads = HeadGeometry.of(geometry, PoseCorrection())
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
 
     def run(self, **changes: Any) -> AssemblyRun:

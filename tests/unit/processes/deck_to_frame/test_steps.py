@@ -2,6 +2,7 @@
 
 import asyncio
 import dataclasses
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -25,7 +26,7 @@ from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck
 from cellctl.processes.deck_to_frame.steps.measure_frame import measure_frame
 from cellctl.processes.deck_to_frame.steps.pre_assembly import pre_assembly
 from cellctl.processes.deck_to_frame.steps.verify import verify
-from cellctl.records.entries import PoseOrigin, Verdict
+from cellctl.records.entries import Figure, PoseOrigin, Verdict
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.processes.deck_to_frame.rig import RunRig
 
@@ -37,7 +38,7 @@ async def at_the_stand_off(rig: RunRig, **changes: Any) -> AtStandOff:
 
 async def test_the_frame_is_found_and_remembered(rig: RunRig) -> None:
     found = await measure_frame(rig.ready())
-    seen = found.run.base_T_c1 * found.c1_T_M.pose
+    seen = found.run.base_T_c1 * found.c1_T_M
     np.testing.assert_allclose(
         pose_to_xyzabc(seen), pose_to_xyzabc(rig.bench.world.base_T_frame), atol=1e-6
     )
@@ -279,7 +280,7 @@ async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
 
 async def test_a_deck_off_its_seat_is_no_good_part(rig: RunRig) -> None:
     stand_off = await at_the_stand_off(rig)
-    with pytest.raises(SeatedOffPosition, match=r"P1 0\.300 mm"):
+    with pytest.raises(SeatedOffPosition, match=r"P1 0\.300 ± 0\.009 mm"):
         await seat(stand_off, rig, [0.3, 0, 0, 0, 0, 0])
     assert (await rig.record()).newest_figures["pin_offsets.P1"].verdict is Verdict.FAIL
 
@@ -309,9 +310,31 @@ async def test_a_seat_is_judged_by_gap_and_rotation_too(rig: RunRig) -> None:
     await seat(await at_the_stand_off(rig), rig, [0.03, 0, 0.02, 0.002, 0, 0])
     figures = (await rig.record()).newest_figures
     gap, rotation = figures["seat_gap_by_vision"], figures["seat_rotation"]
-    assert (gap.lower, gap.upper, gap.verdict) == (-0.1, 0.1, Verdict.PASS)
+    gap_mm, rotation_deg = (
+        value_of(figures, f"{key}_uncertainty") for key in ("seat_gap_by_vision", "seat_rotation")
+    )
+    assert gap.upper == pytest.approx(0.1 - gap_mm)
+    assert gap.lower == pytest.approx(-0.1 + gap_mm)
+    assert gap.verdict is Verdict.PASS
     assert gap.value == pytest.approx(0.02, abs=1e-4)
-    assert (rotation.upper, rotation.verdict) == (0.01, Verdict.PASS)
+    assert rotation.upper == pytest.approx(0.01 - rotation_deg)
+    assert rotation.verdict is Verdict.PASS
+
+
+def value_of(figures: Mapping[str, Figure], key: str) -> float:
+    value = figures[key].value
+    assert value is not None
+    return value
+
+
+async def test_a_seat_within_its_limit_by_less_than_its_uncertainty_is_not_proven(
+    rig: RunRig,
+) -> None:
+    stand_off = await at_the_stand_off(rig)
+    with pytest.raises(SeatedOffPosition, match=r"P1 0\.195 ± 0\.009 mm, allowed 0\.2 mm"):
+        await seat(stand_off, rig, [0.195, 0, 0, 0, 0, 0])
+    settings = stand_off.run.recipe.pose_correction
+    assert rig.truth.frames[-2:] == [settings.frames, settings.max_frames], "looked at once more"
 
 
 async def test_a_part_without_pins_is_verified_at_every_hole(rig: RunRig) -> None:

@@ -137,3 +137,22 @@ def test_a_part_off_its_drawing_makes_the_pose_less_sure() -> None:
     assert odd.pose.sigma.max() > 10.0 * good.pose.sigma.max()
     own = [np.diag(result.own_covariance) for result in (good, odd)]
     np.testing.assert_allclose(own[0], own[1], rtol=1e-2)
+
+
+def test_heads_that_moved_are_not_taken_for_a_wrong_part() -> None:
+    moved = RigidTransform.from_translation([0.6e-3, 0.0, 0.0]) * C1_T_C2
+    known = UncertainPose(C1_T_C2, np.diag(np.repeat([3e-4, 1e-4], 3) ** 2))
+    noise = np.random.default_rng(4).normal(size=(6, 3)) * SIGMA_M
+    result = part_pose(*heads(noise, moved), known, HOLES)
+    assert not result.outliers
+    assert np.linalg.norm(result.residuals_m, axis=1).max() < 2e-5
+    with pytest.raises(ResidualsTooLarge):
+        part_pose(*heads(noise, moved), UncertainPose(C1_T_C2, np.eye(6) * 1e-12), HOLES)
+
+
+def test_a_hole_off_the_drawing_is_left_out_whatever_the_heads_may_have_done() -> None:
+    noise = np.random.default_rng(5).normal(size=(6, 3)) * SIGMA_M
+    noise[4] += [0.6e-3, 0.0, 0.0]
+    known = UncertainPose(C1_T_C2, np.diag(np.repeat([1e-4, 1.7e-4], 3) ** 2))
+    result = part_pose(*heads(noise), known, HOLES)
+    assert result.outliers == ("P5",)
