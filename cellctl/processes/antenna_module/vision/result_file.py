@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.vision.measurement import (
 )
 
 COVARIANCE_ORDER = ("x_mm", "y_mm", "z_mm", "rx_rad", "ry_rad", "rz_rad")
-_UNITS = np.array([MM, MM, MM, 1.0, 1.0, 1.0])
+COVARIANCE_UNITS = np.array([MM, MM, MM, 1.0, 1.0, 1.0])
 
 
 def result_to_json(result: ConnectorMeasurement) -> dict[str, Any]:
@@ -57,5 +57,7 @@ def _matrix(pose: UncertainPose) -> list[list[float]]:
 
 
 def _covariance(pose: UncertainPose) -> list[list[float]]:
-    rows: list[list[float]] = (pose.covariance / np.outer(_UNITS, _UNITS)).tolist()
+    rows: list[list[float]] = (
+        pose.covariance / np.outer(COVARIANCE_UNITS, COVARIANCE_UNITS)
+    ).tolist()
     return rows

@@ -22,16 +22,16 @@ from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.tool_turn import calibrate_tool_turn
-from cellctl.processes.antenna_module.connector.connector import read_connector
-from cellctl.processes.antenna_module.insertion.curve import parse_curve
-from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
-from cellctl.processes.antenna_module.offline.trial_file import (
+from cellctl.processes.antenna_module.commands.trial_file import (
     TeachFile,
     TrialFile,
     looks_of,
     read_cell_file,
 )
-from cellctl.processes.antenna_module.offline.turn_file import TurnFile
+from cellctl.processes.antenna_module.commands.turn_file import TurnFile
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.insertion.curve import parse_curve
+from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 
 T = TypeVar("T")
 NOT_GOOD = 3

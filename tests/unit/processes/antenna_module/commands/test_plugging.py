@@ -10,7 +10,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from cellctl.calibration.pose_record import covariance_to_written, pose_to_record
+from cellctl.calibration.pose_record import pose_to_record
 from cellctl.errors import CellError
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.plug_calibration import TooFewTeachings, TurnInvalid
@@ -24,7 +24,8 @@ from cellctl.errors.plugging import (
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Look, Looks
-from cellctl.processes.antenna_module.offline import commands
+from cellctl.processes.antenna_module.commands import plugging as commands
+from cellctl.processes.antenna_module.vision.result_file import COVARIANCE_UNITS
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 from tests.unit.processes.antenna_module.insertion.curves import Shape, as_csv, curve
 
@@ -54,7 +55,7 @@ def measurement(seen: UncertainPose, camera: str, connector: str) -> Json:
         "camera_id": camera,
         "connector": connector,
         "camera_T_connector": mm(seen.pose),
-        "covariance": covariance_to_written(seen.covariance).tolist(),
+        "covariance": (seen.covariance / np.outer(COVARIANCE_UNITS, COVARIANCE_UNITS)).tolist(),
     }
 
 

@@ -19,7 +19,7 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
     MountedCamera,
     PlugCell,
 )
-from cellctl.processes.antenna_module.offline.measurement_file import Identity
+from cellctl.processes.antenna_module.commands.measurement_file import Identity
 
 RP_OVER_SIGMA = 3.616
 """RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes

@@ -15,13 +15,13 @@ from cellctl.processes.antenna_module.chain.looks import (
     SocketLook,
 )
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug
-from cellctl.processes.antenna_module.offline.cell_file import (
+from cellctl.processes.antenna_module.commands.cell_file import (
     AnyObject,
     CellEntries,
     Joints,
     read_relative,
 )
-from cellctl.processes.antenna_module.offline.measurement_file import Identity, Measurement
+from cellctl.processes.antenna_module.commands.measurement_file import Identity, Measurement
 
 
 class LookEntry(InputFile):
