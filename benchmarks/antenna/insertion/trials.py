@@ -24,10 +24,9 @@ from fakes.world.connector.insertion import (
 
 DRAWING = Path("config/connectors/micro-d-15-holes.toml")
 """Of the socket: the wrench is in its axes."""
-SPEED_M_S = 0.4e-3
 RATE_HZ = 100.0
 LATENCY_S = 0.25
-STEP_M = 0.1e-3
+STEP_M = 0.05e-3
 START_M, END_M = -0.3e-3, 2.6e-3
 SEATED_N = 15.0
 """Above what sliding takes: there the drive ends."""
@@ -83,23 +82,24 @@ class InsertionOutcome:
 def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> InsertionOutcome:
     """Drive, watch, stop, judge.
 
-    In steps of 0.1 mm the force is read at standstill only: so it is driven where a stop request
-    may be missed.
+    In steps of 0.05 mm the step under way is finished whatever the force: so it is driven where a
+    stop request may be missed.
     """
     rng = np.random.default_rng([seed, int(in_steps)])
     pair, place = _draw(fault, rng)
     drive = _Drive(pair, place, rng)
     watch = InsertionWatch(_LIMITS, MEAN_OF)
     stop_at = np.inf
-    count = int((END_M - START_M) / SPEED_M_S * RATE_HZ)
-    for number in range(count):
-        t_s = number / RATE_HZ
-        sample = drive.sample(t_s, START_M + SPEED_M_S * t_s)
+    t_s, driven_m = 0.0, START_M
+    while driven_m < END_M:
+        sample = drive.sample(t_s, driven_m)
+        speed_m_s = _LIMITS.at(driven_m).speed_m_s
         if stop_at == np.inf and watch.feed(sample) is not None:
-            stop_at = _stop_time(t_s, in_steps=in_steps)
+            stop_at = t_s + (_rest_of_step_s(driven_m, speed_m_s) if in_steps else LATENCY_S)
         seated = sample.depth_m > 2e-3 and sample.axial_n > drive.sliding_n + SEATED_N
         if t_s >= stop_at or seated:
             break
+        t_s, driven_m = t_s + 1 / RATE_HZ, driven_m + speed_m_s / RATE_HZ
     curve = drive.curve()
     verdict = judge_insertion(curve, _CONNECTOR).verdict
     stopped = watch.trip is not None
@@ -115,12 +115,10 @@ def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> Inserti
     )
 
 
-def _stop_time(t_s: float, *, in_steps: bool) -> float:
-    if not in_steps:
-        return t_s + LATENCY_S
-    # The step under way is finished, whatever is asked for meanwhile.
-    done_m = SPEED_M_S * t_s
-    return float(np.ceil(done_m / STEP_M) * STEP_M / SPEED_M_S)
+def _rest_of_step_s(driven_m: float, speed_m_s: float) -> float:
+    """Until the step under way is finished, whatever is asked for meanwhile."""
+    done_m = driven_m - START_M
+    return float((np.ceil(done_m / STEP_M) * STEP_M - done_m) / speed_m_s)
 
 
 def _draw(fault: Fault, rng: np.random.Generator) -> tuple[MatingPair, PlugPlace]:

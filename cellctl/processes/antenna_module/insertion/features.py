@@ -116,25 +116,13 @@ def _pressure(axial: Array, moment: Array, sliding: Mask, limits: InsertionLimit
 
 def _seat(depth_m: Array, axial: Array, limits: InsertionLimits) -> int | None:
     """Index where the force has risen by the seat's rise within the seat's depth."""
-    deep = np.flatnonzero(depth_m >= limits.spring_depth_m)
+    # The contact springs rise as high, but before that; a seat among them counts as none.
+    deep = np.flatnonzero(depth_m >= limits.spring_depth_m + limits.spring_rise_m)
     least = 0
     for at in deep:
         while depth_m[deep[least]] < depth_m[at] - limits.seat_within_m:
             least += 1
         window = axial[deep[least] : at + 1]
-        # The rise of the contact springs is as long as it is high: over 0.4 mm. A seat is short.
-        if axial[at] - window.min() > limits.seat_rise_n and _is_steep(
-            depth_m[deep[least] : at + 1], window, limits
-        ):
+        if axial[at] - window.min() > limits.seat_rise_n:
             return int(deep[least] + int(window.argmin()))
     return None
-
-
-def _is_steep(depth_m: Array, axial: Array, limits: InsertionLimits) -> bool:
-    """Whether the rise is beyond the slope with which contact springs come into play at most."""
-    low = int(axial.argmin())
-    run_m = max(float(depth_m[-1] - depth_m[low]), 1e-6)
-    spring_slope = limits.greatest_n / 0.4e-3
-    return bool(
-        (axial[-1] - axial[low]) / run_m > 1.2 * spring_slope or axial[-1] > limits.greatest_n
-    )

@@ -58,7 +58,7 @@ def test_each_fault_has_its_verdict(
 
 def test_the_moment_points_at_the_bent_contact() -> None:
     for name, position_m in zip(CONNECTOR.contacts, CONNECTOR.positions_m, strict=True):
-        if np.linalg.norm(position_m) < 2e-3:
+        if np.linalg.norm(position_m) < 2.2e-3:
             continue
         x_mm, y_mm = position_m * 1e3
         shape = Shape(pin_n_per_mm=115, pin_mm=(float(x_mm), float(y_mm)), noise_n_m=5e-4)
@@ -88,7 +88,7 @@ def test_a_standing_pin_is_stopped_within_a_tenth_of_a_millimetre() -> None:
     assert trip is not None
     assert trip.cause is TripCause.AXIAL_EARLY
     assert trip.phase is Phase.ENTRY
-    # With 0.4 mm/s and 250 ms until it stands, 0.1 mm more: below 0.15 mm.
+    # The curve was taken at 0.4 mm/s: with 250 ms until it stands 0.1 mm more, below 0.15 mm.
     assert 0.0 < trip.depth_m < 0.05e-3
 
 
@@ -116,6 +116,7 @@ def test_other_bounds_trip_too(shape: Shape, cause: TripCause) -> None:
 
 def test_limits_follow_depth() -> None:
     assert LIMITS.at(-1e-3).speed_m_s == 5e-3
-    assert LIMITS.at(0.0).speed_m_s == LIMITS.at(2e-3).speed_m_s == 0.4e-3
+    assert LIMITS.at(0.0).speed_m_s == 0.2e-3
+    assert LIMITS.at(2e-3).speed_m_s == 0.4e-3
     assert LIMITS.at(0.0).side_n < LIMITS.at(2e-3).side_n
     assert LIMITS.at(2e-3).axial_n == pytest.approx(51.7)
