@@ -6,6 +6,7 @@ Exit code 3 when a result was found but is beyond its limits; it is written all 
 import glob
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Protocol
 
@@ -113,7 +114,10 @@ def hand_eye(
     chosen = setup or data.setup
     if chosen is None:
         raise FileInvalid(f"{file}: missing 'setup'; give --setup eye-in-hand or eye-to-hand")
-    result = calibrate_hand_eye(data.stops(), chosen, noise=data.robot_noise())
+    result = replace(
+        calibrate_hand_eye(data.stops(), chosen, noise=data.robot_noise()),
+        camera_id=data.camera_id,
+    )
     in_hand = chosen is Setup.EYE_IN_HAND
     _show("flange_T_camera" if in_hand else "base_T_camera", result.camera)
     _show("base_T_board" if in_hand else "flange_T_board", result.board)

@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
-from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult, Setup
 from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
 from cellctl.errors.config import FileInvalid
@@ -56,10 +56,13 @@ def hand_eye_file(folder: Path, **extra: Any) -> Path:
 
 def test_hand_eye(tmp_path: Path) -> None:
     out, picture = tmp_path / "out.json", tmp_path / "he.png"
-    result = call("hand-eye", "--in", hand_eye_file(tmp_path), "--out", out, "--picture", picture)
+    file = hand_eye_file(tmp_path, camera_id="ab12")
+    result = call("hand-eye", "--in", file, "--out", out, "--picture", picture)
     assert result.exit_code == 0, result.output
     assert "flange_T_camera: X 6" in result.output
-    matrix = np.array(json.loads(out.read_text())["flange_T_camera"]["matrix_mm"])
+    record = json.loads(out.read_text())
+    assert record["camera_id"] == HandEyeResult.from_record(record).camera_id == "ab12"
+    matrix = np.array(record["flange_T_camera"]["matrix_mm"])
     truth = hand_eye_case.FLANGE_T_CAMERA
     assert np.abs(matrix[:3, 3] - truth.translation / MM).max() < 0.3
     assert picture.read_bytes().startswith(b"\x89PNG")

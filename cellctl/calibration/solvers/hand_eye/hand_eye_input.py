@@ -1,5 +1,6 @@
 """The input file of a hand-eye calibration."""
 
+from collections import Counter
 from typing import Annotated, Any
 
 import numpy as np
@@ -14,8 +15,10 @@ from cellctl.calibration.input_file import (
     numbers,
 )
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
+from cellctl.errors.plugging import WristConfigurationsDiffer
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.wrist import wrist_configuration
 from cellctl.vision.camera.stereo_head import CameraModel
 
 
@@ -31,6 +34,10 @@ def _pixels(values: Any) -> Array:
     return numbers(values, (None, 2), "corners_px must be a list of [u, v]")
 
 
+def _joints(values: Any) -> Array:
+    return numbers(values, (6,), "joints_deg must be six numbers")
+
+
 class HandEyeCamera(InputFile):
     """The camera that saw the corners."""
 
@@ -44,6 +51,7 @@ class HandEyeEntry(InputFile):
     """One stop: the robot, and the board as a pose or by its corners."""
 
     name: str | None = None
+    joints_deg: Annotated[Array, PlainValidator(_joints)] | None = None
     base_T_flange: InputPose
     camera_T_board: InputPose | None = None
     covariance_mm_deg: InputPoseCovariance | None = None
@@ -61,6 +69,8 @@ class HandEyeFile(InputFile):
     """The whole file."""
 
     setup: Setup | None = None
+    camera_id: str | None = None
+    """Of the intrinsics in use; stands in the result, too."""
     poses: tuple[HandEyeEntry, ...]
     robot_sigma_mm: float = 0.05
     robot_sigma_deg: float = 0.005
@@ -89,11 +99,31 @@ class HandEyeFile(InputFile):
         return RobotNoise(self.robot_sigma_mm * MM, float(np.radians(self.robot_sigma_deg)))
 
     def stops(self) -> tuple[HandEyePose, ...]:
-        """Input of the solver; raises ``BoardPoseInvalid`` when corners give no pose."""
+        """Input of the solver.
+
+        Raises ``BoardPoseInvalid`` when corners give no pose, ``WristConfigurationsDiffer`` when
+        the joints that the file gives mix two ways in which the arm is folded.
+        """
+        self._require_one_wrist()
         return tuple(
             HandEyePose(entry.name or f"pose {number}", entry.base_T_flange, self._board(entry))
             for number, entry in enumerate(self.poses, start=1)
         )
+
+    def _require_one_wrist(self) -> None:
+        # An arm's kinematic error differs from one way of folding it to the other by more than
+        # the calibration is to be good for: several times the error of the result was measured.
+        joints = {
+            entry.name or f"pose {number}": wrist_configuration(np.radians(entry.joints_deg))
+            for number, entry in enumerate(self.poses, start=1)
+            if entry.joints_deg is not None
+        }
+        usual = Counter(joints.values()).most_common(1)
+        other = [name for name, signs in joints.items() if signs != usual[0][0]]
+        if other:
+            raise WristConfigurationsDiffer(
+                f"signs of A3 and A5 {usual[0][0]}, but otherwise in {', '.join(other)}"
+            )
 
     def _board(self, entry: HandEyeEntry) -> UncertainPose:
         """camera_T_board as given, or from corners."""

@@ -73,6 +73,9 @@ class HandEyeResult:
     checks: Checks
     warnings: tuple[str, ...]
     method: str = "closed form (Park), then maximum likelihood with robot and camera covariance"
+    camera_id: str | None = None
+    """Of the intrinsics that the poses of the board were measured with; None where it is unknown.
+    The result holds for these alone: it has absorbed their errors."""
 
     @property
     def passed(self) -> bool:
@@ -94,6 +97,7 @@ class HandEyeResult:
             "rejected": list(self.rejected),
             "chi2_ratio": self.chi2_ratio,
             "spread_deg": np.degrees(self.spread_rad).tolist(),
+            **({} if self.camera_id is None else {"camera_id": self.camera_id}),
         }
 
     @classmethod
@@ -116,6 +120,7 @@ class HandEyeResult:
             checks=checks_from_record(record["checks"]),
             warnings=tuple(record["warnings"]),
             method=str(record["method"]),
+            camera_id=record.get("camera_id"),
         )
 
 

@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
@@ -76,16 +75,3 @@ class Looks:
         """Intrinsics that pictures of camera II were measured with."""
         plate = set() if self.plate is None else {self.plate.fixed_camera_id}
         return {self.plug.camera_id} | plate
-
-
-WRIST_JOINTS = (2, 4)
-"""Elbow (A3) and wrist (A5): their signs, with the shoulder's, say how a six-axis arm is folded."""
-_STRAIGHT_RAD = float(np.radians(1.0))
-
-
-def wrist_configuration(joints_rad: Array) -> tuple[int, ...]:
-    """Signs of the elbow and of the wrist joint; 0 within 1° of straight, where it may change."""
-    return tuple(
-        0 if abs(joints_rad[joint]) < _STRAIGHT_RAD else int(np.sign(joints_rad[joint]))
-        for joint in WRIST_JOINTS
-    )

@@ -8,8 +8,9 @@ from cellctl.errors.plugging import (
     StaleLook,
     WristConfigurationsDiffer,
 )
+from cellctl.geometry.wrist import wrist_configuration
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
-from cellctl.processes.antenna_module.chain.looks import Look, Looks, wrist_configuration
+from cellctl.processes.antenna_module.chain.looks import Look, Looks
 
 MAX_AGE_S = 60.0
 """Between a look and its plan. In this time a warming cell moves by well below a micrometre."""

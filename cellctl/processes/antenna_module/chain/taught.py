@@ -12,8 +12,8 @@ from cellctl.calibration.pose_record import matrix_mm_to_pose, pose_from_record,
 from cellctl.errors.plugging import CalibrationsDoNotBelongTogether, OutOfTaughtRange
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.wrist import WRIST_JOINTS
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
-from cellctl.processes.antenna_module.chain.looks import WRIST_JOINTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ class PlugCorrection:
 
     made_with: MadeWith
     wrist: tuple[int, ...]
-    """Configuration of the arm, ``looks.wrist_configuration``."""
+    """Configuration of the arm, ``geometry.wrist.wrist_configuration``."""
     range_m: float
     """How far from a taught slot it holds."""
     slots: tuple[TaughtSlot, ...]

@@ -57,6 +57,8 @@ class InsertionLimits:
     entry_most_n: float = 3.0
     """Whatever it was before."""
     entry_side_n: float = 1.5
+    entry_moment_z_n_m: float = 0.008
+    """Six times the noise of a mean of three samples; a turned module shows here first."""
     sliding_side_n: float = 3.0
     moment_z_n_m: float = 0.02
     over_n: float = 10.0
@@ -93,7 +95,7 @@ class InsertionLimits:
                 self.entry_m_s,
                 self.entry_most_n,
                 self.entry_side_n,
-                self.moment_z_n_m,
+                self.entry_moment_z_n_m,
                 infinite,
             )
         return PhaseLimits(
