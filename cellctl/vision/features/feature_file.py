@@ -3,7 +3,7 @@
 import math
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -15,7 +15,7 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import KINDS
 
 _HOLE_KEYS = {"name", "kind", "diameter_mm", "position_mm", "countersink_mm"}
-_FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis"}
+_FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis", "position_sigma_mm"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,13 @@ def _features(data: Mapping[str, Any]) -> FeatureFile:
     if not isinstance(tables, list) or not tables:
         raise ValueError("needs at least one [[hole]]")
     outward = _outward(data)
-    holes = tuple(_hole(table, index, outward) for index, table in enumerate(tables, start=1))
+    sigma_m = 0.0
+    if "position_sigma_mm" in data:
+        sigma_m = _positive(data, "position_sigma_mm", "the file") * MM
+    holes = tuple(
+        replace(_hole(table, index, outward), position_sigma_m=sigma_m)
+        for index, table in enumerate(tables, start=1)
+    )
     names = [hole.name for hole in holes]
     if len(set(names)) != len(names):
         raise ValueError("every hole needs a name of its own")

@@ -20,3 +20,5 @@ class Hole:
     """Diameter of the countersink's outer rim."""
     outward: Array | None = None
     """Unit vector out of the face that is seen, shape (3,); None when the drawing does not say."""
+    position_sigma_m: float = 0.0
+    """How far holes of this part lie off their position, standard deviation along x and along y."""

@@ -1,7 +1,7 @@
 """Holes of a part as points in C1, from one or two heads."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -11,6 +11,7 @@ from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.registration.rigid_fit import kabsch
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,6 +60,18 @@ class MeasuredPoints:
             np.array([rows[hole.name][1] for hole in used]).reshape(-1, 3, 3),
             np.array([rows[hole.name][2] for hole in used]).reshape(-1, 3, 6),
         )
+
+    def off_their_drawing(self, holes: Sequence[Hole]) -> Self:
+        """The same, as uncertain as the holes of the part lie off their drawing.
+
+        At least three points that are not on a line, in the order of ``holes``.
+        """
+        sigmas_m = {hole.name: hole.position_sigma_m for hole in holes}
+        rotation, _ = kabsch(self.nominal_m, self.measured_m)
+        across = rotation[:, :2]  # x and y of the part in C1
+        squares = np.array([sigmas_m[name] ** 2 for name in self.names])
+        spread = squares[:, None, None] * (across @ across.T)
+        return replace(self, covariances_m2=self.covariances_m2 + spread)
 
     def joint_covariance(self, transfer_covariance: Array) -> Array:
         """Covariance of all coordinates with the errors shared by ``c1_T_c2``, (3n, 3n)."""

@@ -75,6 +75,7 @@ def part_pose(
         raise TooFewHoles(f"{len(points.names)} usable: {', '.join(points.names) or 'none'}")
     if method == "paper":
         return _by_paper(points, transfer_covariance)
+    points = points.off_their_drawing(holes)
     kept, outliers = _without_outliers(points, transfer_covariance, residual_limit_m)
     fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
     return _result(points, kept, transfer_covariance, fit, outliers=outliers)

@@ -16,11 +16,16 @@ from cellctl.cli.commands import whole_app
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.state import State
-from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.poses.part_measurer import (
+    HeadGeometry,
+    PartMeasurement,
+    deck_in_frame,
+)
 from cellctl.records.raw_images import MEDIA_TYPE
 from cellctl.records.store import RunStore
 from cellctl.vision.features.feature_file import FeatureFile
 from cellctl.vision.registration.part_pose import PartPose
+from cellctl.vision.registration.relative_pose import RelativePose
 from tests.unit.cell.bench import TruthMeasurer
 from tests.unit.daemon_rig import DaemonRig
 
@@ -51,6 +56,11 @@ class Seeing:
         return None, self.found[taken[0][0]]
 
 
+def by_their_poses(frame: PartPose, deck: PartPose, heads: HeadGeometry, _: str) -> RelativePose:
+    """As the ``TruthMeasurer`` does, whose parts have no holes."""
+    return deck_in_frame(frame, deck, heads, "paper")
+
+
 @pytest.fixture
 def seeing(monkeypatch: pytest.MonkeyPatch) -> Seeing:
     seeing, measure = Seeing(), TruthMeasurer.measure
@@ -63,6 +73,7 @@ def seeing(monkeypatch: pytest.MonkeyPatch) -> Seeing:
     monkeypatch.setattr(TruthMeasurer, "measure", measured)
     monkeypatch.setattr(module, "measure_pair", seeing.measure_pair)
     monkeypatch.setattr(module, "combined", seeing.combined)
+    monkeypatch.setattr(module, "deck_in_frame", by_their_poses)
     return seeing
 
 

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -156,3 +158,19 @@ def test_a_hole_off_the_drawing_is_left_out_whatever_the_heads_may_have_done() -
     known = UncertainPose(C1_T_C2, np.diag(np.repeat([1e-4, 1.7e-4], 3) ** 2))
     result = part_pose(*heads(noise), known, HOLES)
     assert result.outliers == ("P5",)
+
+
+def test_holes_off_their_drawing_are_explained_when_the_drawing_says_so() -> None:
+    rng = np.random.default_rng(6)
+    off_m = np.column_stack([rng.normal(size=(6, 2)) * 10e-6, np.zeros(6)])
+    in_c1 = C1_T_PART.rotation.apply(off_m)
+    images = heads(in_c1)
+    # Of the second head the noise is in its own axes.
+    images = images[0], heads(C1_T_C2.rotation.inv().apply(in_c1))[1]
+    known = UncertainPose(C1_T_C2, np.eye(6) * 1e-16)
+    silent = part_pose(*images, known, HOLES)
+    said = part_pose(*images, known, [replace(hole, position_sigma_m=10e-6) for hole in HOLES])
+    assert silent.misfit.growth > 20
+    assert said.misfit.growth == 1.0
+    assert said.pose.sigma[5] > 3 * np.sqrt(silent.own_covariance[5, 5])
+    assert said.pose.sigma[2] == pytest.approx(np.sqrt(silent.own_covariance[2, 2]), rel=0.2)
