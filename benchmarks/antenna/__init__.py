@@ -1,1 +1,1 @@
-"""Figures of the second process: vision, chain and insertion of a plug."""
+"""Figures of the antenna module process: vision, chain of transforms, insertion."""
