@@ -1,16 +1,15 @@
 """Holes with depth: the surfaces that are seen inside their rim.
 
-Between two parallel planes a ray moves along a straight line, so its course inside a hole follows
-from where it meets the face and where it meets the plane of the hole's end. The wall is the
-cylinder between both; each camera sees the side of the wall that is turned to it.
+The wall is the cylinder between the face and the plane of the hole's end; each camera sees the
+side of the wall that is turned to it.
 """
 
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from fakes.render.bodies.rays import Rays
 from fakes.render.optics.canvas import Patch, margin_px
 from fakes.render.optics.coverage import coverage
 from fakes.render.optics.lattice import Window, window_around
@@ -28,30 +27,6 @@ _TURNS: Final = 7
 """Turns that are drawn; deeper ones cannot be seen."""
 _WALL_FADE_M: Final = 7e-3
 _THREAD_FADE_M: Final = 3e-3
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Rays:
-    """Rays of all cells relative to the axis of a hole: at the face, and their change per metre
-    of depth."""
-
-    x: Array
-    y: Array
-    slope_x: Array
-    slope_y: Array
-
-    def radius(self, depth_m: float | Array) -> Array:
-        """Distance from the axis at a depth."""
-        return np.hypot(self.x + depth_m * self.slope_x, self.y + depth_m * self.slope_y)
-
-    def wall_depth(self, radius_m: float) -> Array:
-        """Depth at which a ray from inside meets a cylinder; 0 for rays that start outside."""
-        a = self.slope_x**2 + self.slope_y**2 + 1e-12
-        b = self.x * self.slope_x + self.y * self.slope_y
-        # The ray meets the cylinder where |p + d s|² = r²: a quadratic equation in the depth d. Of
-        # its two solutions the larger one is the wall that the ray runs into.
-        c = self.x**2 + self.y**2 - radius_m**2
-        return np.asarray((-b + np.sqrt(np.maximum(b * b - a * np.minimum(c, 0), 0))) / a)
 
 
 def outer_diameter(hole: SceneHole) -> float:
@@ -97,7 +72,7 @@ def hole_patch(
     window = window_around(view, rim, margin_px(blur_px), options.sub_samples)
     if window is None:
         return None
-    rays = _rays(view, pose, hole, window)
+    rays = Rays.through(view, pose, window, centre_m=hole.position_m, depth_m=hole.depth_m)
     azimuth = _azimuth_in_part(pose, light_azimuth)
     visible = 1 - coverage(rays.radius(0.0) - outer_diameter(hole) / 2)
     through = 1 - visible
@@ -119,22 +94,12 @@ def hole_patch(
     return Patch.from_cells(window, through, grey, blur_px)
 
 
-def _rays(view: View, pose: RigidTransform, hole: SceneHole, window: Window) -> _Rays:
-    x, y = surface_map(view, pose, window)
-    # Two planes are enough: between them a ray is a straight line, so its place at any depth
-    # follows.
-    x_end, y_end = surface_map(view, pose, window, z_m=-hole.depth_m)
-    x_hole, y_hole = hole.position_m
-    slope_x, slope_y = (x_end - x) / hole.depth_m, (y_end - y) / hole.depth_m
-    return _Rays(x - x_hole, y - y_hole, slope_x, slope_y)
-
-
 def _azimuth_in_part(pose: RigidTransform, azimuth: float) -> float:
     x, y, _ = pose.rotation.inv().apply([np.cos(azimuth), np.sin(azimuth), 0.0])
     return float(np.arctan2(y, x))
 
 
-def _ring_grey(rays: _Rays, hole: SceneHole, options: RenderOptions, azimuth: float) -> Array:
+def _ring_grey(rays: Rays, hole: SceneHole, options: RenderOptions, azimuth: float) -> Array:
     """Countersink or chamfer: a cone in uneven light, with the marks of its cutter."""
     angle = np.arctan2(rays.y, rays.x) - azimuth
     radius = rays.radius(0.0)
@@ -144,7 +109,7 @@ def _ring_grey(rays: _Rays, hole: SceneHole, options: RenderOptions, azimuth: fl
 
 
 def _wall_grey(
-    rays: _Rays, radius_m: float, depth_m: float, options: RenderOptions, azimuth: float
+    rays: Rays, radius_m: float, depth_m: float, options: RenderOptions, azimuth: float
 ) -> Array:
     """Bore wall: brightest at the rim and where it faces the light."""
     depth = np.minimum(rays.wall_depth(radius_m), depth_m)
@@ -154,7 +119,7 @@ def _wall_grey(
 
 
 def _thread(
-    rays: _Rays,
+    rays: Rays,
     hole: SceneHole,
     options: RenderOptions,
     azimuth: float,
