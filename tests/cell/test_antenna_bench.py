@@ -70,11 +70,13 @@ class Bench:
         return await asyncio.to_thread(self._read_force_z)
 
     def _read_force_z(self) -> float:
-        self.sensor.read(0.0)
+        # Nobody reads while the arm moves: what has piled up is of the past.
+        while self.sensor.read(0.0):
+            continue
         readings: list[float] = []
         deadline_s = time.monotonic() + 20.0
         while len(readings) < 500 and time.monotonic() < deadline_s:
-            readings += [sample.wrench[2] for sample in self.sensor.read(0.2)]
+            readings += [sample.fz_n for sample in self.sensor.read(0.2)]
         assert len(readings) >= 500
         return float(np.mean(readings))
 
