@@ -1,5 +1,6 @@
 """A module is gripped, weighed, looked at from below, and plugged; no wire in between."""
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,17 @@ G_M_S2 = 9.80665
 @pytest.fixture(scope="module")
 def scenario() -> BenchScenario:
     return BenchScenario.read(CONFIG / "antenna.scenario.toml")
+
+
+def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(
+    scenario: BenchScenario,
+) -> None:
+    arm = AntennaBench(scenario, 1).arms["arm"]
+    cell = tomllib.loads((CONFIG / "antenna.toml").read_text(encoding="utf-8"))
+    taught_deg = cell["robots"]["arm"]["poses_deg"]
+    for name, pose in scenario.taught["arm"].items():
+        joints = inverse(arm.settings.chain_mm, from_written(pose), arm.joints(0.0))
+        np.testing.assert_allclose(np.rad2deg(joints), taught_deg[name], atol=1e-5)
 
 
 class Hands:
