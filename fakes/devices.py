@@ -24,7 +24,6 @@ from fakes.wire.cameras.target_server import TargetServer
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import gripper_coupler
 from fakes.wire.sri.box import SriBox
-from fakes.world.gripper import PneumaticJaws
 from fakes.world.targets import SeenTarget
 from fakes.world.world import Command, World
 
@@ -63,7 +62,6 @@ class DeviceRack:
         self._scenario: Scenario = world.scenario
         self._world, self._clock, self._ports = world, clock, ports
         self._renderers: ProcessPoolExecutor | None = None
-        self._jaws: dict[str, PneumaticJaws] = {}
         self._inputs: dict[str, dict[int, bool]] = {}
         self._couplers: dict[str, CouplerServer] = {}
         self.devices = {device.name: device for device in self._all()}
@@ -71,7 +69,7 @@ class DeviceRack:
     def commands(self) -> Mapping[str, Command]:
         """What the hands of an operator do at these devices."""
         commands: dict[str, Command] = {}
-        if self._jaws:
+        if self._world.jaws:
             commands["set_part"] = self._set_part
         if self._couplers:
             commands |= {"set_input": self._set_input, "outputs": self._outputs}
@@ -174,8 +172,7 @@ class DeviceRack:
 
     # -- couplers -------------------------------------------------------------------------------
     def _gripper(self, name: str, gripper: Gripper) -> Device:
-        jaws = PneumaticJaws(travel_s=gripper.travel_ms / 1000, part_present=gripper.part_present)
-        self._jaws[name] = jaws
+        jaws = self._world.jaws[name]
         coupler = gripper_coupler(jaws, self._clock, watchdog_ms=gripper.watchdog_ms)
         return self._coupler(name, gripper.port, coupler)
 
@@ -198,7 +195,7 @@ class DeviceRack:
     # -- hands of the operator ------------------------------------------------------------------
     def _set_part(self, gripper: str, present: bool) -> None:  # noqa: FBT001  by its name only
         """Put a part between the jaws, or take it away."""
-        _known(self._jaws, gripper).part_present = present
+        _known(self._world.jaws, gripper).part_present = present
 
     def _set_input(self, device: str, address: int, on: bool) -> None:  # noqa: FBT001  likewise
         """Switch an input of a digital I/O."""

@@ -34,7 +34,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from fakes.render.model import SceneCharucoBoard, SceneObject
+from fakes.render.model import SceneCharucoBoard, SceneObject, plain_bodies
 from fakes.render.nominal import (
     facing_pose,
     nominal_chessboard,
@@ -107,6 +107,6 @@ def expose(
 
 def render_scene(scene: CameraScene, options: RenderOptions = _DEFAULT) -> tuple[Grey, ...]:
     """One exposure of a scene of the world, an image per lens; its noise seed decides the noise."""
-    clean = clean_pictures(scene.optics, scene.bodies, options, scene.light_seed)
+    clean = clean_pictures(scene.optics, plain_bodies(scene), options, scene.light_seed)
     rng = np.random.default_rng(scene.noise_seed)
     return tuple(exposed(picture, options, rng) for picture in clean)

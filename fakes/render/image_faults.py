@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from fakes.render.optics.canvas import Image
-from fakes.world.scene import Body, CameraScene, LensTruth, MonoTruth, ScenePlate, StereoTruth
+from fakes.world.scene import CameraScene, LensTruth, MonoTruth, ScenePlate, Seen, StereoTruth
 
 Pictures = tuple[Image, ...]
 """Clean pictures, left and right or only one: grey levels before noise."""
@@ -31,7 +31,7 @@ PICTURE_FAULTS: Final[dict[str, Callable[[Pictures], Pictures]]] = {
 """Faults that spoil the picture of the true scene."""
 
 
-def _without_holes(body: Body) -> Body:
+def _without_holes(body: Seen) -> Seen:
     return replace(body, holes=()) if isinstance(body, ScenePlate) else body
 
 

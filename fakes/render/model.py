@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
-from fakes.world.scene import Body, ScenePlate
+from fakes.world.connector.scene import SceneConnector, SceneMarks
+from fakes.world.scene import Body, CameraScene, ScenePlate
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,11 @@ class SceneCharucoBoard:
 
 
 SceneObject = Body | SceneCharucoBoard
+
+
+def plain_bodies(scene: CameraScene) -> tuple[Body, ...]:
+    """What is neither a connector nor a gripper's marks, which have a renderer of their own."""
+    return tuple(body for body in scene.bodies if not isinstance(body, SceneConnector | SceneMarks))
 
 
 def pose_of(item: SceneObject) -> RigidTransform:

@@ -19,16 +19,23 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.priority import give_way
+from fakes.render.connectors.colours import Pixels
+from fakes.render.connectors.look import ConnectorLook
+from fakes.render.connectors.picture import connector_channels
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
+from fakes.render.model import plain_bodies
 from fakes.render.optics.canvas import Image
 from fakes.render.optics.exposure import taken
 from fakes.render.optics.lens import views_of
 from fakes.render.optics.sensor import exposed
 from fakes.render.options import RenderOptions
 from fakes.render.picture import clean_pictures
+from fakes.world.connector.scene import SceneConnector, SceneMarks
 from fakes.world.scene import CameraScene, Exposure, MonoTruth
 
 _KEPT_SCENES: Final = 3
+_CHANNELS: Final = 3
+"""Of a colour camera."""
 _CHANNEL_GAINS: Final = (np.float32(1.0), np.float32(0.94), np.float32(0.86))
 """Red, green, blue: bare metal under a warm white lamp, which is all there is to see."""
 _kept: "OrderedDict[Any, tuple[Image, ...]]" = OrderedDict()
@@ -63,16 +70,22 @@ def render_frame(
     # In one fixed order, so that the same set of faults always gives the same picture.
     for name in _in_order(SCENE_FAULTS, faults):
         scene = SCENE_FAULTS[name](scene)
+    clean = _clean(scene, options)
+    of_connectors = len(clean) == _CHANNELS
+    views = views_of(scene.optics) * (_CHANNELS if of_connectors else 1)
     pictures = tuple(
         taken(picture, scene.exposure, view.lens.focal_px[0])
-        for picture, view in zip(_clean(scene, options), views_of(scene.optics), strict=True)
+        for picture, view in zip(clean, views, strict=True)
     )
     for name in _in_order(PICTURE_FAULTS, faults):
         pictures = PICTURE_FAULTS[name](pictures)
     # The seed comes with the scene, because the worker has no memory of how many exposures there
     # were.
     rng = np.random.default_rng(scene.noise_seed)
-    if isinstance(scene.optics, MonoTruth) and scene.optics.colour:
+    if of_connectors:
+        channels = [exposed(picture, options, rng) for picture in pictures]
+        payload = np.stack(channels, axis=2).tobytes()
+    elif isinstance(scene.optics, MonoTruth) and scene.optics.colour:
         (picture,) = pictures
         channels = [exposed(gain * picture, options, rng) for gain in _CHANNEL_GAINS]
         payload = np.stack(channels, axis=2).tobytes()
@@ -100,11 +113,23 @@ def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
     key = fingerprint((unmoved, options))
     pictures = _kept.pop(key, None)
     if pictures is None:
-        pictures = clean_pictures(scene.optics, scene.bodies, options, scene.light_seed)
+        pictures = _rendered(scene, options)
     _kept[key] = pictures
     while len(_kept) > _KEPT_SCENES:
         _kept.popitem(last=False)
     return pictures
+
+
+def _rendered(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
+    """One picture for each camera, or one for each channel of a colour camera at a connector."""
+    connectors = [body for body in scene.bodies if isinstance(body, SceneConnector | SceneMarks)]
+    if not connectors:
+        return clean_pictures(scene.optics, plain_bodies(scene), options, scene.light_seed)
+    (view,) = views_of(scene.optics)
+    assert isinstance(scene.optics, MonoTruth)  # no scene shows connectors to a stereo head
+    pixels: Pixels = "rgb" if scene.optics.colour else "grey"
+    look = ConnectorLook(sensor=options)
+    return connector_channels(view, connectors, look, pixels, scene.light_seed)
 
 
 def _in_order(known: Iterable[str], wanted: frozenset[str]) -> list[str]:

@@ -45,6 +45,11 @@ class PneumaticJaws:
             self._position += max(-way, min(way, left))
         return self._position
 
+    @property
+    def last_position(self) -> float:
+        """Where they were when the coupler last looked, as a ratio of the travel."""
+        return self._position
+
     def sensors(self, time_s: float) -> dict[str, bool]:
         """What the three sensors show."""
         position = self.position(time_s)

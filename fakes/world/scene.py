@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
+from fakes.world.connector.scene import SceneConnector, SceneMarks
+
 Array = NDArray[np.float64]
 HoleKind = Literal["pin", "thread", "countersink"]
 Side = Literal["left", "right"]
@@ -125,7 +127,10 @@ class SceneChessboard:
 
 
 Body = ScenePlate | SceneTargetBoard | SceneChessboard
-"""Whatever a scene can show to a camera."""
+"""What the renderer of plates and boards draws."""
+Seen = Body | SceneConnector | SceneMarks
+"""Whatever a scene can show to a camera. Where connectors or marks are in view, they alone are
+drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +153,7 @@ class CameraScene:
     camera: str
     time_s: float
     optics: StereoTruth | MonoTruth
-    bodies: tuple[Body, ...]
+    bodies: tuple[Seen, ...]
     """In any order: nearer ones hide farther ones."""
     light_seed: int
     """Direction of the light gradient; fixed for the camera in one run."""

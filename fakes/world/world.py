@@ -17,9 +17,10 @@ from fakes.world.flaws.arm import ArmFlaws
 from fakes.world.flaws.camera import CameraFlaws
 from fakes.world.flaws.sensor import SensorFlaws
 from fakes.world.frames import Array, stream, stream_seed
+from fakes.world.gripper import PneumaticJaws
 from fakes.world.mounted_sensor import STEP_S, MountedSensor
 from fakes.world.robot import RobotArm
-from fakes.world.scene import Body, CameraScene
+from fakes.world.scene import CameraScene, Seen
 from fakes.world.sensor import ForceReading
 from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
 from fakes.world.truth import draw, stream_keys
@@ -51,6 +52,12 @@ class World(ABC, Generic[S_co]):
         self._camera_flaws = {
             name: CameraFlaws.of(scenario, name, seed) for name in scenario.all_cameras()
         }
+        self.jaws = {
+            name: PneumaticJaws(
+                travel_s=gripper.travel_ms / 1000, part_present=gripper.part_present
+            )
+            for name, gripper in scenario.grippers.items()
+        }
         self.faults = FaultBoard("world", self.fault_texts)
         self.time_s = 0.0
         self._tick = 0
@@ -81,7 +88,7 @@ class World(ABC, Generic[S_co]):
         """
 
     @abstractmethod
-    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterable[Body]:
+    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterable[Seen]:
         """Whatever a camera at this pose can see."""
 
     def targets_for(self, tracker: str) -> Iterable[Target]:  # noqa: ARG002  for scenes that care

@@ -1,0 +1,80 @@
+"""Where the module is: on its tray, in the fingers, in the socket, or left somewhere."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from scipy.spatial.transform import RigidTransform
+
+from fakes.scenes.antenna_bench.scenario import BenchGripper
+from fakes.world.frames import MM, distance, from_written, stream
+from fakes.world.gripper import ON_PART, OPEN_END, PneumaticJaws
+from fakes.world.truth import drawn_spread
+
+Place = Literal["tray", "gripper", "socket", "left"]
+_HOLDING = 0.02
+"""Ratio of the travel before the part at which the jaws hold it."""
+_FREE = 0.3
+
+
+@dataclass(slots=True)
+class ModulePlace:
+    """The module in or beside the fingers."""
+
+    settings: BenchGripper
+    seed: int
+    place: Place
+    cell_T_plug: RigidTransform
+    """Where it is while nothing holds it."""
+    flange_T_plug: RigidTransform
+    """Where it is in the fingers while they hold it."""
+    grips: int = 0
+
+    def follow(
+        self,
+        jaws: PneumaticJaws,
+        cell_T_flange: RigidTransform,
+        *,
+        rests_at: RigidTransform,
+        in_socket: bool,
+    ) -> None:
+        """Take over what the jaws did.
+
+        ``rests_at`` is the true cell_T_plug; ``in_socket`` when the socket would keep the module.
+        """
+        held = self.place == "gripper"
+        if held and jaws.last_position < ON_PART - _FREE:
+            self.cell_T_plug = rests_at
+            self.place = "socket" if in_socket else "left"
+        elif not held:
+            between = self._between(cell_T_flange)
+            # Jaws that have closed beyond the part have nothing to hold any more.
+            if jaws.last_position <= ON_PART:
+                jaws.part_present = between
+            closed = ON_PART - _HOLDING <= jaws.last_position <= ON_PART
+            if between and closed and jaws.last_position > OPEN_END:
+                self._grip(cell_T_flange)
+
+    def slip(self, axial_n: float, seconds: float) -> None:
+        """Let the module slip back between the fingers under too high a force, either way."""
+        if abs(axial_n) <= self.settings.slip_force_n:
+            return
+        way_m = self.settings.slip_mm_s * MM * seconds * (1.0 if axial_n > 0 else -1.0)
+        self.flange_T_plug *= RigidTransform.from_translation([0.0, 0.0, -way_m])
+
+    def now(self, cell_T_flange: RigidTransform) -> RigidTransform:
+        """cell_T_plug, the module's springs not giving way."""
+        if self.place == "gripper":
+            return cell_T_flange * self.flange_T_plug
+        return self.cell_T_plug
+
+    def _between(self, cell_T_flange: RigidTransform) -> bool:
+        nominal = cell_T_flange * from_written(self.settings.flange_T_plug_mm_deg)
+        away_m, _ = distance(nominal, self.cell_T_plug)
+        return away_m < self.settings.grip_range_mm * MM
+
+    def _grip(self, cell_T_flange: RigidTransform) -> None:
+        """The fingers take the module as it lies, and it settles in their play."""
+        self.grips += 1
+        play = drawn_spread(stream(self.seed, "grip", self.grips), self.settings.play)
+        self.flange_T_plug = cell_T_flange.inv() * self.cell_T_plug * play
+        self.place = "gripper"

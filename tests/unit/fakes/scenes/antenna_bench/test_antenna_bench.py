@@ -1,0 +1,204 @@
+"""A module is gripped, weighed, looked at from below, and plugged; no wire in between."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from fakes.scenes.antenna_bench.scenario import BenchScenario
+from fakes.scenes.antenna_bench.scene import AntennaBench
+from fakes.world.arm import inverse
+from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
+from fakes.world.connector.scene import SceneConnector, SceneMarks
+from fakes.world.frames import from_written
+from fakes.world.scene import ScenePlate
+
+CONFIG = Path(__file__).parents[5] / "config"
+G_M_S2 = 9.80665
+
+
+@pytest.fixture(scope="module")
+def scenario() -> BenchScenario:
+    return BenchScenario.read(CONFIG / "antenna.scenario.toml")
+
+
+def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(
+    scenario: BenchScenario,
+) -> None:
+    arm = AntennaBench(scenario, 1).arms["arm"]
+    cell = tomllib.loads((CONFIG / "antenna.toml").read_text(encoding="utf-8"))
+    taught_deg = cell["robots"]["arm"]["poses_deg"]
+    for name, pose in scenario.taught["arm"].items():
+        joints = inverse(arm.settings.chain_mm, from_written(pose), arm.joints(0.0))
+        np.testing.assert_allclose(np.rad2deg(joints), taught_deg[name], atol=1e-5)
+
+
+class Hands:
+    """Drives the bench as somebody who knows the truth."""
+
+    def __init__(self, world: AntennaBench) -> None:
+        self.world, self.arm = world, world.arms["arm"]
+
+    def taught(self, name: str) -> None:
+        self.joints_to(from_written(self.world.scenario.taught["arm"][name]))
+
+    def joints_to(self, target: RigidTransform) -> None:
+        joints = inverse(self.arm.settings.chain_mm, target, self.arm.joints(self.world.time_s))
+        self.arm.start_joint(self.world.time_s, joints, 100)
+        self.wait(self.arm.standstill_s - self.world.time_s + 0.01)
+
+    def true_flange_to(self, cell_T_flange: RigidTransform) -> None:
+        """By what the arm is wrong here; twice, because a long way is wrong differently."""
+        for _ in range(2):
+            commanded = self.arm.encoder_pose(self.world.time_s)
+            off = commanded * self.world.flange("arm").inv()
+            self.joints_to(off * cell_T_flange)
+
+    def wait(self, seconds: float) -> None:
+        self.world.advance(self.world.time_s + seconds)
+
+    def jaws(self, *, close: bool) -> None:
+        jaws = self.world.jaws["gripper"]
+        jaws.drive(self.world.time_s, open_coil=not close, close_coil=close)
+        for _ in range(30):
+            self.wait(0.01)
+            jaws.position(self.world.time_s)
+
+    def grip(self) -> None:
+        self.taught("above_tray")
+        self.true_flange_to(self.over_module())
+        self.jaws(close=True)
+        self.taught("above_tray")
+
+    def over_module(self) -> RigidTransform:
+        nominal = from_written(self.world.scenario.gripper.flange_T_plug_mm_deg)
+        return self.world.parts.cell_T_tray_plug * nominal.inv()
+
+    def plug_at(self, depth_m: float, aside_m: float = 0.0) -> RigidTransform:
+        """cell_T_flange with the held plug at a depth in the socket."""
+        place = RigidTransform.from_translation([aside_m, 0.0, -depth_m]) * SOCKET_T_MATED_PLUG
+        return self.world.parts.cell_T_socket * place * self.world.module.flange_T_plug.inv()
+
+    def force_z(self) -> float:
+        """Raw reading of the sensor's z, mean over half a second: its hum has 14 Hz."""
+        begin_s = self.world.time_s
+        times = begin_s + 0.01 + np.arange(100) * 0.005
+        return float(np.mean([self.world.sensor_wrench("force", t)[2] for t in times]))
+
+
+def held(scenario: BenchScenario, seed: int = 3) -> Hands:
+    """Before the socket, with the module already in the fingers: the way there takes long."""
+    hands = Hands(AntennaBench(scenario, seed))
+    hands.world.module.place = "gripper"
+    jaws = hands.world.jaws["gripper"]
+    jaws.part_present = True
+    jaws.drive(0.0, open_coil=False, close_coil=True)
+    jaws.position(1.0)
+    hands.taught("above_socket")
+    return hands
+
+
+def test_the_module_hangs_and_is_weighed(scenario: BenchScenario) -> None:
+    hands = Hands(AntennaBench(scenario, 3))
+    hands.taught("above_tray")
+    empty_n = hands.force_z()
+    hands.grip()
+    assert hands.world.truth_report()["module"] == "gripper"
+    # The sensor's z points down with the flange.
+    assert hands.force_z() - empty_n == pytest.approx(scenario.module.mass_kg * G_M_S2, abs=0.1)
+
+
+def test_jaws_close_beyond_nothing(scenario: BenchScenario) -> None:
+    hands = Hands(AntennaBench(scenario, 3))
+    hands.taught("above_tray")
+    hands.jaws(close=True)
+    assert hands.world.jaws["gripper"].last_position == 1.0
+    assert hands.world.truth_report()["module"] == "tray"
+
+
+def test_what_the_cameras_see(scenario: BenchScenario) -> None:
+    hands = Hands(AntennaBench(scenario, 4))
+    hands.taught("tray_look")
+    (top,) = hands.world.camera_scene("camera_1").bodies
+    assert isinstance(top, ScenePlate)
+    hands.grip()
+    hands.taught("inspect_plug")
+    plug, marks = hands.world.camera_scene("camera_2").bodies
+    assert isinstance(plug, SceneConnector)
+    assert isinstance(marks, SceneMarks)
+    assert plug.kind == "pins"
+    assert plug.camera_T_connector.translation == pytest.approx([0.0, 0.0, 0.25], abs=3e-3)
+    hands.taught("socket_look")
+    (socket,) = hands.world.camera_scene("camera_1").bodies
+    assert isinstance(socket, SceneConnector)
+    assert socket.kind == "holes"
+
+
+def test_a_good_plug_goes_in_seats_and_stays(scenario: BenchScenario) -> None:
+    hands = held(scenario)
+    tare_n = hands.force_z()
+    hands.true_flange_to(hands.plug_at(-0.3e-3))
+    for depth_mm in np.arange(0.0, 2.55, 0.15):
+        hands.joints_to(hands.arm.encoder_pose(hands.world.time_s) * _down(0.15e-3))
+        report = hands.world.truth_report()
+        assert report["seated_depth_mm"] == pytest.approx(depth_mm - 0.15, abs=0.12)
+    report = hands.world.truth_report()
+    assert set(report["pins"].values()) == {"inside"}
+    assert report["offset_at_worst_contact_mm"] < 0.06
+    peaks_n = hands.world.parts.pair.peaks_n.sum()
+    # The sensor's z points down, the socket pushes up.
+    assert 0.5 * peaks_n < tare_n - hands.force_z() < 1.2 * peaks_n
+    hands.jaws(close=False)
+    assert hands.world.truth_report()["module"] == "socket"
+
+
+def test_an_offset_is_felt_before_the_springs(scenario: BenchScenario) -> None:
+    hands = held(scenario)
+    tare_n = hands.force_z()
+    hands.true_flange_to(hands.plug_at(-0.05e-3, aside_m=0.15e-3))
+    felt_n = []
+    for _ in range(5):
+        hands.joints_to(hands.arm.encoder_pose(hands.world.time_s) * _down(0.07e-3))
+        felt_n.append(tare_n - hands.force_z())
+    assert max(felt_n) > 2.0
+    assert hands.world.truth_report()["seated_depth_mm"] < 0.5
+    assert hands.world.truth_report()["pins"]["1"] == "inside"
+
+
+def test_injected_flaws_are_those_of_the_next_parts(scenario: BenchScenario) -> None:
+    world = AntennaBench(scenario, 1)
+    world.faults.inject("bent_pin", contact="4", x_mm=0.3)
+    world.faults.inject("missing_pin", contact="9")
+    world.faults.inject("blocked_hole", contact="2")
+    world.load()
+    report = world.truth_report()
+    assert (report["bent"], report["missing"], report["blocked"]) == (["4"], ["9"], ["2"])
+
+
+def test_warmth_moves_the_flange_from_the_next_motion_on(scenario: BenchScenario) -> None:
+    shifts_m = []
+    for seed in range(12):
+        world = AntennaBench(scenario, seed)
+        before = world.flange("arm").translation
+        world.warm(3.0)
+        shifts_m.append(float(np.linalg.norm(world.flange("arm").translation - before)))
+    assert 5e-6 < np.mean(shifts_m) < 100e-6
+
+
+def test_repeatability_is_that_of_the_standard(scenario: BenchScenario) -> None:
+    """RP = mean distance + three of its standard deviations: 3.6 sigma of an axis."""
+    arm = AntennaBench(scenario, 5).arms["arm"]
+    home, places, time_s = arm.joints(0.0), [], 0.0
+    for number in range(400):
+        arm.start_joint(time_s, home + 0.2 * (number % 2), 100)
+        time_s = arm.standstill_s + 0.1
+        if number % 2:
+            places.append(arm.flange(time_s).translation)
+    distances = np.linalg.norm(places - np.mean(places, axis=0), axis=1)
+    assert distances.mean() + 3 * distances.std() == pytest.approx(0.02e-3, rel=0.25)
+
+
+def _down(way_m: float) -> RigidTransform:
+    return RigidTransform.from_translation([0.0, 0.0, way_m])
