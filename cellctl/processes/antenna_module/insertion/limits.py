@@ -42,7 +42,7 @@ class InsertionLimits:
     entry_height_m: float = 0.5e-3
     """Above the first touch, from where on the plug moves slowly."""
     travel_m_s: float = 5e-3
-    entry_m_s: float = 0.2e-3
+    entry_m_s: float = 0.15e-3
     """So slow that a pin which slides down its funnel meets less than 3 N from the side before a
     stop that takes 250 ms takes effect, with a holder of 50 N/mm."""
     sliding_m_s: float = 0.4e-3
