@@ -27,7 +27,7 @@ DRAWING = Path("config/connectors/micro-d-15-holes.toml")
 RATE_HZ = 100.0
 LATENCY_S = 0.25
 STEP_M = 0.04e-3
-START_M, END_M = -0.3e-3, 2.6e-3
+START_M, END_M = -0.3e-3, 2.8e-3
 SEATED_N = 15.0
 """Above what sliding takes: there the drive ends."""
 NOISE_N, NOISE_N_M = 0.05, 0.002
