@@ -26,8 +26,8 @@ DRAWING = Path("config/connectors/micro-d-15-holes.toml")
 """Of the socket: the wrench is in its axes."""
 RATE_HZ = 100.0
 LATENCY_S = 0.25
-STEP_M = 0.05e-3
-START_M, END_M = -0.3e-3, 2.6e-3
+STEP_M = 0.04e-3
+START_M, END_M = -0.3e-3, 2.8e-3
 SEATED_N = 15.0
 """Above what sliding takes: there the drive ends."""
 NOISE_N, NOISE_N_M = 0.05, 0.002
@@ -82,7 +82,7 @@ class InsertionOutcome:
 def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> InsertionOutcome:
     """Drive, watch, stop, judge.
 
-    In steps of 0.05 mm the step under way is finished whatever the force: so it is driven where a
+    In steps of 0.04 mm the step under way is finished whatever the force: so it is driven where a
     stop request may be missed.
     """
     rng = np.random.default_rng([seed, int(in_steps)])

@@ -1,5 +1,6 @@
 """The file of a hand-eye calibration: which intrinsics, and one way of folding the arm."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -11,7 +12,7 @@ POSE = [100, 200, 300, 10, 20, 30]
 FOLDED = [10, -40, 95, 5, 40, 20]
 
 
-def file(*joints_deg: list[float] | None, **extra: Any) -> HandEyeFile:
+def file(*joints_deg: Sequence[float] | None, **extra: Any) -> HandEyeFile:
     poses = [
         {"base_T_flange": POSE, "camera_T_board": POSE, "joints_deg": joints}
         for joints in joints_deg
