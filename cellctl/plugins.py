@@ -1,7 +1,9 @@
 """Drivers and processes by name: entry points, loaded only when a cell file names them."""
 
+from collections.abc import Callable
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
+from typing import Any
 
 from cellctl.errors.config import UnknownDriver
 
@@ -14,6 +16,8 @@ FT_SENSOR = "cellctl.ft_sensor"
 GRIPPER = "cellctl.gripper"
 DIGITAL_IO = "cellctl.digital_io"
 PROCESS = "cellctl.process"
+COMMAND = "cellctl.command"
+"""Offline commands of a process: functions that add themselves to a Typer application."""
 
 
 def names(group: str) -> list[str]:
@@ -23,18 +27,30 @@ def names(group: str) -> list[str]:
 
 def load(group: str, name: str) -> type:
     """The driver class ``name``; raises ``UnknownDriver`` when absent or not importable."""
+    loaded = _loaded(group, name)
+    if not isinstance(loaded, type):
+        raise UnknownDriver(f"{group} '{name}' is not a class")
+    return loaded
+
+
+def load_function(group: str, name: str) -> Callable[..., Any]:
+    """The function ``name``; raises ``UnknownDriver`` when absent or not importable."""
+    loaded = _loaded(group, name)
+    if not callable(loaded):
+        raise UnknownDriver(f"{group} '{name}' is not a function")
+    return loaded
+
+
+def _loaded(group: str, name: str) -> object:
     for point in installed(group):
         if point.name != name:
             continue
         try:
-            loaded = point.load()
+            return point.load()
         # A driver whose vendor's library is missing is a fault of this cell file, not a crash of
         # the command.
-        except ImportError as error:
+        except (ImportError, AttributeError) as error:
             raise UnknownDriver(f"{group} '{name}' cannot be imported: {error}") from error
-        if not isinstance(loaded, type):
-            raise UnknownDriver(f"{group} '{name}' is not a class")
-        return loaded
     known = ", ".join(names(group)) or "none"
     raise UnknownDriver(f"no {group} named '{name}'; installed: {known}")
 

@@ -1,13 +1,21 @@
-"""The commands of `cellctl` by name, each loaded only when it is asked for."""
+"""The commands of `cellctl` by name, each loaded only when it is asked for.
+
+Offline commands of a process are found as entry points of the group ``cellctl.command``: a name and
+a function that takes a Typer application and adds the command of that name to it.
+"""
 
 from collections.abc import Callable, Mapping
 
 import typer
 
+from cellctl import plugins
+from cellctl.cli.help_groups import OFFLINE
+from cellctl.cli.operator.commands import NAMES as OPERATOR_NAMES
 from cellctl.cli.operator.commands import add_operator_commands
 from cellctl.cli.root import new_app
+from cellctl.errors.config import UnknownDriver
 
-_CELL, _RECORDS, _OFFLINE = "The cell", "Records and faults", "From files, without a cell"
+_CELL, _RECORDS = "The cell", "Records and faults"
 
 
 def whole_app() -> typer.Typer:
@@ -18,6 +26,8 @@ def whole_app() -> typer.Typer:
     add_operator_commands(app)
     for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload"):
         _ADD[name](app)
+    for name in _from_processes():
+        _add_from_process(app, name)
     return app
 
 
@@ -26,11 +36,28 @@ def app_with(name: str) -> typer.Typer | None:
 
     Together the commands load OpenCV, scipy and matplotlib for seconds, and most need little of it.
     """
-    if name not in _ADD:
-        return None
     app = new_app()
-    _ADD[name](app)
+    if name in _ADD:
+        _ADD[name](app)
+    elif name in _from_processes():
+        plugins.load_function(plugins.COMMAND, name)(app)
+    else:
+        return None
     return app
+
+
+def _from_processes() -> list[str]:
+    """Commands that processes bring. One of ours keeps its name and its meaning."""
+    return [name for name in plugins.names(plugins.COMMAND) if name not in {*_ADD, *OPERATOR_NAMES}]
+
+
+def _add_from_process(app: typer.Typer, name: str) -> None:
+    try:
+        plugins.load_function(plugins.COMMAND, name)(app)
+    except UnknownDriver as fault:
+        # The help of all other commands must not fail because one package is incomplete. Whoever
+        # asks for this command by its name gets the fault.
+        typer.echo(f"warning: {fault}", err=True)
 
 
 def _check(app: typer.Typer) -> None:
@@ -72,19 +99,19 @@ def _faults(app: typer.Typer) -> None:
 def _calibrate(app: typer.Typer) -> None:
     from cellctl.cli.offline import calibrate
 
-    app.add_typer(calibrate.app, name="calibrate", rich_help_panel=_OFFLINE)
+    app.add_typer(calibrate.app, name="calibrate", rich_help_panel=OFFLINE)
 
 
 def _measure(app: typer.Typer) -> None:
     from cellctl.cli.offline.measure import measure
 
-    app.command("measure", rich_help_panel=_OFFLINE)(measure)
+    app.command("measure", rich_help_panel=OFFLINE)(measure)
 
 
 def _identify_payload(app: typer.Typer) -> None:
     from cellctl.cli.offline.identify_payload import identify_payload
 
-    app.command("identify-payload", rich_help_panel=_OFFLINE)(identify_payload)
+    app.command("identify-payload", rich_help_panel=OFFLINE)(identify_payload)
 
 
 _ADD: Mapping[str, Callable[[typer.Typer], None]] = {

@@ -4,6 +4,8 @@ from typing import Any
 
 from typer.core import TyperGroup
 
+OFFLINE = "From files, without a cell"
+"""Panel of the commands that need files alone; those of processes belong there, too."""
 _OTHERS = "Commands"
 
 
