@@ -44,11 +44,16 @@ def read_input(path: Path, model: type[M]) -> M:
     try:
         return model.model_validate_json(content)
     except ValidationError as error:
-        details = error.errors()
-        shown = [_words(detail) for detail in details[:_SHOWN_ERRORS]]
-        if len(details) > _SHOWN_ERRORS:
-            shown.append(f"and {len(details) - _SHOWN_ERRORS} more")
-        raise FileInvalid(f"{path}: {'; '.join(shown)}") from error
+        raise FileInvalid(f"{path}: {error_words(error)}") from error
+
+
+def error_words(error: ValidationError) -> str:
+    """Everything that is wrong with a file, each with its place, on one line."""
+    details = error.errors()
+    shown = [_words(detail) for detail in details[:_SHOWN_ERRORS]]
+    if len(details) > _SHOWN_ERRORS:
+        shown.append(f"and {len(details) - _SHOWN_ERRORS} more")
+    return "; ".join(shown)
 
 
 def _words(detail: ErrorDetails) -> str:
@@ -60,6 +65,8 @@ def _words(detail: ErrorDetails) -> str:
         return "the file must hold one object"
     if kind == "missing":
         return f"{_place(place[:-1])}missing {place[-1]!r}"
+    if kind == "extra_forbidden":
+        return f"{_place(place[:-1])}unknown key {place[-1]!r}"
     if kind == "value_error":
         message = str(detail["ctx"]["error"])
     else:

@@ -7,6 +7,7 @@ CellError
 ├── GripperError      34x   errors.gripper      grippers
 ├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
 ├── VisionError       4xx   errors.vision       images, holes, part poses
+│   └── ConnectorError 46x  errors.connector    connectors and their contacts in one image
 ├── ForceError        5xx   errors.force        sensor, guard, mating
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 ├── LineError         7xx   errors.line         line PLC and commands
@@ -18,6 +19,7 @@ CellError
 from cellctl.errors import (
     calibration,
     config,
+    connector,
     digital_io,
     force,
     gripper,
@@ -37,6 +39,7 @@ __all__ = [
     "calibration",
     "catalogue",
     "config",
+    "connector",
     "digital_io",
     "force",
     "gripper",

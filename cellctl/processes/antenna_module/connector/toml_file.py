@@ -1,0 +1,53 @@
+"""Reads a drawing from TOML into its model, with words for every mistake."""
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from cellctl.calibration.input_file import error_words
+
+PositiveMm = Annotated[float, Field(gt=0, le=1000)]
+Coordinate = Annotated[float, Field(ge=-1000, le=1000)]
+PositionMm = tuple[Coordinate, Coordinate]
+"""x and y in the drawing's frame."""
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+
+
+class Table(BaseModel):
+    """A table of a drawing. A misspelt key is a mistake, not something to be ignored."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
+
+
+M = TypeVar("M", bound=Table)
+
+
+def parse_toml(content: bytes, name: str, model: type[M]) -> M:
+    """The content of a file of that name; raises ``ValueError`` with everything that is wrong."""
+    try:
+        data = tomllib.loads(content.decode())
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{name} is not TOML: {error}") from error
+    try:
+        return model.model_validate(as_tuples(data))
+    except ValidationError as error:
+        raise ValueError(f"{name}: {error_words(error)}") from error
+
+
+def read_bytes(path: Path) -> bytes:
+    """A file's content; raises ``ValueError`` with the reason."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from error
+
+
+def as_tuples(value: Any) -> Any:
+    """Lists as tuples, which strict models ask for: TOML knows lists alone."""
+    if isinstance(value, dict):
+        return {key: as_tuples(item) for key, item in value.items()}
+    if isinstance(value, list):
+        return tuple(as_tuples(item) for item in value)
+    return value
