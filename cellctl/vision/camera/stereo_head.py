@@ -83,8 +83,8 @@ def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
     """The head as the plain data of its file: lengths in mm."""
     data: dict[str, Any] = {
         "image_size": list(head.image_size),
-        "left": _camera_to_json(head.left),
-        "right": _camera_to_json(head.right),
+        "left": camera_to_json(head.left),
+        "right": camera_to_json(head.right),
         "rotation": head.rotation.tolist(),
         "translation_mm": (head.translation_m / MM).tolist(),
         "rms_px": head.rms_px,
@@ -97,7 +97,8 @@ def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
     return data
 
 
-def _camera_to_json(camera: CameraModel) -> dict[str, Any]:
+def camera_to_json(camera: CameraModel) -> dict[str, Any]:
+    """One camera as plain data."""
     return {
         "camera_matrix": camera.camera_matrix.tolist(),
         "distortion": camera.distortion.tolist(),
@@ -123,8 +124,8 @@ def stereo_head_from_json(data: Mapping[str, Any]) -> StereoHead:
         raise ValueError("translation_mm is zero: the cameras have no baseline")
     return StereoHead(
         image_size=(width, height),
-        left=_camera_from_json(data, "left"),
-        right=_camera_from_json(data, "right"),
+        left=_side_from_json(data, "left"),
+        right=_side_from_json(data, "right"),
         rotation=rotation,
         translation_m=translation_m,
         rms_px=float(data.get("rms_px", np.nan)),
@@ -144,18 +145,21 @@ def _covariance_from_json(data: Mapping[str, Any]) -> Array | None:
     return _array(data, "covariance", (24, 24)) * np.outer(_FILE_UNITS, _FILE_UNITS)
 
 
-def _camera_from_json(data: Mapping[str, Any], side: str) -> CameraModel:
+def _side_from_json(data: Mapping[str, Any], side: str) -> CameraModel:
     try:
-        matrix = _array(data[side], "camera_matrix", (3, 3))
-        distortion = _array(data[side], "distortion", (5,))
+        return camera_from_json(data[side])
     except KeyError as error:
         raise ValueError(f"{side}: missing {error}") from error
     except ValueError as error:
         raise ValueError(f"{side}: {error}") from error
+
+
+def camera_from_json(data: Mapping[str, Any]) -> CameraModel:
+    """The inverse of ``camera_to_json``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
+    matrix = _array(data, "camera_matrix", (3, 3))
+    distortion = _array(data, "distortion", (5,))
     if matrix[0, 0] <= 0 or matrix[1, 1] <= 0 or not np.array_equal(matrix[2], [0.0, 0.0, 1.0]):
-        raise ValueError(
-            f"{side}: camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy"
-        )
+        raise ValueError("camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy")
     return CameraModel(matrix, distortion)
 
 

@@ -1,0 +1,87 @@
+"""Which placement of a drawing is the right one, and the fault when none is for certain."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.errors.connector import (
+    ConnectorAmbiguous,
+    ConnectorMisplaced,
+    ConnectorTurned,
+    ImageMirrored,
+)
+from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.vision.matching import Placement
+from cellctl.processes.antenna_module.vision.pattern import Candidates
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarExpectation:
+    """Where a drawing's origin is expected in the plane."""
+
+    shift_m: Array
+    yaw_rad: float
+    within_m: float
+    within_rad: float
+
+    def turn_rad(self, placement: Placement) -> float:
+        """Angle from the expected yaw, between -π and π."""
+        return float((placement.yaw_rad - self.yaw_rad + np.pi) % (2.0 * np.pi) - np.pi)
+
+    def holds(self, placement: Placement) -> bool:
+        """Whether a placement is where it is expected."""
+        return (
+            abs(self.turn_rad(placement)) <= self.within_rad
+            and self.distance_m(placement) <= self.within_m
+        )
+
+    def distance_m(self, placement: Placement) -> float:
+        """How far a placement is from there."""
+        return float(np.linalg.norm(placement.shift_m - self.shift_m))
+
+
+def choose(
+    candidates: Candidates, expected: PlanarExpectation | None, *, chiral: bool
+) -> Placement:
+    """The placement that most features agree with; there must be one at least.
+
+    ``chiral``: the drawing differs from its mirror image, so that the number of features on spots
+    tells a mirrored image. Of placements with equal numbers the expected place decides. Raises
+    ``ImageMirrored``, ``ConnectorAmbiguous``, ``ConnectorTurned`` or ``ConnectorMisplaced``.
+    """
+    best = candidates.placements[0] if candidates.placements else None
+    seen = candidates.mirrored[0].found if candidates.mirrored else 0
+    if chiral and seen > (0 if best is None else best.found):
+        raise ImageMirrored(f"{seen} features fit the drawing in a mirror only")
+    if best is None:
+        raise ConnectorAmbiguous("no placement")
+    equal = [item for item in candidates.placements if item.found == best.found]
+    if chiral and seen == best.found:
+        raise ConnectorAmbiguous(f"{seen} features fit the drawing and its mirror image")
+    if expected is None:
+        if len(equal) > 1:
+            raise ConnectorAmbiguous(_ways(equal, best))
+        return best
+    there = [item for item in equal if expected.holds(item)]
+    if len(there) > 1:
+        raise ConnectorAmbiguous(_ways(there, there[0]))
+    if there:
+        return there[0]
+    if abs(expected.turn_rad(best)) > np.pi / 2.0:
+        raise ConnectorTurned(
+            f"{np.degrees(expected.turn_rad(best)):+.1f}° from where it should be"
+        )
+    raise ConnectorMisplaced(
+        f"{expected.distance_m(best) / MM:.2f} mm and "
+        f"{np.degrees(expected.turn_rad(best)):+.2f}° from where it should be, permitted are "
+        f"{expected.within_m / MM:g} mm and {np.degrees(expected.within_rad):g}°"
+    )
+
+
+def _ways(placements: list[Placement], best: Placement) -> str:
+    turns = ", ".join(
+        f"{np.degrees(item.yaw_rad):.1f}° at "
+        f"{item.shift_m[0] / MM:.2f}, {item.shift_m[1] / MM:.2f} mm"
+        for item in placements
+    )
+    return f"{best.found} features fit at {turns}"

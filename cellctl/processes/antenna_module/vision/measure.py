@@ -1,0 +1,216 @@
+"""Measures a connector, and the gripper's marks, in one image: the entrance of this package."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.errors.connector import (
+    ConnectorAmbiguous,
+    ConnectorMissing,
+    ConnectorUncertain,
+    MarksMissing,
+    PlaneScaleWrong,
+    WrongConnector,
+)
+from cellctl.geometry.pose import MM
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.connector.marks import Marks
+from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
+from cellctl.processes.antenna_module.vision.contact_states import contact_states
+from cellctl.processes.antenna_module.vision.measurement import (
+    ConnectorMeasurement,
+    MeasuredMarks,
+)
+from cellctl.processes.antenna_module.vision.pattern import (
+    Candidates,
+    Pattern,
+    find_pattern,
+    fit_pattern,
+    surplus,
+)
+from cellctl.processes.antenna_module.vision.planar_fit import PlanarFit
+from cellctl.processes.antenna_module.vision.plane import MeasuringPlane, PlaneCalibration
+from cellctl.vision.camera.image_checks import check_image
+from cellctl.vision.camera.single_camera import SingleCamera
+
+SIGMA_LIMIT_M = 3e-6
+YAW_LIMIT_RAD = float(np.radians(0.04))
+_LEAST_SHARE = 0.6
+_SCALE_LIMIT = 5.0
+_OTHER_SIZES = (2.0, 0.5)
+_SURPLUS = 2
+_MARK_TRUE_POSITION_M = 5e-6
+
+
+def measure_connector(
+    image: Image,
+    camera: SingleCamera,
+    calibration: PlaneCalibration,
+    connector: Connector,
+    marks: Marks | None = None,
+) -> ConnectorMeasurement:
+    """Measure the contacts of one connector; faults of 46x–47x where that cannot be trusted.
+
+    Contacts that are missing, bent or hidden do not raise here, ``require_sound`` judges them.
+    """
+    check_image(image, camera.image_size, "image")
+    plane = calibration.before(camera)
+    seen_marks = None if marks is None else _measure_marks(image, plane, calibration, marks)
+    expected = _expectation(plane, calibration, marks, seen_marks)
+    rim_plane = plane.at_height(-connector.rim_depth_m)
+    pattern = contact_pattern(connector)
+    least = int(np.ceil(_LEAST_SHARE * len(pattern.names)))
+    candidates = find_pattern(image, rim_plane, pattern, least=least)
+    _require_connector(image, rim_plane, pattern, candidates, least)
+    if connector.symmetric and expected is None:
+        raise ConnectorAmbiguous("the drawing looks the same after half a turn")
+    extra = surplus(image, rim_plane, pattern, candidates, connector.outline_m)
+    if extra >= _SURPLUS:
+        raise WrongConnector(f"{extra} more contacts than the file has")
+    placement = choose(candidates, expected, chiral=False)
+    found = fit_pattern(image, rim_plane, pattern, placement, candidates.spots_m)
+    if found is None or np.count_nonzero(found.fit.used) < least:
+        raise WrongConnector(f"fewer than {least} contacts are clean and in their places")
+    _require_scale(found.fit, plane, calibration)
+    _require_certain(found.fit)
+    contacts = contact_states(found, pattern, rim_plane)
+    radius_px = pattern.diameter_m / 2.0 / rim_plane.m_per_px(found.fit.shift_m)
+    return ConnectorMeasurement(
+        method="default",
+        connector=connector.name,
+        camera_id=camera.id,
+        contacts=contacts,
+        radius_px=radius_px,
+        camera_T_connector=uncertain_pose(plane, calibration, found.fit),
+        scale=found.fit.scale,
+        chi2=found.fit.chi2,
+        freedom=found.fit.freedom,
+        marks=seen_marks,
+        warnings=_warnings(expected),
+    )
+
+
+def contact_pattern(connector: Connector) -> Pattern:
+    """The contacts as a pattern of round features."""
+    pins = connector.kind == "pins"
+    return Pattern(
+        names=connector.contacts,
+        positions_m=connector.positions_m,
+        diameter_m=connector.diameter_m,
+        true_position_m=connector.true_position_m,
+        bright=pins,
+        chamfer_m=connector.rim_depth_m if pins else 0.0,
+        length_m=connector.length_m,
+    )
+
+
+def uncertain_pose(
+    plane: MeasuringPlane, calibration: PlaneCalibration, fit: PlanarFit
+) -> UncertainPose:
+    """``camera_T_drawing``: x, y, yaw of the fit, height and tilt of the plane, each with its
+    standard deviation."""
+    turn = Rotation.from_rotvec([0.0, 0.0, fit.yaw_rad])
+    place = RigidTransform.from_components(np.append(fit.shift_m, 0.0), turn)
+    pose = plane.camera_T_plane * place
+    axes = plane.camera_T_plane.rotation.as_matrix()
+    by_fit = np.zeros((6, 3))
+    by_fit[:3, :2], by_fit[3:, 2] = axes[:, :2], axes[:, 2]
+    # A plane at another height moves the connector along the camera's ray to it.
+    by_height = np.append(pose.translation / (axes[:, 2] @ pose.translation), np.zeros(3))
+    by_tilt = np.zeros((6, 2))
+    by_tilt[3:] = axes[:, :2]
+    covariance = (
+        by_fit @ fit.covariance @ by_fit.T
+        + np.outer(by_height, by_height) * calibration.sigma_height_m**2
+        + by_tilt @ by_tilt.T * calibration.sigma_tilt_rad**2
+    )
+    return UncertainPose(pose, covariance)
+
+
+def _measure_marks(
+    image: Image, plane: MeasuringPlane, calibration: PlaneCalibration, marks: Marks
+) -> MeasuredMarks:
+    pattern = Pattern(
+        marks.names,
+        marks.positions_m,
+        marks.diameter_m,
+        _MARK_TRUE_POSITION_M,
+        marks.bright,
+    )
+    raised = plane.at_height(marks.height_m)
+    # One mark may be dirty. Those that are left must still tell every way apart, which the choice
+    # among the placements shows.
+    least = max(len(marks.names) - 1, 3)
+    candidates = find_pattern(image, raised, pattern, least=least)
+    if not candidates.placements and not candidates.mirrored:
+        raise MarksMissing(f"{len(candidates.spots.px)} spots, {least} marks needed")
+    placement = choose(candidates, None, chiral=True)
+    found = fit_pattern(image, raised, pattern, placement, candidates.spots_m)
+    if found is None or np.count_nonzero(found.fit.used) < least:
+        raise MarksMissing("too few marks are clean and in their places")
+    circles = [feature.circle for feature in found.features if feature.circle is not None]
+    px = raised.to_px(np.array([circle.centre_m for circle in circles]))
+    return MeasuredMarks(uncertain_pose(raised, calibration, found.fit), px)
+
+
+def _expectation(
+    plane: MeasuringPlane,
+    calibration: PlaneCalibration,
+    marks: Marks | None,
+    seen: MeasuredMarks | None,
+) -> PlanarExpectation | None:
+    """By the marks where they are seen, otherwise by the trained place."""
+    if marks is not None and seen is not None:
+        pose = seen.camera_T_marks.pose * marks.marks_T_connector
+        within = (marks.within_m, marks.within_rad)
+    elif calibration.expected is not None:
+        pose = calibration.expected.camera_T_connector
+        within = (calibration.expected.within_m, calibration.expected.within_rad)
+    else:
+        return None
+    in_plane = plane.camera_T_plane.inv() * pose
+    along = in_plane.rotation.as_matrix()[:2, 0]
+    yaw = float(np.arctan2(along[1], along[0]))
+    return PlanarExpectation(in_plane.translation[:2], yaw, *within)
+
+
+def _require_connector(
+    image: Image, plane: MeasuringPlane, pattern: Pattern, candidates: Candidates, least: int
+) -> None:
+    """``ConnectorMissing`` or ``WrongConnector`` where no placement has enough contacts."""
+    if candidates.placements:
+        return
+    count = len(candidates.spots.px)
+    if count >= least:
+        raise WrongConnector(f"{count} spots of this size, in another arrangement")
+    for size in _OTHER_SIZES:
+        other = pattern.with_diameter(size * pattern.diameter_m)
+        count = len(find_pattern(image, plane, other, least=least).spots.px)
+        if count >= least:
+            raise WrongConnector(f"{count} spots of {other.diameter_m / MM:.2f} mm diameter")
+    raise ConnectorMissing(f"{len(candidates.spots.px)} spots, {least} contacts needed")
+
+
+def _require_scale(fit: PlanarFit, plane: MeasuringPlane, calibration: PlaneCalibration) -> None:
+    distance_m = float(plane.camera_T_plane.translation[2])
+    sigma = float(np.hypot(fit.scale_sigma, calibration.sigma_height_m / distance_m))
+    if abs(fit.scale - 1.0) > _SCALE_LIMIT * sigma:
+        raise PlaneScaleWrong(
+            f"scale {fit.scale:.5f}, expected 1 ± {_SCALE_LIMIT * sigma:.5f}; as if the plane were "
+            f"{(1.0 / fit.scale - 1.0) * distance_m / MM:+.2f} mm farther away"
+        )
+
+
+def _require_certain(fit: PlanarFit) -> None:
+    x, y, yaw = np.sqrt(np.diag(fit.covariance))
+    if max(x, y) > SIGMA_LIMIT_M or yaw > YAW_LIMIT_RAD:
+        raise ConnectorUncertain(
+            f"standard deviations {x * 1e6:.1f}, {y * 1e6:.1f} µm, {np.degrees(yaw):.3f}°"
+        )
+
+
+def _warnings(expected: PlanarExpectation | None) -> tuple[str, ...]:
+    if expected is not None:
+        return ()
+    return ("neither marks nor an expected place: a mirrored image would not be noticed",)

@@ -1,0 +1,259 @@
+"""Finds and measures a pattern of equal round features: the contacts of a connector, or marks."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.vision.circle_fit import Circle, fit_circle
+from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
+from cellctl.processes.antenna_module.vision.planar_fit import PlanarFit, fit_planar
+from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
+from cellctl.processes.antenna_module.vision.rim_edges import rim_edges
+from cellctl.processes.antenna_module.vision.spots import Spots, find_spots
+from cellctl.processes.antenna_module.vision.tip_fit import fit_tip
+
+_COARSE, _FINE = 0.45, 0.28
+"""Range of the search for edges, of the radius: first round a spot, then round a circle."""
+_PRIOR = 0.10
+"""Standard deviation of the drawing's radius, of itself: light and blur move all edges."""
+_ALIKE = 0.04
+"""The same of the radius that most contacts of this image have: they are made and lit alike."""
+_SUPPORT = 0.6
+_STRENGTH = 0.35
+"""An edge weaker than this share of the others is not that of a clean contact."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pattern:
+    """What is looked for; m."""
+
+    names: tuple[str, ...]
+    positions_m: Array
+    """Shape (n, 2), in the drawing."""
+    diameter_m: float
+    true_position_m: float
+    bright: bool
+    chamfer_m: float = 0.0
+    """Of the tip of a pin: the flat is smaller than the rim by this, and as much nearer."""
+    length_m: float = 0.0
+    """What stands out of the ground."""
+
+    def with_diameter(self, diameter_m: float) -> "Pattern":
+        """The same arrangement of larger or smaller features."""
+        return replace(self, diameter_m=diameter_m)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Candidates:
+    """Spots of the right size, and the placements of the pattern on them, best first."""
+
+    spots: Spots
+    spots_m: Array
+    placements: tuple[Placement, ...]
+    mirrored: tuple[Placement, ...]
+    """Those of the pattern in a mirror."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Feature:
+    """One feature that was looked for at its place."""
+
+    name: str
+    circle: Circle | None
+    """None when no circle of this size is there."""
+    contrast: float
+    """Grey levels inside less outside, positive as the feature should be."""
+    clean: bool
+    """The circle is complete, and its edges are as strong as those of the others."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PatternFit:
+    """A pattern in its plane."""
+
+    fit: PlanarFit
+    features: tuple[Feature, ...]
+
+
+def find_pattern(
+    image: Image, plane: MeasuringPlane, pattern: Pattern, *, least: int
+) -> Candidates:
+    """Spots and placements; ``least`` features must be on spots for a placement to count."""
+    height, width = image.shape
+    middle = plane.from_px(np.array([[width / 2.0, height / 2.0]]))[0]
+    radius_px = pattern.diameter_m / 2.0 / plane.m_per_px(middle)
+    spots = find_spots(image, radius_px, bright=pattern.bright, typical=len(pattern.names))
+    if len(spots.px) < least:
+        return Candidates(spots, np.empty((0, 2)), (), ())
+    spots_m = plane.from_px(spots.px)
+    found = placements(pattern.positions_m, spots_m, least=least)
+    mirrored = placements(pattern.positions_m * [-1.0, 1.0], spots_m, least=least)
+    return Candidates(spots, spots_m, tuple(found), tuple(mirrored))
+
+
+def fit_pattern(
+    image: Image, plane: MeasuringPlane, pattern: Pattern, placement: Placement, spots_m: Array
+) -> PatternFit | None:
+    """Measure every feature near its place; None when too few of them are clean."""
+    placed = pattern.positions_m @ rotation(placement.yaw_rad).T + placement.shift_m
+    starts = np.where(placement.spot[:, None] >= 0, spots_m[placement.spot], placed)
+    radius_m = pattern.diameter_m / 2.0
+    coarse = [
+        _circle(
+            image,
+            plane,
+            start,
+            radius_m,
+            sigma=_PRIOR,
+            share=_COARSE,
+            bright=pattern.bright,
+        )
+        for start in starts
+    ]
+    radii = [c.radius_m for c in coarse if c is not None and c.support > _SUPPORT]
+    if len(radii) < 3:
+        return None
+    alike_m = float(np.median(radii))
+    fine = [
+        _circle(
+            image,
+            plane,
+            start if circle is None else circle.centre_m,
+            alike_m,
+            sigma=_ALIKE,
+            share=_FINE,
+            bright=pattern.bright,
+        )
+        for start, circle in zip(starts, coarse, strict=True)
+    ]
+    if pattern.chamfer_m > 0:
+        fine = [_tip(image, plane, pattern, circle) for circle in fine]
+    features = _features(image, plane, pattern, fine, starts)
+    points = np.full((len(features), 2), np.nan)
+    covariances = np.tile(np.eye(2), (len(features), 1, 1))
+    for index, feature in enumerate(features):
+        if feature.clean and feature.circle is not None:
+            points[index] = feature.circle.centre_m
+            covariances[index] = feature.circle.covariance_m2
+    fit = fit_planar(pattern.positions_m, points, covariances, pattern.true_position_m)
+    return (
+        None if fit is None else PatternFit(_with_all_residuals(fit, features, pattern), features)
+    )
+
+
+def surplus(
+    image: Image,
+    plane: MeasuringPlane,
+    pattern: Pattern,
+    candidates: Candidates,
+    outline_m: tuple[float, float],
+) -> int:
+    """Clean features of the right size within the outline that the drawing does not have."""
+    best = candidates.placements[0]
+    turn = rotation(best.yaw_rad)
+    places = (candidates.spots_m - best.shift_m) @ turn
+    inside = np.all(np.abs(places) < np.array(outline_m) / 2.0, axis=1)
+    inside[best.spot[best.spot >= 0]] = False
+    matched = candidates.spots.contrast[best.spot[best.spot >= 0]]
+    inside &= candidates.spots.contrast > 0.5 * float(np.median(matched))
+    count = 0
+    for place in candidates.spots_m[inside]:
+        radius_m = pattern.diameter_m / 2.0
+        circle = _circle(
+            image, plane, place, radius_m, sigma=_PRIOR, share=_FINE, bright=pattern.bright
+        )
+        count += circle is not None and circle.support > 0.8
+    return count
+
+
+def _circle(
+    image: Image,
+    plane: MeasuringPlane,
+    start: Array,
+    radius_m: float,
+    *,
+    sigma: float,
+    share: float,
+    bright: bool,
+) -> Circle | None:
+    """The rim near a start, its edges searched anew round the centre that was found."""
+    px_m = plane.m_per_px(start)
+    circle: Circle | None = None
+    for _ in range(2):
+        edges = rim_edges(image, plane, start, radius_m, share=share, bright=bright)
+        if edges is None:
+            return None
+        circle = fit_circle(edges, start, radius_m, radius_sigma_m=sigma * radius_m, px_m=px_m)
+        if circle is None or np.linalg.norm(circle.centre_m - start) > radius_m:
+            return None
+        start = circle.centre_m
+    return circle
+
+
+def _tip(
+    image: Image, plane: MeasuringPlane, pattern: Pattern, circle: Circle | None
+) -> Circle | None:
+    if circle is None:
+        return None
+    flat_radius = 1.0 - 2.0 * pattern.chamfer_m / pattern.diameter_m
+    tip = fit_tip(
+        image,
+        plane,
+        circle,
+        flat_radius=flat_radius,
+        depth_m=pattern.chamfer_m,
+        length_m=pattern.length_m,
+    )
+    return circle if tip is None else tip
+
+
+def _features(
+    image: Image,
+    plane: MeasuringPlane,
+    pattern: Pattern,
+    circles: list[Circle | None],
+    starts: Array,
+) -> tuple[Feature, ...]:
+    slopes = [circle.slope_grey for circle in circles if circle is not None]
+    typical = float(np.median(slopes)) if slopes else 0.0
+    return tuple(
+        Feature(
+            name,
+            circle,
+            _contrast(image, plane, start if circle is None else circle.centre_m, pattern),
+            circle is not None
+            and circle.support >= _SUPPORT
+            and circle.slope_grey >= _STRENGTH * typical,
+        )
+        for name, circle, start in zip(pattern.names, circles, starts, strict=True)
+    )
+
+
+def _contrast(image: Image, plane: MeasuringPlane, centre_m: Array, pattern: Pattern) -> float:
+    """Median grey inside less outside; 0 outside of the image."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    unit = np.column_stack([np.cos(angle), np.sin(angle)]) * pattern.diameter_m / 2.0
+    levels: list[float] = []
+    for share in (0.5, 1.5):
+        pixels = np.rint(plane.to_px(centre_m + share * unit)).astype(int)
+        height, width = image.shape
+        if pixels.min() < 0 or pixels[:, 0].max() >= width or pixels[:, 1].max() >= height:
+            return 0.0
+        levels.append(float(np.median(image[pixels[:, 1], pixels[:, 0]])))
+    difference = levels[0] - levels[1]
+    return difference if pattern.bright else -difference
+
+
+def _with_all_residuals(
+    fit: PlanarFit, features: tuple[Feature, ...], pattern: Pattern
+) -> PlanarFit:
+    """Residuals also of circles that the fit did not use: where a dirty contact seems to be."""
+    residuals = fit.residuals_m.copy()
+    turn = rotation(fit.yaw_rad)
+    for index, feature in enumerate(features):
+        if feature.circle is not None:
+            placed = turn @ pattern.positions_m[index] + fit.shift_m
+            residuals[index] = (feature.circle.centre_m - placed) @ turn
+    return replace(fit, residuals_m=residuals)
