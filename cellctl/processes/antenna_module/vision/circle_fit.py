@@ -47,11 +47,12 @@ def fit_circle(
     """
     if len(edges.points_m) < _FEWEST:
         return None
-    centre, radius = np.array(start_m, dtype=float), radius_m
+    centre = np.array(start_m, dtype=float)
     scatter = 0.5 * px_m
     # From the middle of the edges opposite each other: a start that is off by some pixels would
     # have half of the rim taken for outliers.
     centre = centre + _opposite_middle(edges, centre)
+    radius = float(np.median(np.linalg.norm(edges.points_m - centre, axis=1)))
     normal = np.eye(3)
     weight = np.ones(len(edges.points_m))
     for _ in range(_ROUNDS):

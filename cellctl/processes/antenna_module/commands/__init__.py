@@ -1,0 +1,1 @@
+"""Offline commands of this process, found by the entry point ``cellctl.command``."""
