@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 
-_REACH = 0.35
-"""A spot counts for a contact within this share of the least distance of two contacts."""
 _PAIRS = 6
 _LENGTH_TOLERANCE = 0.04
 """Of the distance of two contacts: a wrong scale is judged later, and has to be found for that."""
@@ -35,18 +33,18 @@ class Placement:
         return int(np.count_nonzero(self.spot >= 0))
 
 
-def placements(drawing_m: Array, spots_m: Array, *, least: int) -> list[Placement]:
+def placements(drawing_m: Array, spots_m: Array, *, least: int, reach_m: float) -> list[Placement]:
     """Placements with at least ``least`` contacts on spots, best first, each another one.
 
-    ``drawing_m`` (n, 2) and ``spots_m`` (m, 2) in metres.
+    ``drawing_m`` (n, 2) and ``spots_m`` (m, 2) in metres. A spot counts for a contact within
+    ``reach_m`` of its place.
     """
-    reach = _REACH * _least_distance(drawing_m)
     found: list[Placement] = []
-    for yaw, shift in _starts(drawing_m, spots_m, reach):
-        placement = _settled(drawing_m, spots_m, yaw, shift, reach)
+    for yaw, shift in _starts(drawing_m, spots_m, reach_m):
+        placement = _settled(drawing_m, spots_m, yaw, shift, reach_m)
         if placement is None or placement.found < least:
             continue
-        if not any(_same(placement, other, drawing_m, reach) for other in found):
+        if not any(_same(placement, other, drawing_m, reach_m) for other in found):
             found.append(placement)
     return sorted(found, key=lambda item: (-item.found, item.misfit_m))
 
@@ -146,9 +144,3 @@ def _same(one: Placement, other: Placement, drawing: Array, reach: float) -> boo
     first = drawing @ rotation(one.yaw_rad).T + one.shift_m
     second = drawing @ rotation(other.yaw_rad).T + other.shift_m
     return bool(np.linalg.norm(first - second, axis=1).max() < 2.0 * reach)
-
-
-def _least_distance(points: Array) -> float:
-    apart = np.linalg.norm(points[:, None] - points[None], axis=2)
-    np.fill_diagonal(apart, np.inf)
-    return float(apart.min())

@@ -40,6 +40,10 @@ _LEAST_SHARE = 0.6
 _SCALE_LIMIT = 5.0
 _OTHER_SIZES = (2.0, 0.5)
 _SURPLUS = 2
+_CONTACT_REACH = 0.35
+"""Of the least distance of two contacts: bent ones count, the next one does not."""
+_MARK_REACH = 0.25
+"""Of a mark's diameter: marks do not bend."""
 _MARK_TRUE_POSITION_M = 5e-6
 
 
@@ -99,6 +103,7 @@ def contact_pattern(connector: Connector) -> Pattern:
         positions_m=connector.positions_m,
         diameter_m=connector.diameter_m,
         true_position_m=connector.true_position_m,
+        reach_m=_CONTACT_REACH * connector.least_spacing_m,
         bright=pins,
         chamfer_m=connector.rim_depth_m if pins else 0.0,
         length_m=connector.length_m,
@@ -132,11 +137,12 @@ def _measure_marks(
     image: Image, plane: MeasuringPlane, calibration: PlaneCalibration, marks: Marks
 ) -> MeasuredMarks:
     pattern = Pattern(
-        marks.names,
-        marks.positions_m,
-        marks.diameter_m,
-        _MARK_TRUE_POSITION_M,
-        marks.bright,
+        names=marks.names,
+        positions_m=marks.positions_m,
+        diameter_m=marks.diameter_m,
+        true_position_m=_MARK_TRUE_POSITION_M,
+        reach_m=_MARK_REACH * marks.diameter_m,
+        bright=marks.bright,
     )
     raised = plane.at_height(marks.height_m)
     # One mark may be dirty. Those that are left must still tell every way apart, which the choice

@@ -34,6 +34,8 @@ class Pattern:
     """Shape (n, 2), in the drawing."""
     diameter_m: float
     true_position_m: float
+    reach_m: float
+    """How far off its place a feature is still taken for this one."""
     bright: bool
     chamfer_m: float = 0.0
     """Of the tip of a pin: the flat is smaller than the rim by this, and as much nearer."""
@@ -88,8 +90,10 @@ def find_pattern(
     if len(spots.px) < least:
         return Candidates(spots, np.empty((0, 2)), (), ())
     spots_m = plane.from_px(spots.px)
-    found = placements(pattern.positions_m, spots_m, least=least)
-    mirrored = placements(pattern.positions_m * [-1.0, 1.0], spots_m, least=least)
+    found = placements(pattern.positions_m, spots_m, least=least, reach_m=pattern.reach_m)
+    mirrored = placements(
+        pattern.positions_m * [-1.0, 1.0], spots_m, least=least, reach_m=pattern.reach_m
+    )
     return Candidates(spots, spots_m, tuple(found), tuple(mirrored))
 
 
