@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado bench bench-metrology bench-looks bench-guard \
+.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado bench bench-metrology bench-looks bench-guard bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -64,6 +64,9 @@ bench-looks: venv
 
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard.latency
+
+bench-antenna-vision: venv
+	$(BIN)/python -m benchmarks.antenna.vision
 
 format: venv
 	$(BIN)/ruff check --fix .

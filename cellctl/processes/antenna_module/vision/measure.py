@@ -157,7 +157,8 @@ def _measure_marks(
         raise MarksMissing("too few marks are clean and in their places")
     circles = [feature.circle for feature in found.features if feature.circle is not None]
     px = raised.to_px(np.array([circle.centre_m for circle in circles]))
-    return MeasuredMarks(uncertain_pose(raised, calibration, found.fit), px)
+    radius_px = marks.diameter_m / 2.0 / raised.m_per_px(found.fit.shift_m)
+    return MeasuredMarks(uncertain_pose(raised, calibration, found.fit), px, radius_px)
 
 
 def _expectation(

@@ -32,6 +32,8 @@ class MeasuredMarks:
     camera_T_marks: UncertainPose
     px: Array
     """Shape (n, 2)."""
+    radius_px: float
+    """For the picture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -58,7 +58,7 @@ def _with_marks(image: Image, result: ConnectorMeasurement, height: int) -> NDAr
     whole = np.asarray(cv2.cvtColor(small, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
     if result.marks is not None:
         for px in result.marks.px:
-            _circle(whole, (px + 0.5) * scale - 0.5, max(8.0, 20.0 * scale), _MARK)
+            _circle(whole, (px + 0.5) * scale - 0.5, result.marks.radius_px * scale, _MARK)
     return whole
 
 

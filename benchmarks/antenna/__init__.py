@@ -1,0 +1,1 @@
+"""Figures of the antenna module process: vision, chain of transforms, insertion."""
