@@ -82,7 +82,7 @@ def fit_circle(
     return Circle(
         centre_m=centre,
         radius_m=radius,
-        covariance_m2=np.linalg.inv(normal)[:2, :2] * shared,
+        covariance_m2=np.asarray(np.linalg.inv(normal)[:2, :2] * shared, dtype=float),
         support=float(np.count_nonzero(near)) / DIRECTIONS,
         scatter_m=scatter,
         slope_grey=float(np.median(edges.slope_grey)),

@@ -122,7 +122,7 @@ def _settled(
 def _assign(placed: Array, spots: Array, reach: float) -> NDArray[np.intp]:
     """Nearest spot of every contact, each spot for one contact."""
     apart = np.linalg.norm(placed[:, None] - spots[None], axis=2)
-    spot = apart.argmin(axis=1)
+    spot: NDArray[np.intp] = np.asarray(apart.argmin(axis=1))
     nearest = apart[np.arange(len(placed)), spot]
     spot[nearest > reach] = -1
     for k in np.unique(spot[spot >= 0]):

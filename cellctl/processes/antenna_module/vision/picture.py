@@ -35,7 +35,7 @@ def picture_of(image: Image, result: ConnectorMeasurement) -> bytes:
     cut = image[low[1] : high[1], low[0] : high[0]]
     large = cv2.resize(cut, None, fx=_ENLARGED, fy=_ENLARGED, interpolation=cv2.INTER_NEAREST)
     # Contacts are often dark; what an engineer wants to see are their borders.
-    large = cv2.normalize(large, None, 0, 255, cv2.NORM_MINMAX)
+    large = cv2.normalize(large, np.empty_like(large), 0, 255, cv2.NORM_MINMAX)
     canvas = np.asarray(cv2.cvtColor(large, cv2.COLOR_GRAY2BGR), dtype=np.uint8)
     for contact in result.contacts:
         place = (contact.px - low + 0.5) * _ENLARGED - 0.5

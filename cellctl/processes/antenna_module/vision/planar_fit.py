@@ -54,7 +54,7 @@ def fit_planar(
     drawing_m: Array, points_m: Array, covariances_m2: Array, true_position_m: float
 ) -> PlanarFit | None:
     """Fit n points (NaN where not measured), covariances (n, 2, 2); None with fewer than three."""
-    used = np.isfinite(points_m).all(axis=1)
+    used: NDArray[np.bool_] = np.asarray(np.isfinite(points_m).all(axis=1))
     total = covariances_m2 + true_position_m**2 * np.eye(2)
     data = _Data(drawing_m, points_m, covariances_m2, total)
     while np.count_nonzero(used) >= _FEWEST:
@@ -85,7 +85,7 @@ def _huber(drawing: Array, points: Array, total: Array) -> tuple[float, Array, A
         normal = np.einsum("nij,nik->jk", design, weighted)
         step = np.linalg.solve(normal, np.einsum("nij,ni->j", weighted, rest))
         shift, yaw = shift + step[:2], yaw + float(step[2])
-    return yaw, shift, weights
+    return yaw, shift, np.asarray(weights, dtype=float)
 
 
 def _design(drawing: Array, yaw: float) -> Array:
