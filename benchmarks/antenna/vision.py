@@ -153,11 +153,16 @@ class Bench:
         *,
         share: float = 1.0,
         refusals: bool = False,
+        as_drawn: bool = True,
     ) -> None:
-        """B1 and B2: errors of place (µm) and yaw (degrees), 95 of 100 below their limits."""
+        """B1 and B2: errors of place (µm) and yaw (degrees), 95 of 100 below their limits.
+
+        ``as_drawn``: the contacts look as the drawing says, so that B6 counts these images.
+        """
         default, paper = self.run(conditions, share)
         measured = [item for item in default if not item.fault]
-        self.nees += [item.nees for item in measured]
+        if as_drawn:
+            self.nees += [item.nees for item in measured]
         place, yaw = quantiles(measured)
         sound = refusals or len(measured) == len(default)
         good = bool(measured) and sound and place <= limits[0] and yaw <= limits[1]
@@ -254,7 +259,7 @@ class Bench:
         mean = float(np.mean(self.nees)) / 3.0
         self.report.row(
             "B6",
-            "covariance, images of B1 and B2",
+            "covariance, pins as drawn of B1 and B2",
             len(self.nees),
             demanded="NEES/3 in 0.8–1.3",
             default=f"{mean:.2f}",
@@ -351,13 +356,13 @@ def main() -> int:
     """Print the table; 1 when a demand was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-n", type=int, default=40, help="images of a row")
-    parser.add_argument("--only", default="", help="rows of which the number begins with this")
+    parser.add_argument("--only", nargs="*", default=[], help="rows, as B1 B6")
     chosen = parser.parse_args()
     # Not forked: OpenCV's threads do not survive it.
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         bench = Bench(pool, chosen.n)
         for number, rows in _rows(bench).items():
-            if number.startswith(chosen.only):
+            if number in chosen.only or not chosen.only:
                 rows()
     Console(width=200).print(bench.report.table)
     return 1 if bench.report.missed else 0
@@ -382,8 +387,12 @@ def clean_rows(bench: Bench) -> None:
     bench.accuracy("B1", "micro-D pins, bright walls", replace(CLEAN, wall_light=0.5), bright)
     bench.accuracy("B1", "D-sub pins", replace(CLEAN, name="d-sub-15"), fine, share=0.5)
     bench.accuracy("B1", "micro-D, raw mosaic", replace(CLEAN, pixels="bayer"), fine, share=0.5)
-    bench.accuracy("B1", "micro-D, domed tips", replace(CLEAN, tip="dome"), fine, share=0.5)
-    bench.accuracy("B1", "micro-D holes", replace(CLEAN, kind="holes"), fine, share=0.5)
+    bench.accuracy(
+        "B1", "micro-D, domed tips", replace(CLEAN, tip="dome"), fine, share=0.5, as_drawn=False
+    )
+    bench.accuracy(
+        "B1", "micro-D holes", replace(CLEAN, kind="holes"), fine, share=0.5, as_drawn=False
+    )
 
 
 if __name__ == "__main__":

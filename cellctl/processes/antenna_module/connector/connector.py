@@ -1,8 +1,8 @@
 """The drawing of a connector: where its contacts are, and how it wants to be plugged.
 
 Frame of the drawing: z points out of the mating face, towards whoever looks at it; x along the
-rows, y towards the longer row. Its height is that of the tips of pins, or of the face with the
-holes, so that both frames have the same height when tips touch the face.
+rows, y towards the longer row. Its height is that of the shoulders of the pins, where their full
+section begins, or of the face with the holes.
 """
 
 from dataclasses import dataclass
@@ -44,8 +44,10 @@ class Connector:
     length_m: float
     """What stands out of the insulator; depth of a hole."""
     rim_depth_m: float
-    """How far below z = 0 the rim lies that an image shows: the shoulder of a chamfered pin, the
-    end of a funnel. Seen off the camera's axis a deeper rim appears nearer to the axis."""
+    """How far below z = 0 the rim lies that an image shows, as the end of a funnel. Seen off the
+    camera's axis a deeper rim appears nearer to the axis."""
+    chamfer_m: float
+    """Of the tip of a pin, at 45°: the flat stands out over the rim by this; 0 for holes."""
     true_position_m: float
     """Standard deviation per axis of a good contact's place."""
     symmetric: bool
@@ -82,6 +84,7 @@ class ConnectorTable(Table):
     diameter_mm: PositiveMm
     length_mm: PositiveMm
     rim_depth_mm: Annotated[float, Field(ge=0, le=10)] = 0.0
+    chamfer_mm: Annotated[float, Field(ge=0, le=10)] = 0.0
     true_position_mm: Annotated[float, Field(gt=0, le=1)]
     symmetric: bool = False
     capture_mm: PositiveMm
@@ -124,6 +127,10 @@ class ConnectorTable(Table):
             raise ValueError("funnel_mm must not exceed spring_depth_mm")
         if self.kind == "pins" and self.seat_depth_mm > self.length_mm:
             raise ValueError("seat_depth_mm is longer than the pins, length_mm")
+        if self.kind == "holes" and self.chamfer_mm > 0:
+            raise ValueError("chamfer_mm belongs to pins")
+        if self.chamfer_mm >= self.diameter_mm / 2:
+            raise ValueError("chamfer_mm leaves nothing of the tip")
         if self.true_position_mm >= self.capture_mm:
             raise ValueError("true_position_mm must be less than capture_mm")
         return self
@@ -171,6 +178,7 @@ def parse_connector(content: bytes, name: str) -> Connector:
         diameter_m=table.diameter_mm * MM,
         length_m=table.length_mm * MM,
         rim_depth_m=table.rim_depth_mm * MM,
+        chamfer_m=table.chamfer_mm * MM,
         true_position_m=table.true_position_mm * MM,
         symmetric=table.symmetric,
         capture_m=table.capture_mm * MM,

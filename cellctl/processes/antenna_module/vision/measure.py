@@ -105,8 +105,8 @@ def contact_pattern(connector: Connector) -> Pattern:
         true_position_m=connector.true_position_m,
         reach_m=_CONTACT_REACH * connector.least_spacing_m,
         bright=pins,
-        chamfer_m=connector.rim_depth_m if pins else 0.0,
-        length_m=connector.length_m,
+        chamfer_m=connector.chamfer_m,
+        length_m=connector.length_m - connector.rim_depth_m,
     )
 
 
@@ -148,7 +148,7 @@ def _measure_marks(
     # One mark may be dirty. Those that are left must still tell every way apart, which the choice
     # among the placements shows.
     least = max(len(marks.names) - 1, 3)
-    candidates = find_pattern(image, raised, pattern, least=least)
+    candidates = find_pattern(image, raised, pattern, least=least, chiral=True)
     if not candidates.placements and not candidates.mirrored:
         raise MarksMissing(f"{len(candidates.spots.px)} spots, {least} marks needed")
     placement = choose(candidates, None, chiral=True)

@@ -20,6 +20,9 @@ _PRIOR = 0.10
 """Standard deviation of the drawing's radius, of itself: light and blur move all edges."""
 _ALIKE = 0.04
 """The same of the radius that most contacts of this image have: they are made and lit alike."""
+_COMMON_PX = 0.007
+"""Standard deviation of what light and walls move all features of an image together, per axis: with
+noise averaged away, this is left on rendered pins."""
 _SUPPORT = 0.6
 _STRENGTH = 0.35
 """An edge weaker than this share of the others is not that of a clean contact."""
@@ -80,9 +83,17 @@ class PatternFit:
 
 
 def find_pattern(
-    image: Image, plane: MeasuringPlane, pattern: Pattern, *, least: int
+    image: Image,
+    plane: MeasuringPlane,
+    pattern: Pattern,
+    *,
+    least: int,
+    chiral: bool = False,
 ) -> Candidates:
-    """Spots and placements; ``least`` features must be on spots for a placement to count."""
+    """Spots and placements; ``least`` features must be on spots for a placement to count.
+
+    ``chiral``: the pattern differs from its mirror image, which is then looked for as well.
+    """
     height, width = image.shape
     middle = plane.from_px(np.array([[width / 2.0, height / 2.0]]))[0]
     radius_px = pattern.diameter_m / 2.0 / plane.m_per_px(middle)
@@ -91,6 +102,8 @@ def find_pattern(
         return Candidates(spots, np.empty((0, 2)), (), ())
     spots_m = plane.from_px(spots.px)
     found = placements(pattern.positions_m, spots_m, least=least, reach_m=pattern.reach_m)
+    if not chiral:
+        return Candidates(spots, spots_m, tuple(found), ())
     mirrored = placements(
         pattern.positions_m * [-1.0, 1.0], spots_m, least=least, reach_m=pattern.reach_m
     )

@@ -70,7 +70,7 @@ def fit_tip(
         start,
         px_m=px_m,
         flat_radius=flat_radius,
-        heights_m=(depth_m, depth_m - length_m),
+        heights_m=(depth_m, -length_m),
     )
     if pixels is None:
         return None

@@ -82,6 +82,7 @@ WRONG = {
     "springs": ("spring_depth_mm = 0.5", "spring_depth_mm = 2.5", "less than seat_depth_mm"),
     "funnel": ("funnel_mm = 0.25", "funnel_mm = 0.6", "funnel_mm"),
     "seat": ("seat_depth_mm = 2.5", "seat_depth_mm = 3.5", "longer than the pins"),
+    "chamfer": ("chamfer_mm = 0.1", "chamfer_mm = 0.25", "leaves nothing of the tip"),
     "true position": ("true_position_mm = 0.010", "true_position_mm = 0.3", "true_position_mm"),
     "symmetry": ("symmetric = false", "symmetric = true", "after half a turn a contact is"),
     "two numbers": ("[-3.175, 0.545]", "[-3.175]", "position_mm"),

@@ -27,7 +27,7 @@ SHIFT = np.array([0.4e-3, -0.3e-3])
 def seen(drawing: Array, yaw_deg: float) -> Array:
     rng = np.random.default_rng(4)
     noise = rng.normal(0.0, 10e-6, drawing.shape)
-    return drawing @ rotation(float(np.radians(yaw_deg))).T + SHIFT + noise
+    return np.asarray(drawing @ rotation(float(np.radians(yaw_deg))).T + SHIFT + noise)
 
 
 def candidates(drawing: Array, spots: Array) -> Candidates:
