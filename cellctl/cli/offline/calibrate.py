@@ -18,6 +18,7 @@ from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charu
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.input_file import read_input
+from cellctl.calibration.output_file import write_file
 from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
 from cellctl.calibration.solvers.base_frame.base_frame_input import BaseFrameFile
 from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
@@ -35,7 +36,6 @@ from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.invalidate import invalidate
 from cellctl.cli.offline.measure import read_image
-from cellctl.cli.output import write_file
 from cellctl.cli.seal_calibrations import seal
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.output import write_file
+from cellctl.calibration.output_file import write_file
 from cellctl.errors.force import PayloadFileInvalid
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import parse_pose_file

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import typer
 
-from cellctl.cli.output import write_file
+from cellctl.calibration.output_file import write_file
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.vision import (
     HoleAmbiguous,

@@ -15,7 +15,7 @@ _BENT_M = 0.02e-3
 """A tip that is off by more than this is called bent: more than any true position."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ContactTruth:
     """One pin (where its full section begins) or one hole (its middle at the face)."""
 
@@ -28,7 +28,7 @@ class ContactTruth:
     """Its centre, projected, shape (2,); pixel centres lie at integers."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MarkTruth:
     """One mark of the gripper."""
 

@@ -6,8 +6,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.help_groups import OFFLINE
-from cellctl.cli.output import write_file
+from cellctl.calibration.output_file import write_file
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.connector import (
     ConnectorAmbiguous,
@@ -39,13 +38,15 @@ from cellctl.processes.antenna_module.vision.plane import read_plane
 from cellctl.processes.antenna_module.vision.result_file import result_to_json
 from cellctl.vision.camera.single_camera import read_single_camera
 
+_PANEL = "From files, without a cell"
+"""Of the help, where the core's commands of this sort stand, too."""
 EXIT_REFUSED = 1
 EXIT_NOT_SOUND = 3
 
 
 def add(app: typer.Typer) -> None:
     """Add the command to a command line."""
-    app.command("measure-connector", rich_help_panel=OFFLINE)(measure)
+    app.command("measure-connector", rich_help_panel=_PANEL)(measure)
 
 
 def measure(  # noqa: PLR0917 - the options of the command
