@@ -29,7 +29,7 @@ class ConnectorFileInvalid(ConnectorError):
     number = 460
     text = "Connector file cannot be used"
     cause = "The file is missing, not TOML, incomplete, or contradicts itself."
-    remedy = "Correct the file at the place named in the detail."
+    remedy = "Correct the connector file at the place named in the detail."
 
 
 class MarksFileInvalid(ConnectorError):
@@ -38,7 +38,7 @@ class MarksFileInvalid(ConnectorError):
     number = 461
     text = "File of gripper marks cannot be used"
     cause = "The file is missing, not TOML, incomplete, or the marks look alike when turned."
-    remedy = "Correct the file at the place named in the detail."
+    remedy = "Correct the file of marks at the place named in the detail."
 
 
 class PlaneFileInvalid(ConnectorError):
@@ -142,7 +142,7 @@ class ContactMissing(ConnectorError):
     number = 472
     text = "A contact is missing"
     cause = "Pin broken off or not assembled, or hole blocked."
-    remedy = "Look at the picture; put the module into quarantine."
+    remedy = "Look at the picture: broken off or covered? Put the module into quarantine."
 
 
 class ContactBent(ConnectorError):
