@@ -1,0 +1,52 @@
+"""Settings of the process for all of its recipes: ``[processes.antenna-module]``."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from cellctl.config.base import Section
+
+_Small = Annotated[float, Field(ge=0, le=10)]
+RP_OVER_SIGMA = 3.616
+"""RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes
+so many times the standard deviation of one axis."""
+
+
+class ArmSection(Section):
+    """How well the robot repeats and reaches poses, from its data sheet or measured."""
+
+    rp_mm: _Small
+    """RP of ISO 9283."""
+    rp_deg: _Small
+    """Standard deviation of the flange's angles from approach to approach."""
+    absolute_error_mm: _Small
+    """Mean distance between commanded and reached positions."""
+    drift_mm: _Small
+    """What warming moves one place against another since the calibration, per axis."""
+
+
+class CamerasSection(Section):
+    """What stays wrong in every look."""
+
+    feature_bias_mm: _Small = 0.005
+    """Light and chamfers move all contacts of a kind by this, per axis, always alike."""
+    drift_mm: _Small = 0.004
+    drift_deg: _Small = 0.001
+
+
+class AntennaSettings(Section):
+    """Figures of the cell, and settings of the calibration procedures."""
+
+    arm: ArmSection
+    cameras: CamerasSection = CamerasSection()
+    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "9x6"
+    """Inner corners of the calibration chessboard, columns x rows."""
+    square_mm: Annotated[float, Field(gt=0, le=100)] = 4.0
+    views: Annotated[int, Field(ge=15, le=100)] = 36
+    """Poses round the board for intrinsics and hand-eye."""
+    tilt_deg: Annotated[float, Field(ge=5, le=30)] = 20.0
+    turn_deg: Annotated[float, Field(ge=10, le=60)] = 40.0
+    depth_mm: Annotated[float, Field(ge=5, le=60)] = 20.0
+    taught_plugs: Annotated[int, Field(ge=4, le=50)] = 8
+    """Plugs of one teaching."""
+    validity_days: Annotated[int, Field(ge=1, le=3650)] = 30
