@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_port import GuardPort
 from cellctl.cell.guarded_moves import Motion, guarded
 from cellctl.errors.force import SensorFrozen, SensorSilent
@@ -20,7 +21,6 @@ from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
 from cellctl.processes.deck_to_frame.mating.limits import fault_of
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
-from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from cellctl.processes.deck_to_frame.mating.result import (
     GivingWay,
     MatingPhase,
@@ -41,7 +41,7 @@ class Attempt:
     robot: Robot
     guard: GuardPort
     plan: MatingPlan
-    recorder: Recorder
+    recorder: ContactRecorder
     report: Report
     offset: LateralOffset = NO_OFFSET
     """How far the deck has given way to pins."""

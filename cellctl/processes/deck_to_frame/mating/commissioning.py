@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.force import CommissioningFailed, FalseSeat
 from cellctl.force.contact.commissioning import StiffnessEstimate, joint_stiffness
@@ -10,7 +11,6 @@ from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report
 from cellctl.processes.deck_to_frame.mating.back_off import return_to_stand_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
-from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult
 
 
@@ -41,7 +41,7 @@ async def measure_contact_stiffness(
         if result.outcome is not MatingOutcome.SEATED:
             gap_mm = result.verdict.gap_m * 1e3
             raise FalseSeat(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)
-        async with Recorder(robot, guard, plan) as recorder:
+        async with ContactRecorder(robot, guard, plan.travel_of) as recorder:
             await return_to_stand_off(Attempt(robot, guard, plan, recorder, report))
         if result.stiffness is None:
             raise CommissioningFailed("a contact gave too few readings for a stiffness")

@@ -3,6 +3,7 @@
 from collections.abc import Awaitable, Callable
 
 from cellctl import log
+from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.base import CellError
 from cellctl.errors.force import FalseSeat
@@ -20,7 +21,6 @@ from cellctl.processes.deck_to_frame.mating.phases import (
     travel_to_touch,
 )
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
-from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from cellctl.processes.deck_to_frame.mating.result import (
     MatingOutcome,
     MatingPhase,
@@ -53,7 +53,7 @@ async def mate(
     # Before the recorder and outside of ``try``: an arm that stands elsewhere has no contact from
     # which it could retreat.
     require_stand_off(robot, plan)
-    async with Recorder(robot, guard, plan) as recorder:
+    async with ContactRecorder(robot, guard, plan.travel_of) as recorder:
         attempt = Attempt(robot, guard, plan, recorder, report)
         try:
             return await (interruption or Interruption()).unless(_run(attempt))
@@ -140,7 +140,7 @@ async def _leave(
     return readings
 
 
-def _ended(recorder: Recorder) -> MatingProgress:
+def _ended(recorder: ContactRecorder) -> MatingProgress:
     curve = recorder.curve()
     travel_m = float(curve.travel_m[-1]) if len(curve.travel_m) else float("nan")
     force_n = float(curve.wrench[-1, 2]) if len(curve.wrench) else float("nan")

@@ -8,13 +8,13 @@ import pytest
 from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.simulated_loop import run_simulated
 from benchmarks.mating.trial import nominal_settings, plan_for
+from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
 from cellctl.processes.deck_to_frame.mating.phases import settle_and_tare
-from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from tests.unit.processes.deck_to_frame.test_guarded_moves import cell_of
 
 LATENCY_S = 0.25
@@ -52,7 +52,7 @@ class Scene:
 
     async def _run(self, leave: Leave) -> None:
         world, plan = self.world, self.plan
-        async with Recorder(world.robot, world.guard, plan) as recorder:
+        async with ContactRecorder(world.robot, world.guard, plan.travel_of) as recorder:
             attempt = Attempt(world.robot, world.guard, plan, recorder, lambda _: None)
             await settle_and_tare(attempt)
             travel_m = plan.window.expected_m - 1e-4

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
     ContactEarly,
@@ -30,7 +31,6 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
-from cellctl.processes.deck_to_frame.mating.recorder import Recorder
 from cellctl.processes.deck_to_frame.mating.retreat import retreat
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
@@ -59,7 +59,7 @@ class Scene:
         self.guard = self.robot.watched_by = Guard()
         recorder = SimpleNamespace(curve=curve, travel_at=lambda _: TRAVEL_M)
         self.attempt = Attempt(
-            self.robot, self.guard, self.plan, cast(Recorder, recorder), lambda _: None
+            self.robot, self.guard, self.plan, cast(ContactRecorder, recorder), lambda _: None
         )
 
     async def after(self, fault: CellError) -> CellError:
@@ -142,7 +142,7 @@ async def test_nothing_that_can_fail_stands_before_the_stop() -> None:
     def no_memory() -> ForceCurve:
         raise MemoryError
 
-    scene.attempt.recorder = cast(Recorder, SimpleNamespace(curve=no_memory))
+    scene.attempt.recorder = cast(ContactRecorder, SimpleNamespace(curve=no_memory))
     with pytest.raises(MemoryError):
         await retreat(scene.attempt, MatingOverforce("Fz 46 N"))
     assert scene.robot.stops == 1

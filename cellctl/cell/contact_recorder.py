@@ -1,27 +1,31 @@
-"""Records force and travel while a mating runs."""
+"""Records wrench and travel while a robot works in contact."""
 
 import asyncio
+from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.base import CellError
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot
-from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 
 PERIOD_S = 0.02
 """The robot reports every 20 ms; the guard's memory reaches back much further than this."""
 
 
-class Recorder:
-    """Collects samples and poses in the background of an attempt, as an async context."""
+class ContactRecorder:
+    """Collects samples and poses in the background, as an async context."""
 
-    def __init__(self, robot: Robot, guard: GuardPort, plan: MatingPlan) -> None:
-        self._robot, self._guard, self._plan = robot, guard, plan
+    def __init__(
+        self, robot: Robot, guard: GuardPort, travel_of: Callable[[RigidTransform], float]
+    ) -> None:
+        """``travel_of``: travel in m along the approach of a ``base_T_flange``."""
+        self._robot, self._guard, self._travel_of = robot, guard, travel_of
         self._times: list[float] = []
         self._travels: list[float] = []
         self._chunks: list[tuple[Array, Array]] = []
@@ -31,7 +35,7 @@ class Recorder:
     async def __aenter__(self) -> Self:
         self._since_s = asyncio.get_running_loop().time()
         self._take_travel()
-        self._task = asyncio.create_task(self._run(), name="mating-recorder")
+        self._task = asyncio.create_task(self._run(), name="contact-recorder")
         return self
 
     async def __aexit__(
@@ -76,7 +80,7 @@ class Recorder:
         # ``interp`` needs rising times, and a report that was read twice says nothing new.
         if not self._times or state.time_s > self._times[-1]:
             self._times.append(state.time_s)
-            self._travels.append(self._plan.travel_of(state.base_T_flange))
+            self._travels.append(self._travel_of(state.base_T_flange))
 
     def _take_samples(self) -> None:
         try:
