@@ -7,9 +7,6 @@ from pydantic import Field
 from cellctl.config.base import Section
 
 _Small = Annotated[float, Field(ge=0, le=10)]
-RP_OVER_SIGMA = 3.616
-"""RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes
-so many times the standard deviation of one axis."""
 
 
 class ArmSection(Section):

@@ -8,6 +8,10 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
 
+RP_OVER_SIGMA = 3.616
+"""RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes
+so many times the standard deviation of one axis."""
+
 
 def isotropic(position_m: float, rotation_rad: float) -> Array:
     """Covariance with one standard deviation for positions, one for rotations; shape (6, 6)."""

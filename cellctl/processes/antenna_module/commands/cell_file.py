@@ -14,6 +14,7 @@ from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import (
+    RP_OVER_SIGMA,
     ArmFigures,
     CameraFigures,
     MountedCamera,
@@ -21,9 +22,6 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
 )
 from cellctl.processes.antenna_module.commands.measurement_file import Identity
 
-RP_OVER_SIGMA = 3.616
-"""RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes
-so many times the standard deviation of one axis."""
 
 
 def _joints_rad(values: Any) -> Array:

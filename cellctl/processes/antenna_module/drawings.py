@@ -1,0 +1,35 @@
+"""The drawings that a recipe names."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from cellctl.errors.connector import ConnectorFileInvalid
+from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
+from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drawings:
+    """Both connectors, the gripper's marks and the top of the module."""
+
+    plug: Connector
+    socket: Connector
+    gripper: Marks
+    top: Marks
+
+
+def read_drawings(recipe: AntennaRecipe, folder: Path) -> Drawings:
+    """Read the files of a recipe beside the cell file.
+
+    Raises ``ConnectorFileInvalid`` or ``MarksFileInvalid``, also when plug and socket are exchanged
+    or do not fit each other.
+    """
+    plug, socket = read_connector(folder / recipe.plug), read_connector(folder / recipe.socket)
+    for connector, kind, key in ((plug, "pins", "plug"), (socket, "holes", "socket")):
+        if connector.kind != kind:
+            raise ConnectorFileInvalid(f"{key}: {connector.name} has {connector.kind}, not {kind}")
+    if set(plug.contacts) != set(socket.contacts):
+        raise ConnectorFileInvalid(f"contacts of {plug.name} and {socket.name} are not the same")
+    gripper = read_marks(folder / recipe.gripper_marks)
+    return Drawings(plug, socket, gripper, read_marks(folder / recipe.module_top))

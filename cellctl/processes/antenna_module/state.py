@@ -1,0 +1,72 @@
+"""What the steps of one plugging hand to each other: each state has what the next step needs."""
+
+from dataclasses import dataclass
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.processes.antenna_module.chain.looks import Looks, PlugLook
+from cellctl.processes.antenna_module.chain.plan import PlugPlan
+from cellctl.processes.antenna_module.insertion.verdict import InsertionJudgement
+from cellctl.processes.antenna_module.run import PluggingRun
+
+
+@dataclass(frozen=True, slots=True)
+class Ready:
+    """Gripper open and empty, arm at home; nothing is measured yet."""
+
+    run: PluggingRun
+
+
+@dataclass(frozen=True, slots=True)
+class ModuleFound(Ready):
+    """Camera I has seen the module on its tray."""
+
+    base_T_connector: RigidTransform
+    """Where its plug is, as far as the top shows it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Picked(Ready):
+    """The module hangs in the gripper, clear of the tray."""
+
+    module_kg: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlugInspected(Picked):
+    """Camera II has seen plug and marks in one picture."""
+
+    plug: PlugLook
+    flange_T_connector: RigidTransform
+    """The plug in the gripper by its drawing's frame, for ways and wrenches."""
+
+
+@dataclass(frozen=True, slots=True)
+class SocketLocated(PlugInspected):
+    """Camera I has seen the socket."""
+
+    looks: Looks
+
+
+@dataclass(frozen=True, slots=True)
+class Planned(SocketLocated):
+    """Where the flange has to go."""
+
+    plan: PlugPlan
+
+
+@dataclass(frozen=True, slots=True)
+class AtStandOff(Planned):
+    """The tips stand over the socket's face; the force counts from here."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inserted(AtStandOff):
+    """The plug sits in its socket, held by the gripper."""
+
+    judgement: InsertionJudgement
+
+
+@dataclass(frozen=True, slots=True)
+class Verified(Inserted):
+    """The module was pulled, let go and seen in its place."""
