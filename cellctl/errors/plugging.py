@@ -2,9 +2,12 @@
 
 PluggingError
 ├── StaleLook, PlugUncertain, OutOfTaughtRange, CalibrationsDoNotBelongTogether,
-│   WristConfigurationsDiffer, LooksIncomplete, SocketImplausible        560–566  the plan
-└── PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce,
-    PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
+│   WristConfigurationsDiffer, LooksIncomplete, SocketImplausible,
+│   LooksDisagree, PlanFarFromDrawing                                    560–568  the plan
+├── PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce,
+│   PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
+├── ModuleMissing, ModuleMisplaced, WrongModuleMass, ModuleInGripper     580–583  the module
+└── PlugNotHeld, MovedOnRelease                                          584–585  after the seat
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -85,6 +88,24 @@ class SocketImplausible(PluggingError):
     remedy = "Check that the panel is fixed; look again."
 
 
+class LooksDisagree(PluggingError):
+    """Images of a scene that should stand still differ by more than their noise."""
+
+    number = 567
+    text = "Images of one look contradict each other"
+    cause = "The arm, the panel or the camera swung or was touched while the images were taken."
+    remedy = "Find what moves: hoses, fixture, floor; then start again."
+
+
+class PlanFarFromDrawing(PluggingError):
+    """The planned pose of the flange is not near where the drawing has it."""
+
+    number = 568
+    text = "Planned pose is far from the drawing"
+    cause = "A taught correction of another cell, a wrong drawing, or a wrong place in the recipe."
+    remedy = "Compare the poses in the detail with the recipe; teach the plug again."
+
+
 class PlugEarlyContact(PluggingError):
     """Axial force before the contact springs begin."""
 
@@ -137,3 +158,57 @@ class InsertionCurveInvalid(PluggingError):
     text = "Insertion curve cannot be judged"
     cause = "Missing columns, text where numbers belong, time that runs back, or too few samples."
     remedy = "See the line in the detail; the columns are in docs/plugging.md."
+
+
+class ModuleMissing(PluggingError):
+    """Camera I does not see the top of a module on its tray."""
+
+    number = 580
+    text = "No module on the tray"
+    cause = "Tray empty or not in its place, module upside down, or lamp off."
+    remedy = "Lay a module onto the tray, its plug down; look at the picture."
+
+
+class ModuleMisplaced(PluggingError):
+    """A module lies on its tray, but not as it should."""
+
+    number = 581
+    text = "Module lies wrong on its tray"
+    cause = "Turned, mirrored, which is another type, or out of its pocket."
+    remedy = "Lay the module into its pocket as the drawing shows; check its type."
+
+
+class WrongModuleMass(PluggingError):
+    """What the gripper lifted weighs something else than the module."""
+
+    number = 582
+    text = "The gripped module has the wrong mass"
+    cause = "Another type, a module that caught on its tray, or one that hangs on something."
+    remedy = "Take the module out of the gripper by hand, weigh it, check its type."
+
+
+class ModuleInGripper(PluggingError):
+    """Something is between the jaws where they should be empty."""
+
+    number = 583
+    text = "There is a module in the gripper"
+    cause = "A run ended with the module held: after a fault, a stop or a restart."
+    remedy = "Take it out by hand and put it into quarantine, then Reset. Nothing resumes with it."
+
+
+class PlugNotHeld(PluggingError):
+    """The plug followed the pull before it resisted."""
+
+    number = 584
+    text = "Plug is not held by its socket"
+    cause = "Not seated, contacts without spring force, or a latch that did not catch."
+    remedy = "Put the module into quarantine; inspect contacts and socket."
+
+
+class MovedOnRelease(PluggingError):
+    """The module is not where it was when the gripper held it."""
+
+    number = 585
+    text = "Module moved when it was released"
+    cause = "Strain between gripper and socket, a finger that clings, or a plug that came out."
+    remedy = "Put the module into quarantine; check the jaws; teach the plug again."

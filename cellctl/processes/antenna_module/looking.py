@@ -1,0 +1,126 @@
+"""Takes and measures pictures: several of a scene that stands still, combined to one look."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, Protocol, TypeVar
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.solvers.pose_average import average
+from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.settling import settle
+from cellctl.cell.standstill import require_unmoved
+from cellctl.clock import now_s
+from cellctl.errors.plugging import LooksDisagree
+from cellctl.geometry.pose import MM, Array, pose_error, pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import Camera
+from cellctl.interfaces.camera import CameraImage, PixelFormat
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.recipe import Place
+from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.vision.camera.single_camera import SingleCamera
+from cellctl.workers import VisionWorkers
+
+_MOST_APART_M = 10e-6
+"""Frames of a scene that stands still differ by the noise of the image, a micrometre."""
+_GREEN = 1
+
+
+class Measured(Protocol):
+    """What a worker has found in one image."""
+
+
+M = TypeVar("M", bound=Measured)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seen(Generic[M]):
+    """Everything that was measured from one place of the arm."""
+
+    frames: tuple[M, ...]
+    """One an image."""
+    images: tuple[Image, ...]
+    """The measured channel of each, shape (rows, columns)."""
+    base_T_flange: RigidTransform
+    """As the arm reported it while the images were taken."""
+    joints_rad: Array
+    time_s: float
+    """Of the last image."""
+
+
+@dataclass(frozen=True, slots=True)
+class Eyes:
+    """The cameras of one run, with the arm that must stand still and the record."""
+
+    arm: GuardedRobot
+    workers: VisionWorkers
+    recorder: RunRecorder
+    frames: int
+
+    async def look(
+        self, name: str, camera: Camera, measure: Callable[[Image], M]
+    ) -> Seen[M]:
+        """Settle, take the images, measure each in a worker; ``name`` is that of the raw images.
+
+        Raises what ``measure`` raises, ``NotSettled``, ``HeadMoved`` when the arm moved meanwhile.
+        """
+        await settle(self.arm.guard)
+        state = self.arm.robot.state()
+        images, found = [], []
+        for number in range(1, self.frames + 1):
+            image = measured_channel(await camera.grab())
+            self.recorder.raw_image(f"raw/{name}-frame-{number}.pgm.zst", image)
+            images.append(image)
+            found.append(await self.workers.run(measure, image))
+        require_unmoved("the arm", self.arm.robot, state.base_T_flange)
+        return Seen(
+            tuple(found), tuple(images), state.base_T_flange, state.joints_rad, now_s()
+        )
+
+
+def measured_channel(image: CameraImage) -> Image:
+    """The one plane of grey values that is measured: green of a colour image (``vision.pixels``).
+
+    Raises ``ValueError`` for a format that nobody measures.
+    """
+    if image.pixel_format is PixelFormat.RGB8:
+        return np.ascontiguousarray(image.pixels[:, :, _GREEN], dtype=np.uint8)
+    if image.pixel_format is PixelFormat.MONO8:
+        return np.asarray(image.pixels, dtype=np.uint8)
+    raise ValueError(f"cannot measure {image.pixel_format.value}")
+
+
+def combined(poses: tuple[UncertainPose, ...]) -> UncertainPose:
+    """The mean of one pose as the frames show it, as uncertain as a single one.
+
+    What limits a frame is not its noise but the drawing, the light and the plane, which are the
+    same in all of them. Raises ``LooksDisagree`` when one is off the mean: something moved.
+    """
+    mean, _ = average(poses)
+    apart_m = max(float(np.linalg.norm(pose_error(mean.pose, one.pose)[0])) for one in poses)
+    if apart_m > _MOST_APART_M:
+        raise LooksDisagree(f"{len(poses)} images, one is {apart_m * 1e6:.1f} µm off their mean")
+    return UncertainPose(mean.pose, poses[0].covariance)
+
+
+def plane_by(
+    camera: SingleCamera, camera_T_connector: RigidTransform, place: Place
+) -> PlaneCalibration:
+    """The plane of a connector that lies as ``camera_T_connector`` says, z towards the camera."""
+    return PlaneCalibration(
+        camera_id=camera.id,
+        camera_T_plane=camera_T_connector,
+        sigma_height_m=place.height_sigma_mm * MM,
+        sigma_tilt_rad=float(np.radians(place.tilt_sigma_deg)),
+        expected=ExpectedPlace(
+            camera_T_connector, place.within_mm * MM, float(np.radians(place.within_deg))
+        ),
+    )
+
+
+def nominal(place: Place) -> RigidTransform:
+    """The pose of a place by the drawing."""
+    return pose_from_xyzabc(place.pose)

@@ -1,0 +1,74 @@
+"""Moves of the arm through free air, all of them under the force guard."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.free_moves import move_joint_free
+from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.geometry.pose import MM
+from cellctl.processes.antenna_module.stations import AntennaCell
+
+FREE = WrenchTolerance(force_n=15.0, moment_n_m=4.0)
+"""What gripper and module make of speeding up and slowing down, twice 1.5 kg at 0.4 m/s², and a few
+newtons of hoses on a lever of 0.25 m."""
+NEAR = WrenchTolerance(force_n=5.0, moment_n_m=1.5)
+"""Slowly beside something that may be touched."""
+SLOW_M_S = 0.02
+SLOW_M_S2 = 0.05
+
+
+@dataclass(frozen=True, slots=True)
+class Mover:
+    """The arm of one cell."""
+
+    cell: AntennaCell
+
+    async def to_taught(self, pose: str) -> None:
+        """A joint move to a taught pose."""
+        arm = self.cell.arm
+        # The weight is not identified: what the arm's tilt makes of it is part of the tolerance.
+        await arm.guard.set_gravity_compensation(GravityCompensation.none())
+        joints_rad = np.radians(arm.config.poses_deg[pose])
+        await move_joint_free(self.cell.cell, arm, joints_rad)
+
+    async def to(self, base_T_flange: RigidTransform) -> None:
+        """A straight move at the taught speed."""
+        config = self.cell.arm.config
+        speed_m_s, acceleration_m_s2 = (
+            config.linear_speed_mm_s * MM,
+            config.linear_acceleration_mm_s2 * MM,
+        )
+        await self._straight(base_T_flange, speed_m_s, acceleration_m_s2, FREE)
+
+    async def slowly_to(self, base_T_flange: RigidTransform) -> None:
+        """A straight move beside something that may be touched."""
+        await self._straight(base_T_flange, SLOW_M_S, SLOW_M_S2, NEAR)
+
+    async def _straight(
+        self,
+        base_T_flange: RigidTransform,
+        speed_m_s: float,
+        acceleration_m_s2: float,
+        tolerance: WrenchTolerance,
+    ) -> None:
+        arm = self.cell.arm
+        frame = RigidTransform.identity()
+        async with guarded_moves(self.cell.cell, arm, frame, tolerance) as move:
+            await move(
+                arm.robot.move_linear(
+                    base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
+                )
+            )
+
+
+def raised(base_T_flange: RigidTransform, height_m: float) -> RigidTransform:
+    """The same flange, higher along z of the base."""
+    return RigidTransform.from_translation([0.0, 0.0, height_m]) * base_T_flange
+
+
+def shifted(base_T_flange: RigidTransform, x_m: float, y_m: float) -> RigidTransform:
+    """The same flange, shifted along x and y of the base."""
+    return RigidTransform.from_translation([x_m, y_m, 0.0]) * base_T_flange

@@ -1,0 +1,62 @@
+"""What every step of one plugging works with: devices, facts, looking, moving, recording."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from cellctl.processes.antenna_module.drawings import Drawings
+from cellctl.processes.antenna_module.facts import RunFacts
+from cellctl.processes.antenna_module.looking import Eyes
+from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.runtime.interruption import Interruption
+from cellctl.runtime.process import CellServices, RunContext
+from cellctl.runtime.progress import ProgressBoard
+from cellctl.runtime.steps import SafePoint
+
+
+@dataclass(frozen=True, slots=True)
+class PluggingRun:
+    """One open run, however often its steps begin anew after a Hold."""
+
+    facts: RunFacts
+    board: ProgressBoard
+    recorder: RunRecorder
+    safe_point: SafePoint
+    interruption: Interruption
+    eyes: Eyes
+    mover: Mover
+
+    @classmethod
+    def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
+        """A run whose record was opened."""
+        cell = facts.cell
+        return cls(
+            facts,
+            services.board,
+            context.recorder,
+            context.safe_point,
+            context.interruption,
+            Eyes(cell.arm, cell.workers, context.recorder, facts.recipe.frames),
+            Mover(cell),
+        )
+
+    @property
+    def cell(self) -> AntennaCell:
+        """The devices."""
+        return self.facts.cell
+
+    @property
+    def recipe(self) -> AntennaRecipe:
+        """What is plugged."""
+        return self.facts.recipe
+
+    @property
+    def drawings(self) -> Drawings:
+        """Its connectors and marks."""
+        return self.facts.drawings
+
+    def say(self, message: str) -> None:
+        """Tell line and terminal what is being done."""
+        self.board.update(message=message)

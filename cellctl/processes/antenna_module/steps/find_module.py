@@ -1,0 +1,80 @@
+"""Step 20: camera I finds the module on its tray by the marks on its top."""
+
+from functools import partial
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.errors.connector import (
+    ConnectorAmbiguous,
+    ConnectorMisplaced,
+    ConnectorTurned,
+    ImageMirrored,
+    MarksMissing,
+)
+from cellctl.errors.plugging import ModuleMisplaced, ModuleMissing
+from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
+from cellctl.processes.antenna_module.looking import combined, nominal, plane_by
+from cellctl.processes.antenna_module.moving import shifted
+from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.roles import TRAY_LOOK
+from cellctl.processes.antenna_module.run import PluggingRun
+from cellctl.processes.antenna_module.state import ModuleFound, Ready
+from cellctl.processes.antenna_module.vision.measure import measure_marks
+
+
+async def find_module(ready: Ready) -> ModuleFound:
+    """Look, bring the camera over the module, look again.
+
+    Raises ``ModuleMissing`` or ``ModuleMisplaced``.
+    """
+    run = ready.run
+    await run.mover.to_taught(TRAY_LOOK)
+    first = await _look(run, "tray-1")
+    drawn = nominal(run.recipe.base_T_tray_plug)
+    # Seen in the middle of the image, errors of lens and height count least.
+    x_m, y_m, _ = (first.translation - drawn.translation).tolist()
+    here = run.cell.arm.robot.state().base_T_flange
+    await run.mover.to(shifted(here, x_m, y_m))
+    base_T_connector = await _look(run, "tray-2")
+    await run.recorder.pose(keys.TRAY, keys.MEASURED, "base", "plug", base_T_connector)
+    return ModuleFound(run, base_T_connector)
+
+
+async def _look(run: PluggingRun, name: str) -> RigidTransform:
+    """base_T_connector of the module on the tray, as high and level as the drawing has it."""
+    place = run.recipe.base_T_tray_plug
+    connector_T_top = pose_from_xyzabc(run.recipe.plug_T_top)
+    base_T_cam1 = (
+        run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    )
+    expected = base_T_cam1.inv() * nominal(place) * connector_T_top
+    measure = partial(
+        measure_marks,
+        camera=run.facts.camera_1,
+        calibration=plane_by(run.facts.camera_1, expected, place),
+        marks=run.drawings.top,
+    )
+    try:
+        seen = await run.eyes.look(name, run.cell.camera_1, measure)
+    except MarksMissing as fault:
+        raise ModuleMissing(fault.detail) from fault
+    except (ImageMirrored, ConnectorAmbiguous, ConnectorTurned, ConnectorMisplaced) as fault:
+        raise ModuleMisplaced(fault.detail) from fault
+    top = combined(tuple(marks.camera_T_marks for marks in seen.frames)).pose
+    # From the place where the images were taken, not from where the arm was told to go.
+    found = seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose * top * connector_T_top.inv()
+    _require_near(nominal(place), found, place.within_mm * MM, np.radians(place.within_deg))
+    return found
+
+
+def _require_near(
+    drawn: RigidTransform, found: RigidTransform, within_m: float, within_rad: float
+) -> None:
+    offset_m, turn_rad = pose_error(drawn, found)
+    distance_m, angle_rad = float(np.linalg.norm(offset_m)), float(np.linalg.norm(turn_rad))
+    if not (distance_m <= within_m and angle_rad <= within_rad):
+        raise ModuleMisplaced(
+            f"{distance_m / MM:.2f} mm and {np.degrees(angle_rad):.2f}° from its place, permitted "
+            f"are {within_m / MM:g} mm and {np.degrees(within_rad):g}°"
+        )

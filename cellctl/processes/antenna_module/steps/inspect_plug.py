@@ -1,0 +1,108 @@
+"""Step 40: camera II sees the plug and the marks on the gripper in one picture."""
+
+from functools import partial
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.antenna_module.chain.looks import PlugLook
+from cellctl.processes.antenna_module.looking import Seen, combined, plane_by
+from cellctl.processes.antenna_module.mated import connector_T_plug
+from cellctl.processes.antenna_module.recipe import Place
+from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.record.pictures import record_picture
+from cellctl.processes.antenna_module.roles import INSPECT_PLUG
+from cellctl.processes.antenna_module.run import PluggingRun
+from cellctl.processes.antenna_module.state import Picked, PlugInspected
+from cellctl.processes.antenna_module.vision.measure import measure_connector
+from cellctl.processes.antenna_module.vision.measurement import (
+    ConnectorMeasurement,
+    require_sound,
+)
+from cellctl.processes.antenna_module.vision.result_file import result_to_json
+from cellctl.records.figures import Limit
+
+
+async def inspect_plug(picked: Picked) -> PlugInspected:
+    """Show the plug to camera II and measure it.
+
+    Raises ``ContactMissing``, ``ContactBent``, ``ContactHidden``, ``ConnectorMisplaced`` for a bad
+    grip, and the other faults of ``measure_connector``.
+    """
+    run = picked.run
+    await run.mover.to_taught(INSPECT_PLUG)
+    seen = await _look(run)
+    for frame in seen.frames:
+        require_sound(frame)
+    plug = combined(tuple(frame.camera_T_connector for frame in seen.frames))
+    marks = combined(tuple(frame.marks.camera_T_marks for frame in seen.frames if frame.marks))
+    look = PlugLook(
+        base_T_flange=seen.base_T_flange,
+        joints_rad=seen.joints_rad,
+        time_s=seen.time_s,
+        camera_id=run.facts.camera_2.id,
+        camera_T_plug=_mated(run, plug),
+        camera_T_marks=marks,
+        connector=run.drawings.plug.name,
+    )
+    on_gripper = pose_from_xyzabc(run.recipe.flange_T_marks) * marks.pose.inv() * plug.pose
+    await _record(run, seen, plug, marks, on_gripper)
+    return PlugInspected(run, picked.module_kg, plug=look, flange_T_connector=on_gripper)
+
+
+async def _look(run: PluggingRun) -> Seen[ConnectorMeasurement]:
+    base_T_flange = run.cell.arm.robot.state().base_T_flange
+    place = Place(
+        pose=run.recipe.flange_T_plug,
+        within_mm=run.drawings.gripper.within_m / MM,
+        within_deg=float(np.degrees(run.drawings.gripper.within_rad)),
+        height_sigma_mm=run.recipe.plug_height_sigma_mm,
+    )
+    base_T_connector = base_T_flange * pose_from_xyzabc(run.recipe.flange_T_plug)
+    expected = run.facts.plug_cell.cam2.pose.pose.inv() * base_T_connector
+    measure = partial(
+        measure_connector,
+        camera=run.facts.camera_2,
+        calibration=plane_by(run.facts.camera_2, expected, place),
+        connector=run.drawings.plug,
+        marks=run.drawings.gripper,
+    )
+    seen = await run.eyes.look("plug", run.cell.camera_2, measure)
+    await record_picture(run, keys.PLUG_PICTURE, seen)
+    return seen
+
+
+def _mated(run: PluggingRun, camera_T_connector: UncertainPose) -> UncertainPose:
+    """The chain's frame of the plug, which coincides with the socket's once it is seated."""
+    return camera_T_connector * UncertainPose.exact(connector_T_plug(run.drawings.socket))
+
+
+async def _record(
+    run: PluggingRun,
+    seen: Seen[ConnectorMeasurement],
+    plug: UncertainPose,
+    marks: UncertainPose,
+    on_gripper: RigidTransform,
+) -> None:
+    recorder, frames = run.recorder, len(seen.frames)
+    await recorder.measurement(keys.PLUG, "cam2", "connector", plug, frames=frames)
+    await recorder.measurement(keys.MARKS, "cam2", "marks", marks, frames=frames)
+    await recorder.document(
+        keys.PLUG_DETAIL, {"images": [result_to_json(frame) for frame in seen.frames]}
+    )
+    offset_m, turn_rad = pose_error(pose_from_xyzabc(run.recipe.flange_T_plug), on_gripper)
+    gripper = run.drawings.gripper
+    await recorder.figure(
+        keys.GRIP_OFFSET,
+        float(np.linalg.norm(offset_m[:2])) / MM,
+        "mm",
+        limit=Limit(upper=gripper.within_m / MM),
+    )
+    await recorder.figure(
+        keys.GRIP_TURN,
+        abs(float(np.degrees(turn_rad[2]))),
+        "°",
+        limit=Limit(upper=float(np.degrees(gripper.within_rad))),
+    )

@@ -1,0 +1,55 @@
+"""Step 30: the gripper takes the module off its tray and weighs it."""
+
+import asyncio
+
+import numpy as np
+
+from cellctl.cell.settling import settle
+from cellctl.clock import now_s
+from cellctl.errors.plugging import WrongModuleMass
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.run import PluggingRun
+from cellctl.processes.antenna_module.state import ModuleFound, Picked
+from cellctl.records.figures import Limit
+
+_G_M_S2 = 9.80665
+_READ_S = 0.5
+
+
+async def pick(found: ModuleFound) -> Picked:
+    """Down onto the module, close, straight up again, weigh.
+
+    Raises ``WrongModuleMass``, the gripper's faults, and the trip of a fingers' touch on the way.
+    """
+    run = found.run
+    grip = found.base_T_connector * pose_from_xyzabc(run.recipe.flange_T_plug).inv()
+    above = raised(grip, run.recipe.grip_approach_mm * MM)
+    await run.mover.to(above)
+    empty_n = await _force_n(run)
+    await run.mover.slowly_to(grip)
+    await run.cell.gripper.close()
+    await run.mover.slowly_to(above)
+    await run.cell.gripper.confirm_part()
+    # The arm is in the same orientation, so what the sensor itself is off drops out.
+    module_kg = float(np.linalg.norm(await _force_n(run) - empty_n)) / _G_M_S2
+    await _require_mass(run, module_kg)
+    return Picked(run, module_kg)
+
+
+async def _force_n(run: PluggingRun) -> np.ndarray:
+    """Mean raw force, shape (3,), once nothing swings any more."""
+    guard = run.cell.arm.guard
+    await settle(guard)
+    begin_s = now_s()
+    await asyncio.sleep(_READ_S)  # the time over which the reading is averaged
+    return np.asarray(guard.samples(begin_s).raw[:, :3].mean(axis=0))
+
+
+async def _require_mass(run: PluggingRun, module_kg: float) -> None:
+    drawn_kg, ratio = run.recipe.module_mass_kg, run.recipe.mass_tolerance_ratio
+    limit = Limit(drawn_kg * (1 - ratio), drawn_kg * (1 + ratio))
+    await run.recorder.figure(keys.MASS, module_kg, "kg", limit=limit)
+    if not abs(module_kg - drawn_kg) <= ratio * drawn_kg:
+        raise WrongModuleMass(f"{module_kg:.3f} kg, by the recipe {drawn_kg:g} kg ± {ratio:.0%}")
