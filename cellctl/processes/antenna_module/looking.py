@@ -60,9 +60,7 @@ class Eyes:
     recorder: RunRecorder
     frames: int
 
-    async def look(
-        self, name: str, camera: Camera, measure: Callable[[Image], M]
-    ) -> Seen[M]:
+    async def look(self, name: str, camera: Camera, measure: Callable[[Image], M]) -> Seen[M]:
         """Settle, take the images, measure each in a worker; ``name`` is that of the raw images.
 
         Raises what ``measure`` raises, ``NotSettled``, ``HeadMoved`` when the arm moved meanwhile.
@@ -76,9 +74,7 @@ class Eyes:
             images.append(image)
             found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)
-        return Seen(
-            tuple(found), tuple(images), state.base_T_flange, state.joints_rad, now_s()
-        )
+        return Seen(tuple(found), tuple(images), state.base_T_flange, state.joints_rad, now_s())
 
 
 def measured_channel(image: CameraImage) -> Image:

@@ -23,7 +23,6 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
 from cellctl.processes.antenna_module.commands.measurement_file import Identity
 
 
-
 def _joints_rad(values: Any) -> Array:
     return np.asarray(np.radians(numbers(values, (6,), "joints_deg must be six numbers")))
 

@@ -82,13 +82,15 @@ class InsertionJudgement:
         }
 
 
-def judge_insertion(curve: InsertionCurve, connector: Connector) -> InsertionJudgement:
-    """The verdict of a whole curve with the limits of the connector's drawing.
+def judge_insertion(
+    curve: InsertionCurve, connector: Connector, limits: InsertionLimits | None = None
+) -> InsertionJudgement:
+    """The verdict of a whole curve; without ``limits`` with those of the connector's drawing.
 
     A contact that is missing is not among the faults: lots of contacts differ in force by more
     than six to one, so that no curve shows it.
     """
-    limits = InsertionLimits.of(connector)
+    limits = limits or InsertionLimits.of(connector)
     features = features_of(curve, limits)
     checks = _checks(features, limits)
     failed = {check.name for check in checks if not check.passed}

@@ -26,6 +26,4 @@ TO_SOCKET: Steps[Ready, SocketLocated] = (
     Steps.first(FIND_MODULE).then(PICK).then(INSPECT_PLUG).then(LOCATE_SOCKET)
 )
 """What a teaching needs, too."""
-PLUGGING: Steps[Ready, Verified] = (
-    TO_SOCKET.then(PLAN).then(STAND_OFF).then(INSERT).then(VERIFY)
-)
+PLUGGING: Steps[Ready, Verified] = TO_SOCKET.then(PLAN).then(STAND_OFF).then(INSERT).then(VERIFY)

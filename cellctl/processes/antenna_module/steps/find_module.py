@@ -45,9 +45,7 @@ async def _look(run: PluggingRun, name: str) -> RigidTransform:
     """base_T_connector of the module on the tray, as high and level as the drawing has it."""
     place = run.recipe.base_T_tray_plug
     connector_T_top = pose_from_xyzabc(run.recipe.plug_T_top)
-    base_T_cam1 = (
-        run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
-    )
+    base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
     expected = base_T_cam1.inv() * nominal(place) * connector_T_top
     measure = partial(
         measure_marks,

@@ -1,8 +1,7 @@
 """After a fault of the mating: stops the arm and, where that is right, backs off from the frame."""
 
-from dataclasses import replace
-
 from cellctl import log
+from cellctl.cell.leaving import able_to_leave
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
     ContactEarly,
@@ -50,7 +49,7 @@ async def retreat(attempt: Attempt, fault: CellError) -> None:
     """
     try:
         await _stop(attempt, fault)
-        if isinstance(fault, _PRESSES_ON) and _healthy(attempt):
+        if isinstance(fault, _PRESSES_ON) and able_to_leave(attempt.robot, attempt.guard):
             # The guard must be released first: as long as it wants a stop, it asks for one again at
             # the next beat.
             await attempt.guard.acknowledge()
@@ -68,12 +67,3 @@ async def _stop(attempt: Attempt, fault: CellError) -> None:
     finally:
         if isinstance(fault, ForceError):
             fault.curve = attempt.recorder.curve()
-
-
-def _healthy(attempt: Attempt) -> bool:
-    """The robot lacks nothing but the release of its latch, the guard could stop it again."""
-    robot, guard = attempt.robot.state(), attempt.guard.health()
-    # The latch is what the stop has just set and what rearming will release; everything else that
-    # makes a robot not ready needs a person.
-    able = replace(robot, stop_latched=False).ready
-    return able and guard.alive and guard.stop_channel_up

@@ -1,0 +1,96 @@
+"""One insertion: devices, way and limits, and what every phase does with them."""
+
+import asyncio
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.cell.contact_recorder import ContactRecorder
+from cellctl.cell.guard_limits import Sensing, guard_limits
+from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_moves import Motion, guarded
+from cellctl.clock import now_s
+from cellctl.errors.force import SensorFrozen, SensorSilent
+from cellctl.geometry.pose import Array
+from cellctl.guard.limits import GuardLimits
+from cellctl.guard.report import GuardTrip
+from cellctl.interfaces import Robot
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, PhaseLimits
+from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
+from cellctl.processes.antenna_module.pushing.way import InsertionWay
+
+_POLL_S = 0.01
+_LATE_S = 1.0
+_SETTLE_S = 0.05
+"""After a move of a tenth of a millimetre the arm has stopped swinging."""
+_READ_S = 0.1
+_LEAST_MOMENT_N_M = 0.1
+
+
+@dataclass(slots=True)
+class PushAttempt:
+    """Devices and limits of one insertion."""
+
+    robot: Robot
+    guard: GuardPort
+    sensing: Sensing
+    way: InsertionWay
+    socket: Connector
+    limits: InsertionLimits
+    watch: InsertionWatch
+    recorder: ContactRecorder
+
+    async def arm(self, bounds: PhaseLimits) -> None:
+        """Have the guard watch the limits of a phase; it stops the arm by itself."""
+        # A resistance at the rim of the connector turns by half its length.
+        lever_m = max(self.socket.outline_m) / 2.0
+        moment_n_m = bounds.axial_n * lever_m + _LEAST_MOMENT_N_M
+        turn_n_m = min(bounds.moment_z_n_m, moment_n_m)
+        side_n, axial_n = bounds.side_n, bounds.axial_n
+        limits = (side_n, side_n, axial_n, moment_n_m, moment_n_m, turn_n_m)
+        await self.guard.arm(guard_limits(limits, self.sensing))
+
+    async def arm_with(self, limits: GuardLimits) -> None:
+        """Have the guard watch other limits."""
+        await self.guard.arm(limits)
+
+    async def move(self, motion: Motion) -> GuardTrip | None:
+        """Run a move of the arm; None at its target, the trip when the guard stopped it."""
+        return await guarded(self.robot, self.guard, motion)
+
+    @property
+    def depth_m(self) -> float:
+        """Where the flange is."""
+        return self.way.depth_of(self.robot.state().base_T_flange)
+
+    async def read(self) -> Array:
+        """Mean wrench at standstill, shape (6,).
+
+        Raises the fault of a trip that happens meanwhile, ``SensorSilent`` or ``SensorFrozen``.
+        """
+        begin_s = now_s() + _SETTLE_S
+        end_s = begin_s + _READ_S
+        # By the clock of the samples: what counts is when a sample was taken.
+        while self.guard.latest().time_s < end_s:
+            if self.guard.trip is not None:
+                raise self.guard.trip.fault()
+            if now_s() > end_s + _LATE_S:
+                raise SensorSilent(f"no sample for {_LATE_S:.1f} s while reading")
+            await asyncio.sleep(_POLL_S)
+        samples = self.guard.samples(begin_s)
+        if len(samples.raw) < 2:
+            raise SensorSilent("no samples where there should be many")
+        if not np.ptp(samples.raw, axis=0).any():
+            raise SensorFrozen(f"{len(samples.raw)} samples in a row are equal")
+        return np.asarray(samples.wrench.mean(axis=0))
+
+    def curve(self) -> InsertionCurve:
+        """What was recorded so far, as far as the depth is known."""
+        recorded = self.recorder.curve()
+        known = np.isfinite(recorded.travel_m)
+        wrench = recorded.wrench[known]
+        return InsertionCurve(
+            recorded.time_s[known], recorded.travel_m[known], wrench[:, :3], wrench[:, 3:]
+        )
