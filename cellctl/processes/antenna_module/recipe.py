@@ -32,8 +32,9 @@ class Insertion(Section):
     step_mm: Annotated[float, Field(ge=0.02, le=0.1)] = 0.1
     """Length of one guarded move. A single pin that stands on the face meets 11.5 N in 0.1 mm even
     if no stop were obeyed."""
-    least_above_springs: Annotated[float, Field(ge=1, le=5)] = 2.0
-    """The contact springs may begin earlier than drawn by so many standard deviations of height."""
+    height_sigmas: Annotated[float, Field(ge=1, le=5)] = 2.0
+    """Touch and contact springs may come earlier than drawn by so many standard deviations of the
+    heights of plug and socket."""
     pull_n: Annotated[float, Field(gt=0, le=20)] = 2.0
     """Test after the seat: less than the least force that holds a good plug."""
     pull_travel_mm: Annotated[float, Field(gt=0, le=1)] = 0.2

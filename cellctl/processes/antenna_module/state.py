@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.looks import Looks, PlugLook
 from cellctl.processes.antenna_module.chain.plan import PlugPlan
 from cellctl.processes.antenna_module.insertion.verdict import InsertionJudgement
@@ -30,6 +31,8 @@ class Picked(Ready):
     """The module hangs in the gripper, clear of the tray."""
 
     module_kg: float
+    hanging_n: Array
+    """Raw force of the sensor with the module hanging free, shape (3,)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,6 +62,13 @@ class InsertionCurve:
         ):
             yield InsertionSample(float(t_s), float(depth_m), force, moment)
 
+    def after(self, t_s: float) -> "InsertionCurve":
+        """The samples later than this."""
+        later = self.t_s > t_s
+        return InsertionCurve(
+            self.t_s[later], self.depth_m[later], self.force_n[later], self.moment_n_m[later]
+        )
+
 
 def parse_curve(text: str) -> InsertionCurve:
     """The CSV file: columns ``COLUMNS``, in any order, others are ignored.
@@ -83,6 +90,18 @@ def parse_curve(text: str) -> InsertionCurve:
     if back.size:
         raise InsertionCurveInvalid(f"sample {back[0] + 2}: time does not rise")
     return InsertionCurve(table[:, 0], table[:, 1] * MM, table[:, 2:5], table[:, 5:8])
+
+
+def curve_text(curve: InsertionCurve) -> str:
+    """The CSV file of a curve, which ``parse_curve`` reads; time from the first sample on."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    begin_s = curve.t_s[0] if len(curve.t_s) else 0.0
+    for sample in curve:
+        numbers = (sample.t_s - begin_s, sample.depth_m / MM, *sample.force_n, *sample.moment_n_m)
+        writer.writerow([f"{number:.6f}" for number in numbers])
+    return out.getvalue()
 
 
 def _numbers(row: dict[str, str | None], line: int) -> list[float]:

@@ -18,7 +18,7 @@ from cellctl.interfaces import Robot
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, PhaseLimits
-from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
+from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, InsertionWatch
 from cellctl.processes.antenna_module.pushing.way import InsertionWay
 
 _POLL_S = 0.01
@@ -41,6 +41,8 @@ class PushAttempt:
     limits: InsertionLimits
     watch: InsertionWatch
     recorder: ContactRecorder
+    fed_s: float = -np.inf
+    """Time of the last sample that the watch has seen."""
 
     async def arm(self, bounds: PhaseLimits) -> None:
         """Have the guard watch the limits of a phase; it stops the arm by itself."""
@@ -85,6 +87,13 @@ class PushAttempt:
         if not np.ptp(samples.raw, axis=0).any():
             raise SensorFrozen(f"{len(samples.raw)} samples in a row are equal")
         return np.asarray(samples.wrench.mean(axis=0))
+
+    def feed_watch(self) -> InsertionTrip | None:
+        """Show the watch every sample since the last call; the bound that was passed, if any."""
+        for sample in self.curve().after(self.fed_s):
+            self.fed_s = sample.t_s
+            self.watch.feed(sample)
+        return self.watch.trip
 
     def curve(self) -> InsertionCurve:
         """What was recorded so far, as far as the depth is known."""

@@ -13,7 +13,6 @@ from cellctl.errors.plugging import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.guard.report import GuardTrip
-from cellctl.processes.antenna_module.insertion.curve import InsertionSample
 from cellctl.processes.antenna_module.insertion.limits import Phase
 from cellctl.processes.antenna_module.insertion.verdict import judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, TripCause
@@ -82,18 +81,10 @@ async def _travel_near(attempt: PushAttempt) -> None:
 
 async def _watched(attempt: PushAttempt, motion: Motion, phase: Phase) -> None:
     """Run a move, then judge its samples by what the guard cannot: trend and centre of pressure."""
-    fed_s = attempt.recorder.last_time_s
     trip = await attempt.move(motion)
     if trip is not None:
         raise _fault(attempt, trip, phase)
-    curve = attempt.curve()
-    for sample in curve:
-        if sample.t_s > fed_s:
-            _feed(attempt, sample)
-
-
-def _feed(attempt: PushAttempt, sample: InsertionSample) -> None:
-    found = attempt.watch.feed(sample)
+    found = attempt.feed_watch()
     if found is not None:
         raise _met(attempt, found.cause, _words(found))
 

@@ -49,7 +49,9 @@ async def inspect_plug(picked: Picked) -> PlugInspected:
     )
     on_gripper = pose_from_xyzabc(run.recipe.flange_T_marks) * marks.pose.inv() * plug.pose
     await _record(run, seen, plug, marks, on_gripper)
-    return PlugInspected(run, picked.module_kg, plug=look, flange_T_connector=on_gripper)
+    return PlugInspected(
+        run, picked.module_kg, picked.hanging_n, plug=look, flange_T_connector=on_gripper
+    )
 
 
 async def _look(run: PluggingRun) -> Seen[ConnectorMeasurement]:

@@ -50,6 +50,7 @@ async def locate_socket(inspected: PlugInspected) -> SocketLocated:
     return SocketLocated(
         run,
         inspected.module_kg,
+        inspected.hanging_n,
         plug=inspected.plug,
         flange_T_connector=inspected.flange_T_connector,
         looks=Looks(inspected.plug, tuple(looks)),

@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.cell.settling import settle
 from cellctl.clock import now_s
 from cellctl.errors.plugging import WrongModuleMass
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
@@ -33,12 +33,13 @@ async def pick(found: ModuleFound) -> Picked:
     await run.mover.slowly_to(above)
     await run.cell.gripper.confirm_part()
     # The arm is in the same orientation, so what the sensor itself is off drops out.
-    module_kg = float(np.linalg.norm(await _force_n(run) - empty_n)) / _G_M_S2
+    hanging_n = await _force_n(run)
+    module_kg = float(np.linalg.norm(hanging_n - empty_n)) / _G_M_S2
     await _require_mass(run, module_kg)
-    return Picked(run, module_kg)
+    return Picked(run, module_kg, hanging_n)
 
 
-async def _force_n(run: PluggingRun) -> np.ndarray:
+async def _force_n(run: PluggingRun) -> Array:
     """Mean raw force, shape (3,), once nothing swings any more."""
     guard = run.cell.arm.guard
     await settle(guard)

@@ -41,6 +41,7 @@ async def plan(located: SocketLocated) -> Planned:
     return Planned(
         run,
         located.module_kg,
+        located.hanging_n,
         plug=located.plug,
         flange_T_connector=located.flange_T_connector,
         looks=located.looks,

@@ -1,0 +1,34 @@
+"""What `cellctl check` finds wrong with a recipe in a cell, beyond its keys."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.errors import CellError
+from cellctl.processes.antenna_module.drawings import read_drawings
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE
+
+
+def recipe_issues(
+    cell: CellConfig, recipe: AntennaRecipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    """Drawings that cannot be used, and devices that are mounted elsewhere."""
+    arm = recipe.device(ARM)
+    sensor = recipe.device(FORCE)
+    if cell.force_sensors[sensor].mounted_on != arm:
+        where = f"force_sensors.{sensor}.mounted_on"
+        found = repr(cell.force_sensors[sensor].mounted_on)
+        yield ConfigIssue(where, found, f"the robot that carries the gripper: {arm}")
+    for role, carrier in ((CAMERA_1, arm), (CAMERA_2, None)):
+        camera = recipe.device(role)
+        carried_by = cell.cameras[camera].carried_by
+        if carried_by != carrier:
+            where = f"cameras.{camera}.carried_by"
+            wanted = "nobody: camera II is fixed" if carrier is None else carrier
+            yield ConfigIssue(where, repr(carried_by), wanted)
+    try:
+        read_drawings(recipe, folder)
+    except CellError as fault:
+        yield ConfigIssue(key, fault.detail, "drawings that can be used")

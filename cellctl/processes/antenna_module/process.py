@@ -1,0 +1,112 @@
+"""The process: an antenna module is taken from its tray and plugged (paper, section 2)."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.recipe import Recipe
+from cellctl.errors.plugging import (
+    MovedOnRelease,
+    PlugBentPin,
+    PlugEarlyContact,
+    PlugNotHeld,
+    PlugOverForce,
+    PlugShortSeat,
+    PlugSideForce,
+)
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.roles import ROLES
+from cellctl.processes.antenna_module.settings import AntennaSettings
+from cellctl.runtime.process import Prepared, Process, RunContext
+from cellctl.runtime.steps import Steps
+
+if TYPE_CHECKING:
+    from cellctl.calibration.store.kind import Kinds
+    from cellctl.processes.antenna_module.facts import RunFacts
+    from cellctl.processes.antenna_module.run import PluggingRun
+    from cellctl.processes.antenna_module.state import Ready
+    from cellctl.processes.antenna_module.stations import AntennaCell
+
+# What computes is imported where it is used: whoever only reads a cell file loads this module too,
+# and an operator's command must not wait for vision and force.
+
+
+class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
+    """System B: find, pick, look from below, look at the socket, plug, verify."""
+
+    name = "antenna-module"
+    recipe_model = AntennaRecipe
+    settings_model = AntennaSettings
+    roles = ROLES
+    spoiled_by = frozenset(
+        {
+            PlugEarlyContact,
+            PlugSideForce,
+            PlugShortSeat,
+            PlugOverForce,
+            PlugBentPin,
+            PlugNotHeld,
+            MovedOnRelease,
+        }
+    )
+
+    @classmethod
+    def check(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """Drawings, and devices that must be on the same arm."""
+        from cellctl.processes.antenna_module.checks import recipe_issues
+
+        return recipe_issues(cell, cast(AntennaRecipe, recipe), key, folder)
+
+    @classmethod
+    def calibration_kinds(cls) -> "Kinds":
+        """Intrinsics and mounting of both cameras, and what was taught."""
+        from cellctl.processes.antenna_module.calibrations import CALIBRATIONS
+
+        return CALIBRATIONS
+
+    async def prepare(self, recipe: Recipe) -> "Prepared[RunFacts]":
+        """Read calibrations and drawings, and compare them with what is connected."""
+        from cellctl.processes.antenna_module.facts import read_facts
+
+        plugged = cast(AntennaRecipe, recipe)
+        facts = await read_facts(
+            self.cell(plugged), plugged, self.services.calibrations, self.calibration_kinds()
+        )
+        return Prepared(facts, tuple(facts.calibrations.records))
+
+    def open(self, prepared: "Prepared[RunFacts]", context: RunContext) -> "PluggingRun":
+        """Facts, record, eyes and arm."""
+        from cellctl.processes.antenna_module.run import PluggingRun
+
+        return PluggingRun.of(prepared.facts, self.services, context)
+
+    async def begin(self, run: "PluggingRun") -> "Ready":
+        """Gripper open and empty, arm at home."""
+        from cellctl.processes.antenna_module.start import move_to_start
+
+        return await move_to_start(run)
+
+    def steps(self, recipe: Recipe) -> "Steps[Ready, Any]":  # noqa: ARG002 - alike for all
+        """Find, pick, inspect, locate, plan, stand-off, insert, verify."""
+        from cellctl.processes.antenna_module.steps import PLUGGING
+
+        return PLUGGING
+
+    async def clear(self) -> None:
+        """Up from tray and socket, home; a module in the gripper is the operator's."""
+        from cellctl.processes.antenna_module.start import leave_stations
+        from cellctl.processes.antenna_module.stations import antenna_recipes
+
+        recipes = antenna_recipes(self.services.cell.config)
+        if recipes:
+            await leave_stations(self.cell(recipes[0]))
+
+    def cell(self, recipe: AntennaRecipe) -> "AntennaCell":
+        """The devices in the roles of a recipe."""
+        from cellctl.processes.antenna_module.stations import AntennaCell
+
+        return AntennaCell.of(self.services.cell, recipe)

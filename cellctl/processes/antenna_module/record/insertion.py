@@ -1,0 +1,36 @@
+"""The insertion in the record: figures with limits, the curve as a file."""
+
+from cellctl.geometry.pose import MM
+from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, curve_text
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
+from cellctl.processes.antenna_module.insertion.verdict import InsertionJudgement
+from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.run import PluggingRun
+from cellctl.records.figures import Limit, figure
+
+
+async def record_curve(run: PluggingRun, curve: InsertionCurve) -> None:
+    """The curve as CSV, which `cellctl judge-insertion` reads."""
+    await run.recorder.artefact(keys.CURVE, curve_text(curve).encode(), "text/csv")
+
+
+async def record_judgement(
+    run: PluggingRun, judgement: InsertionJudgement, limits: InsertionLimits
+) -> None:
+    """Verdict, features and their limits."""
+    await run.recorder.document(keys.INSERTION, judgement.to_record())
+    found = judgement.features
+    seat_mm = None if found.seat_depth_m is None else found.seat_depth_m / MM
+    seat, off = limits.seat_depth_m / MM, limits.seat_tolerance_m / MM
+    greatest_n = limits.greatest_n + limits.over_n
+    await run.recorder.figures(
+        [
+            figure(keys.SEAT_DEPTH, seat_mm, "mm", limit=Limit(seat - off, seat + off)),
+            figure(keys.PEAK, found.peak_n, "N"),
+            figure(keys.TOTAL, found.total_n, "N", limit=Limit(upper=greatest_n)),
+            figure(keys.SIDE, found.side_n, "N", limit=Limit(upper=limits.sliding_side_n)),
+            figure(
+                keys.MOMENT_Z, found.moment_z_n_m, "N·m", limit=Limit(upper=limits.moment_z_n_m)
+            ),
+        ]
+    )
