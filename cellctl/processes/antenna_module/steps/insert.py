@@ -72,10 +72,7 @@ async def _pushed(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
     with run.cell.cell.trips_awaited(run.cell.arm.sensor_name):
         try:
             await run.interruption.unless(push_in(attempt, step_m))
-            judgement = judge_insertion(attempt.curve(), attempt.socket, attempt.limits)
-            await record_judgement(run, judgement, attempt.limits)
-            if judgement.fault is not None:
-                raise judgement.fault
+            judgement = await _judged(run, attempt)
         except BaseException as reason:
             # Only after faults. A Stop or an Abort cancels, and what is cancelled must not begin
             # another move.
@@ -84,6 +81,15 @@ async def _pushed(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
             await _keep_curve(run, attempt, reason)
             raise
     await record_curve(run, attempt.curve())
+    return judgement
+
+
+async def _judged(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
+    """The verdict of the whole curve; raises its fault."""
+    judgement = judge_insertion(attempt.curve(), attempt.socket, attempt.limits)
+    await record_judgement(run, judgement, attempt.limits)
+    if judgement.fault is not None:
+        raise judgement.fault
     return judgement
 
 

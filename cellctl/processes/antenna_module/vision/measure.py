@@ -60,7 +60,7 @@ def measure_connector(
     """
     check_image(image, camera.image_size, "image")
     plane = calibration.before(camera)
-    seen_marks = None if marks is None else _measure_marks(image, plane, calibration, marks)
+    seen_marks = None if marks is None else _marks_in(image, plane, calibration, marks)
     expected = _expectation(plane, calibration, marks, seen_marks)
     rim_plane = plane.at_height(-connector.rim_depth_m)
     pattern = contact_pattern(connector)
@@ -93,6 +93,18 @@ def measure_connector(
         marks=seen_marks,
         warnings=_warnings(expected),
     )
+
+
+def measure_marks(
+    image: Image, camera: SingleCamera, calibration: PlaneCalibration, marks: Marks
+) -> MeasuredMarks:
+    """Measure the marks of a drawing without a connector between them.
+
+    The plane is that of the connector that they belong to. Raises ``MarksMissing``,
+    ``ImageMirrored``, ``ConnectorAmbiguous`` and the faults of unusable images.
+    """
+    check_image(image, camera.image_size, "image")
+    return _marks_in(image, calibration.before(camera), calibration, marks)
 
 
 def contact_pattern(connector: Connector) -> Pattern:
@@ -133,7 +145,7 @@ def uncertain_pose(
     return UncertainPose(pose, covariance)
 
 
-def _measure_marks(
+def _marks_in(
     image: Image, plane: MeasuringPlane, calibration: PlaneCalibration, marks: Marks
 ) -> MeasuredMarks:
     pattern = Pattern(
