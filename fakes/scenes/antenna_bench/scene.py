@@ -72,7 +72,7 @@ class AntennaBench(World[BenchScenario]):
         self._board_pose = RigidTransform.identity()
         self._slope_max = max(_slope_max(optics) for optics in scenario.optics.values())
         self._hands = HandsAtPanel(self.arms[gripper.carried_by])
-        self._mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
+        self.mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
         self.loads = self._warmings = self._plugged = self._ticks = 0
         self._contact_n = np.zeros(6)
         self._jaws_seen = -1.0
@@ -87,7 +87,7 @@ class AntennaBench(World[BenchScenario]):
             gripper, self.seed + self.loads, "tray", self.parts.cell_T_tray_plug,
             from_written(gripper.flange_T_plug_mm_deg),
         )  # fmt: skip
-        self.mating = PlugAtSocket(self.parts.pair, self._mount)
+        self.mating = PlugAtSocket(self.parts.pair, self.mount)
         return {"load": self.loads}
 
     def warm(self, kelvin: float) -> dict[str, Any]:
@@ -128,7 +128,7 @@ class AntennaBench(World[BenchScenario]):
                 f"the plug is {away_m / MM:.0f} mm from its socket; by hand {hands.farthest_mm:g}"
             )
         rng = stream(self.seed, "by hand", self._plugged)
-        seated = socket * seated_by_hand(self.parts.pair, self._mount, hands, rng)
+        seated = socket * seated_by_hand(self.parts.pair, self.mount, hands, rng)
         above = socket * RigidTransform.from_translation([0, 0, _ABOVE_SOCKET_M])
         flange_of = self.module.flange_T_plug.inv()
         way = [
