@@ -13,6 +13,8 @@ from fakes.world.frames import Array
 
 EVERY_MS: Final = 4
 """Milliseconds between two evaluations: forces change over hundredths of a second."""
+KEPT_M: Final = 1.5e-3
+"""Depth from which the socket keeps a plug that is let go."""
 _NEAR_M: Final = 4e-3
 _ABOVE_M: Final = 0.1e-3
 _RELAXATION: Final = 0.15

@@ -111,6 +111,8 @@ class OperatorHands(Section):
     plugging_mm_s: float
     farthest_mm: float
     """The plug has to be so near its socket: nobody jogs an arm through the whole cell."""
+    patience_s: float
+    """A plug that rests so long above its socket waits for the hands, while they stand by."""
 
 
 class BenchScenario(Scenario):

@@ -9,26 +9,22 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario import Scenario
 from fakes.scenes.antenna_bench.boards import (
-    BOARD_PLACES,
-    BoardPlace,
-    board_pose,
     plate_dots,
     plate_pose,
     plate_size_m,
 )
 from fakes.scenes.antenna_bench.gripping import ModulePlace
-from fakes.scenes.antenna_bench.hands import HandsAtPanel, seated_by_hand
-from fakes.scenes.antenna_bench.mating import EVERY_MS, PlugAtSocket, mount_of
+from fakes.scenes.antenna_bench.mating import EVERY_MS, KEPT_M, PlugAtSocket, mount_of
+from fakes.scenes.antenna_bench.operator import BenchOperator
 from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, placed
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.shifts import shifted
 from fakes.scenes.antenna_bench.truth import truth_of
 from fakes.sections import Optics
 from fakes.world.boards import chessboard_as_made
-from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.connector.made import gripper_marks
 from fakes.world.flaws.warmth import warmed
-from fakes.world.frames import MM, Array, distance, from_written, stream
+from fakes.world.frames import MM, Array, from_written, stream
 from fakes.world.payload import Payload
 from fakes.world.scene import Seen
 from fakes.world.truth import drawn_spread
@@ -36,11 +32,7 @@ from fakes.world.views import in_view
 from fakes.world.world import Command, World
 
 _GRAVITY = np.array([0.0, 0.0, -9.80665])
-_KEPT_M = 1.5e-3
-"""Depth from which the socket keeps a plug that is let go."""
 _MARKS_FACE_M = (60e-3, 22e-3)
-_ABOVE_SOCKET_M = 5e-3
-"""From the seat up to where a hand stops and begins to plug."""
 _SEEN_BEYOND = 1.1
 """What lies so little beside the corner of the picture is drawn, for its edges."""
 
@@ -68,12 +60,10 @@ class AntennaBench(World[BenchScenario]):
             scenario, self.truth.cameras[scenario.fixed_camera].mount_T_camera
         )
         self._board = chessboard_as_made(scenario.board, scenario.hardware_seed, seed)
-        self.board_at: BoardPlace | None = None
-        self._board_pose = RigidTransform.identity()
         self._slope_max = max(_slope_max(optics) for optics in scenario.optics.values())
-        self._hands = HandsAtPanel(self.arms[gripper.carried_by])
+        self.operator = BenchOperator(self)
         self.mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
-        self.loads = self._warmings = self._plugged = self._ticks = 0
+        self.loads = self._warmings = self._ticks = 0
         self._contact_n = np.zeros(6)
         self._jaws_seen = -1.0
         self.load()
@@ -99,62 +89,16 @@ class AntennaBench(World[BenchScenario]):
         arm.truth = replace(arm.truth, links=warmed(built, rng, kelvin))
         return {"warmings": self._warmings}
 
-    def place_board(self, where: str, number: int = 0) -> None:
-        """Put the calibration board on its stand or onto the flange; each number is another
-        placement. There is one board: it leaves its other place."""
-        if where not in BOARD_PLACES:
-            raise ValueError(f"the board goes to {' or '.join(BOARD_PLACES)}, not to {where!r}")
-        if where == "flange" and self.module.place == "gripper":
-            raise ValueError("the gripper holds a module where the board would hang")
-        self.board_at = "table" if where == "table" else "flange"
-        self._board_pose = board_pose(self.scenario, self.seed, self.board_at, int(number))
-
-    def remove_boards(self) -> None:
-        """Take the calibration board away."""
-        self.board_at = None
-
-    def plug_by_hand(self) -> dict[str, Any]:
-        """Jog the arm at its panel until the held plug sits in its socket, free of side forces.
-
-        Answers when the jogging has begun; the key is back on remote when it is over.
-        """
-        if self.module.place != "gripper":
-            raise ValueError("the gripper holds no module to plug")
-        hands, socket = self.scenario.hands, self.parts.cell_T_socket
-        cell_T_plug = self.module.now(self.flange(self.scenario.gripper.carried_by))
-        away_m, _ = distance(socket * SOCKET_T_MATED_PLUG, cell_T_plug)
-        if away_m > hands.farthest_mm * MM:
-            raise ValueError(
-                f"the plug is {away_m / MM:.0f} mm from its socket; by hand {hands.farthest_mm:g}"
-            )
-        rng = stream(self.seed, "by hand", self._plugged)
-        seated = socket * seated_by_hand(self.parts.pair, self.mount, hands, rng)
-        above = socket * RigidTransform.from_translation([0, 0, _ABOVE_SOCKET_M])
-        flange_of = self.module.flange_T_plug.inv()
-        way = [
-            (above * socket.inv() * seated * flange_of, hands.travel_mm_s * MM),
-            (seated * flange_of, hands.plugging_mm_s * MM),
-        ]
-        self._hands.begin(self.time_s, way)
-        self._plugged += 1
-        return {"plugged": self._plugged}
-
     def commands(self) -> Mapping[str, Command]:
         """The hands of the operator on the control port."""
-        return {
-            "load": self.load,
-            "warm": self.warm,
-            "place_board": self.place_board,
-            "remove_boards": self.remove_boards,
-            "plug_by_hand": self.plug_by_hand,
-        }
+        return {"load": self.load, "warm": self.warm, **self.operator.commands()}
 
     # -- forces ---------------------------------------------------------------------------------
     def load_on(self, sensor: str, flange: Array, *, moving: bool) -> Array:
         """Gripper with its inertia; weight of the module; what the socket does to it."""
         if sensor != self.scenario.gripper.force_sensor:
             return np.zeros(6)
-        self._hands.advance(self.time_s)
+        self.operator.advance(self._ticks)
         self._tool.advance(flange, moving=moving)
         self._ticks += 1
         if self._ticks % EVERY_MS == 0 and (moving or self._something_changes()):
@@ -173,7 +117,7 @@ class AntennaBench(World[BenchScenario]):
         module, settings = self.module, self.scenario.module
         jaws = self.jaws[self.scenario.gripper.device]
         rests_at = self.rests_at(cell_T_flange)
-        in_socket = self.mating.depth_m > _KEPT_M
+        in_socket = self.mating.depth_m > KEPT_M
         module.follow(jaws, cell_T_flange, rests_at=rests_at, in_socket=in_socket)
         if module.place != "gripper":
             return np.zeros(6)
@@ -223,11 +167,13 @@ class AntennaBench(World[BenchScenario]):
         """A calibration board alone; else connectors, marks and dots, or the top of the module on
         its tray, as far as in view."""
         flange = self.flange(self.scenario.gripper.carried_by)
-        board = camera_T_cell * self._cell_T_board(flange)
-        if self.board_at is not None and self._sees(board, self._board.size_m):
+        cell_T_board = self.operator.cell_T_board(flange)
+        if cell_T_board is not None:
+            board = camera_T_cell * cell_T_board
             # On the flange its plate hides fingers and plug; on its stand nothing else is near.
-            yield self._board.seen(board)
-            return
+            if self._sees(board, self._board.size_m):
+                yield self._board.seen(board)
+                return
         panel_m = np.array(self.scenario.socket.panel_mm) * MM
         housing_m = np.array(self.scenario.module.housing_mm) * MM
         socket = camera_T_cell * self.parts.cell_T_socket
@@ -248,9 +194,6 @@ class AntennaBench(World[BenchScenario]):
 
     def _sees(self, camera_T_face: RigidTransform, size_m: tuple[float, float]) -> bool:
         return in_view(camera_T_face, size_m, self._slope_max)
-
-    def _cell_T_board(self, cell_T_flange: RigidTransform) -> RigidTransform:
-        return cell_T_flange * self._board_pose if self.board_at == "flange" else self._board_pose
 
     # -- truth ----------------------------------------------------------------------------------
     def truth_report(self) -> dict[str, Any]:

@@ -35,7 +35,7 @@ def _devices(world: "AntennaBench") -> dict[str, Any]:
         },
         "flange_T_marks_mm_deg": to_written(world.flange_T_marks),
         "cell_T_plate_mm_deg": to_written(world.cell_T_plate),
-        "board": world.board_at,
+        "board": world.operator.board_at,
     }
 
 

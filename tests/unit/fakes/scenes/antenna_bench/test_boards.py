@@ -74,7 +74,7 @@ def test_all_of_the_board_is_seen_from_every_calibration_pose(
     for number, turned in enumerate(_TURNED):
         flange = to_written(pose_round(scenario, taught, *turned))
         world = bench_with(scenario, tuple(flange), seed=number)
-        world.place_board(where, number)
+        world.operator.place_board(where, number)
         pixels = print_px(world, camera)
         assert (pixels > 15).all(), turned
         assert (pixels < size - 15).all(), turned
@@ -101,11 +101,11 @@ def test_another_number_is_another_placement(scenario: BenchScenario) -> None:
     world = bench_at(scenario, "board_look")
     places = []
     for number in (0, 0, 1):
-        world.place_board("table", number)
+        world.operator.place_board("table", number)
         places.append(print_px(world, "camera_1"))
     np.testing.assert_array_equal(places[0], places[1])
     assert np.abs(places[2] - places[0]).max() > 1.0
-    world.remove_boards()
+    world.operator.remove_boards()
     assert world.camera_scene("camera_1").bodies == ()
 
 
@@ -113,9 +113,9 @@ def test_the_board_hangs_only_where_no_module_is(scenario: BenchScenario) -> Non
     world = bench_at(scenario, "board_show")
     world.module.place = "gripper"
     with pytest.raises(ValueError, match="holds a module"):
-        world.place_board("flange")
+        world.operator.place_board("flange")
     with pytest.raises(ValueError, match="table or flange"):
-        world.place_board("ceiling")
+        world.operator.place_board("ceiling")
 
 
 def dots(world: AntennaBench, camera: str) -> SceneMarks:

@@ -8,6 +8,7 @@ from fakes.faults import ROBOT_FAULTS, FaultBoard
 from fakes.scenes.antenna_bench.hands import seated_by_hand
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.scene import AntennaBench
+from fakes.scenes.antenna_bench.standing_by import StandingBy
 from fakes.wire.sjl.logic import Controller
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.frames import MM
@@ -38,10 +39,10 @@ def test_a_plug_that_was_plugged_by_hand_sits_without_side_force(scenario: Bench
     world = holding(scenario, 3)
     panel = Controller(world.arms["arm"], FaultBoard("arm", ROBOT_FAULTS))
     assert panel.panel.mode == "REM"
-    world.plug_by_hand()
+    world.operator.plug_by_hand()
     assert panel.panel.mode == "MAN"
     with pytest.raises(ValueError, match="moving arm"):
-        world.plug_by_hand()
+        world.operator.plug_by_hand()
     wait_for_the_key(world)
     assert panel.panel.mode == "REM"
     assert not panel.moving(world.time_s)
@@ -88,8 +89,35 @@ def test_what_a_hand_does_not_feel_is_as_large_as_the_play_of_the_gauge(
 
 def test_nobody_plugs_what_is_not_held_or_far_away(scenario: BenchScenario) -> None:
     with pytest.raises(ValueError, match="no module"):
-        bench_at(scenario, "above_socket").plug_by_hand()
+        bench_at(scenario, "above_socket").operator.plug_by_hand()
     far = holding(scenario, 1, "inspect_plug")
     with pytest.raises(ValueError, match="from its socket"):
-        far.plug_by_hand()
+        far.operator.plug_by_hand()
     assert not far.arms["arm"].by_hand
+
+
+def test_an_operator_who_stands_by_plugs_what_waits_and_brings_the_next(
+    scenario: BenchScenario,
+) -> None:
+    world = holding(scenario, 6)
+    world.advance(2.0)
+    assert not world.arms["arm"].by_hand, "nobody stands by"
+    world.operator.stand_by()
+    world.advance(world.time_s + scenario.hands.patience_s + 0.3)
+    assert world.arms["arm"].by_hand
+    world.module.place = "socket"
+    assert world.loads == 1, "the arm is still there"
+
+
+@pytest.mark.parametrize(("on", "expected"), [(True, "load"), (False, None)])
+def test_the_next_module_comes_when_the_arm_has_gone(*, on: bool, expected: str | None) -> None:
+    operator = StandingBy(patience_s=1.0, on=on)
+    assert operator.errand(0.0, waits_above=False, left_in_socket=True) == expected
+
+
+def test_a_plug_that_comes_and_goes_does_not_wait() -> None:
+    operator = StandingBy(patience_s=1.0, on=True)
+    for time_s, waits in ((0.0, True), (0.9, True), (1.0, False), (1.1, True), (2.0, True)):
+        assert operator.errand(time_s, waits_above=waits, left_in_socket=False) is None
+    assert operator.errand(2.2, waits_above=True, left_in_socket=False) == "plug"
+    assert operator.errand(2.3, waits_above=True, left_in_socket=False) is None
