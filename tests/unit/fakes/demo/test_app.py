@@ -33,7 +33,7 @@ def taken() -> Iterator[int]:
 
 
 def test_an_unknown_process_names_those_that_there_are() -> None:
-    assert "there is no demonstration of 'weaving'; there are: deck-to-frame" in refused(
+    assert "there is no demonstration of 'weaving'; there are: antenna-module, deck-to-frame" in refused(
         "--process", "weaving"
     )
 
@@ -65,7 +65,9 @@ def test_an_occupied_port_is_named_with_what_to_do(
 def test_an_unknown_scene_names_those_that_there_are(tmp_path: Path) -> None:
     scenario = tmp_path / "scenario.toml"
     scenario.write_text('scene = "moon"\n')
-    assert "known scenes: antenna-bench, deck-on-frame, plate" in refused("--scenario", str(scenario))
+    assert "known scenes: antenna-bench, deck-on-frame, plate" in refused(
+        "--scenario", str(scenario)
+    )
 
 
 class WeavingDemo(DeckToFrameDemo):

@@ -1,13 +1,9 @@
-from pathlib import Path
-
 import pytest
 
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 
-CONFIG = Path(__file__).parents[5] / "config"
-
 
 @pytest.fixture(scope="session")
-def scenario() -> BenchScenario:
-    """The shipped one."""
-    return BenchScenario.read(CONFIG / "antenna.scenario.toml")
+def scenario(bench_scenario: BenchScenario) -> BenchScenario:
+    """That of these tests."""
+    return bench_scenario
