@@ -73,6 +73,11 @@ class MeasuredPoints:
         spread = squares[:, None, None] * (across @ across.T)
         return replace(self, covariances_m2=self.covariances_m2 + spread)
 
+    def as_seen(self, seen: "MeasuredPoints") -> Self:
+        """The same points, as uncertain as in ``seen``, which has at least these."""
+        rows = [seen.names.index(name) for name in self.names]
+        return replace(self, covariances_m2=seen.covariances_m2[rows])
+
     def joint_covariance(self, transfer_covariance: Array) -> Array:
         """Covariance of all coordinates with the errors shared by ``c1_T_c2``, (3n, 3n)."""
         shared = self.by_transfer.reshape(-1, 6)

@@ -28,6 +28,7 @@ RESIDUAL_LIMIT_M = 0.2e-3
 _OUTLIER_SIGMAS = 5.0
 _MOVEMENT_SIGMAS = 5.0
 _OUTLIER_MIN_HOLES = 5
+_NO_TRANSFER = np.zeros((6, 6))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +41,9 @@ class PartPose:
     own_covariance: Array
     """Shape (6, 6): from the hole measurements alone, for two parts between which the error of
     ``c1_T_c2`` cancels (``relative_pose``)."""
+    image_covariance: Array
+    """Shape (6, 6): the share of ``own_covariance`` that the images make, which is what more images
+    make smaller; what a part is off its drawing stays."""
     names: tuple[str, ...]
     residuals_m: Array
     """Measured minus registered, shape (n, 3), in C1, in the order of ``names``; without what the
@@ -75,10 +79,11 @@ def part_pose(
         raise TooFewHoles(f"{len(points.names)} usable: {', '.join(points.names) or 'none'}")
     if method == "paper":
         return _by_paper(points, transfer_covariance)
-    points = points.off_their_drawing(holes)
+    seen, points = points, points.off_their_drawing(holes)
     kept, outliers = _without_outliers(points, transfer_covariance, residual_limit_m)
     fit = register(kept.nominal_m, kept.measured_m, kept.covariances_m2)
-    return _result(points, kept, transfer_covariance, fit, outliers=outliers)
+    images = _pose_covariance(fit.gain, kept.as_seen(seen), _NO_TRANSFER)
+    return _result(points, kept, transfer_covariance, fit, images, outliers=outliers)
 
 
 def _without_outliers(
@@ -128,7 +133,7 @@ def _contradicting(
         design = by_pose(fit.pose.rotation.apply(points.nominal_m[index])[None])[0]
         carried = _carried(points, rest, fit)[index]
         spread = (
-            design @ _pose_covariance(fit.gain, rest, np.zeros((6, 6))) @ design.T
+            design @ _pose_covariance(fit.gain, rest, _NO_TRANSFER) @ design.T
             + points.covariances_m2[index]
             + carried @ movement.covariance @ carried.T
         )
@@ -147,6 +152,7 @@ def _result(
     kept: MeasuredPoints,
     transfer_covariance: Array,
     fit: Registration,
+    image_covariance: Array,
     *,
     outliers: tuple[str, ...],
 ) -> PartPose:
@@ -160,7 +166,8 @@ def _result(
     covariance = np.asarray(gain @ joint @ gain.T) * unexplained.growth
     return PartPose(
         UncertainPose(pose, covariance),
-        _pose_covariance(gain, kept, np.zeros((6, 6))),
+        _pose_covariance(gain, kept, _NO_TRANSFER),
+        image_covariance,
         points.names,
         _own_residuals_m(points, kept, fit, movement.error),
         movement.error,
@@ -218,7 +225,9 @@ def _by_paper(points: MeasuredPoints, transfer_covariance: Array) -> PartPose:
     pose = _paper_pose(points.nominal_m, points.measured_m)
     gain = _numeric_gain(points.nominal_m, points.measured_m, pose)
     fit = Registration(pose, _residuals_m(points, pose), gain)
-    return _result(points, points, transfer_covariance, fit, outliers=())
+    # Its frame knows nothing of how far the holes may be off their drawing.
+    images = _pose_covariance(fit.gain, points, _NO_TRANSFER)
+    return _result(points, points, transfer_covariance, fit, images, outliers=())
 
 
 def _paper_pose(nominal_m: Array, measured_m: Array) -> RigidTransform:

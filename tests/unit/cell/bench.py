@@ -289,7 +289,7 @@ def measurement(
     names = tuple(hole.name for hole in features.holes)
     found = PairMeasurement("default", ())
     pose = PartPose(
-        UncertainPose(c1_T_part, covariance), covariance, names,
+        UncertainPose(c1_T_part, covariance), covariance, covariance, names,
         np.zeros((len(names), 3)), np.zeros(6), (), ChiSquare(12.0, 12),
         MeasuredPoints.seen(found, None, None, ()),
     )  # fmt: skip

@@ -58,6 +58,7 @@ class Eyes:
         return PartPose(
             UncertainPose(PLACE, covariance),
             covariance,
+            covariance,
             (),
             np.zeros((0, 3)),
             np.zeros(6),

@@ -76,12 +76,12 @@ class PartMeasurement:
 
     @property
     def sigma_mm_deg(self) -> Array:
-        """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the holes alone.
+        """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the images alone.
 
-        They say whether more frames help. The error of C1_T_C2 stays with any number of frames, and
-        cancels between frame and deck.
+        They say whether more frames help. The error of C1_T_C2, and what the part is off its
+        drawing, stay with any number of frames.
         """
-        sigma = np.sqrt(np.diag(self.pose.own_covariance))
+        sigma = np.sqrt(np.diag(self.pose.image_covariance))
         return np.concatenate([sigma[:3] / MM, np.degrees(sigma[3:])])
 
 

@@ -174,3 +174,13 @@ def test_holes_off_their_drawing_are_explained_when_the_drawing_says_so() -> Non
     assert said.misfit.growth == 1.0
     assert said.pose.sigma[5] > 3 * np.sqrt(silent.own_covariance[5, 5])
     assert said.pose.sigma[2] == pytest.approx(np.sqrt(silent.own_covariance[2, 2]), rel=0.2)
+
+
+def test_more_images_would_not_help_against_holes_off_their_drawing() -> None:
+    images = heads(np.random.default_rng(7).normal(size=(6, 3)) * SIGMA_M)
+    known = UncertainPose(C1_T_C2, np.eye(6) * 1e-16)
+    said = part_pose(*images, known, [replace(hole, position_sigma_m=10e-6) for hole in HOLES])
+    exact = part_pose(*images, known, HOLES)
+    np.testing.assert_allclose(exact.image_covariance, exact.own_covariance)
+    # The weights are others when the drawing is not trusted, so the images' share is no smaller.
+    assert exact.own_covariance[5, 5] <= said.image_covariance[5, 5] < said.own_covariance[5, 5] / 4
