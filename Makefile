@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -28,6 +28,12 @@ $(VENV)/.installed: requirements.lock pyproject.toml
 
 demo: venv
 	$(BIN)/cellctl demo --seed $(SEED)
+
+demo-antenna: venv
+	$(BIN)/cellctl demo --process antenna-module --seed $(SEED) $(ARGS)
+
+demo-antenna-calibration: venv
+	$(BIN)/cellctl demo --process antenna-module --calibrate --seed $(SEED) $(ARGS)
 
 demo-calibration: venv
 	$(BIN)/cellctl demo --calibrate --seed $(SEED)

@@ -112,6 +112,18 @@ class Springs(Section):
     damping_ratio: float
 
 
+class ChessboardPrint(Section):
+    """A printed chessboard, not quite flat."""
+
+    inner_corners: tuple[int, int]
+    """Along x, along y."""
+    square_mm: float
+    size_mm: Pair
+    """Of the plate that carries the print."""
+    bow_spread_mm: float
+    """Height of its middle over its edges, along each side."""
+
+
 class StereoRig(Section):
     """How the two cameras of a stereo head stand to each other."""
 

@@ -1,42 +1,18 @@
 """The demonstration of deck-to-frame: one deck on its frame, held against the true world."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
 from fakes.demo.deck_calibration import PROCEDURES
 from fakes.demo.demo import Demo, Evidence, Judgement, Message, Procedure, Row
+from fakes.demo.force_row import force_row
+from fakes.demo.limited import Limited, failed_figures
 
 CONFIG = Path(__file__).parents[2] / "config"
 NEAR_SEAT_MM = 5.0
 """A deck farther away was never mated: its offset says nothing."""
 _AXES = ("x", "y", "z")
-
-
-@dataclass(frozen=True, slots=True)
-class Limited:
-    """A figure that a good part has within limits; what is unknown is not within."""
-
-    name: str
-    key: str
-    lower: float
-    """At least."""
-    upper: float
-    """Less than."""
-    form: str
-    of_the_seat: bool = True
-    """Says nothing while the deck is not at its seat."""
-
-    def within(self, value: float | None) -> bool:
-        """Whether it is within its limits."""
-        return value is not None and self.lower <= value < self.upper
-
-    def row(self, value: float | None) -> Row:
-        """For the table at the end."""
-        limit = f"{self.lower:g} … {self.upper:g}" if self.lower else f"{self.upper:g}"
-        within = None if value is None else self.within(value)
-        return Row(self.name, value, self.form, limit, within)
 
 
 LIMITED = (
@@ -80,7 +56,7 @@ class DeckToFrameDemo(Demo):
         """Every figure of a good part, as it truly was and as the record has it."""
         figures = _figures(evidence)
         beyond = [one.name for one in LIMITED if not one.within(figures[one.key])]
-        beyond += [f"{key} of the record" for key in _failed(evidence.record)]
+        beyond += [f"{key} of the record" for key in failed_figures(evidence.record)]
         if evidence.record and not _converged(evidence.record):
             beyond.append("convergence of the loop")
         figures |= {"beyond": beyond}
@@ -98,7 +74,7 @@ class DeckToFrameDemo(Demo):
         return {
             "iteration": str(now.get("iteration") or "-"),
             "error": _errors(now).replace("  r", "\nr") or "-",
-            "force z": _force(now),
+            "force z": force_row(now),
         }
 
 
@@ -130,12 +106,6 @@ def _figures(evidence: Evidence) -> dict[str, Any]:
     }
 
 
-def _failed(record: Mapping[str, Any]) -> list[str]:
-    """Keys of the figures that count and did not pass: the last one of each key counts."""
-    verdicts = {figure["key"]: figure["verdict"] for figure in record.get("figures", [])}
-    return [key for key, verdict in verdicts.items() if verdict == "fail"]
-
-
 def _converged(record: Mapping[str, Any]) -> bool:
     passes = record.get("passes", [])
     return bool(passes) and passes[-1]["converged"] is True
@@ -148,17 +118,6 @@ def _rows(figures: Mapping[str, Any]) -> list[Row]:
         one.row(figures[one.key] if mated or not one.of_the_seat else None) for one in LIMITED
     ]
     return [Row("iterations of the loop", figures["iterations"]), *limited]
-
-
-def _force(now: Message) -> str:
-    force, limit = now.get("force_z_n"), now.get("force_limit_n")
-    peak = (now.get("force_peaks") or [None] * 3)[2]
-    parts = ["-" if force is None else f"{force + 0.0:7.2f} N"]
-    if peak is not None:
-        parts.append(f"peak {peak:.1f} N")
-    if limit is not None:
-        parts.append(f"limit {limit:.0f} N")
-    return "   ".join(parts)
 
 
 def _errors(now: Message) -> str:

@@ -23,6 +23,9 @@ _STILL_M = 1e-9
 """A setpoint that is no farther away is the present pose; the metres of a step divide by it."""
 _JUMP_RAD = np.deg2rad(45.0)
 """Between two knots of a linear path: more than this is a passage near a singularity."""
+_JOG_ROUNDS = 3
+"""An arm is wrong by nearly the same a millimetre away: each round leaves a thousandth."""
+_JOG_ACCELERATION_M_S2 = 0.1
 
 
 class RefusedMotionError(Exception):
@@ -60,6 +63,8 @@ class RobotArm:
         self._profile = Profile(0.0, 0.0, 1.0, 1.0)
         self._travelled_m = 0.0
         self.override_percent = 100
+        self.by_hand = False
+        """The key at the panel stands on manual, because somebody jogs the arm."""
         self._flaws = flaws or ArmFlaws()
         self._cell_T_base = self._base_at(0.0)
 
@@ -89,6 +94,27 @@ class RobotArm:
             raise RefusedMotionError("SINGULAR")
         self._check_limits(path.knots)
         self._begin(time_s, path, speed_m_s, acceleration_m_s2)
+
+    def start_jog(self, time_s: float, cell_T_flange: RigidTransform, speed_m_s: float) -> None:
+        """Begin a linear motion of somebody at the panel who feels where the flange truly is.
+
+        It ends there whatever the arm is wrong by, except a wander over its travel: the encoders
+        show by what. Raises ``RefusedMotionError``.
+        """
+        near = self.joints(time_s)
+        error = self._settling_rng.normal(0, self._settling)
+        settled = small_displacement(error)
+        cell_T_base = RigidTransform.from_matrix(self._cell_T_base)
+        wanted = commanded = cell_T_base.inv() * cell_T_flange
+        for _ in range(_JOG_ROUNDS):
+            try:
+                joints = inverse(self.settings.chain_mm, commanded, near)
+            except OutOfReachError as beyond:
+                raise RefusedMotionError("REACH") from beyond
+            reached = RigidTransform.from_matrix(self._base_T_flange(joints) @ settled)
+            commanded = wanted * reached.inv() * commanded
+        self.start_linear(time_s, commanded, speed_m_s, _JOG_ACCELERATION_M_S2)
+        self._next_error = error
 
     def check_step(self, time_s: float, target: RigidTransform) -> None:
         """Refuse a step that is longer than this controller allows."""
@@ -159,9 +185,7 @@ class RobotArm:
         """True cell_T_flange as a 4x4 matrix."""
         along = self._profile.at(time_s)
         joints = self._path.joints(along)
-        if self._flaws.transmission is not None:
-            joints = joints + self._flaws.transmission.error(joints)
-        base_T_flange = forward_matrix(self.truth.links, joints)
+        base_T_flange = self._base_T_flange(joints)
         error = self._wander.error(self._travel(along)) + self._settled(along)
         return self._cell_T_base @ base_T_flange @ small_displacement(error)
 
@@ -202,6 +226,12 @@ class RobotArm:
         length_m = speed * latency_s + speed**2 / braking + segment.length
         further = segment.lengthened(self._profile.at(time_s), length_m)
         self._continue(time_s, further, speed)
+
+    def _base_T_flange(self, joints: Array) -> Array:
+        """By the links as they are, without the error of a single motion."""
+        if self._flaws.transmission is not None:
+            joints = joints + self._flaws.transmission.error(joints)
+        return forward_matrix(self.truth.links, joints)
 
     def _base_at(self, time_s: float) -> Array:
         base = self.truth.cell_T_base.as_matrix()

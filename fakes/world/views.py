@@ -6,12 +6,15 @@ from scipy.spatial.transform import RigidTransform
 _FACING_MIN = 0.6
 _NEAREST_M = 0.15
 _SLOPE_MAX = 0.5
-"""Half the field of view is about 0.34 times the distance."""
+"""Half the field of view of a stereo head is about 0.34 times the distance."""
 
 
-def in_view(camera_T_plate: RigidTransform, size_m: tuple[float, float]) -> bool:
+def in_view(
+    camera_T_plate: RigidTransform, size_m: tuple[float, float], slope_max: float = _SLOPE_MAX
+) -> bool:
     """True when part of a plate's face can be in an image; generous at the edges.
 
+    ``slope_max``: tangent of the angle beside the line of sight up to which a camera sees.
     The world has arms elsewhere: a deck behind the camera, edge-on or far aside is not seen.
     """
     facing = float(camera_T_plate.rotation.as_matrix()[2, 2]) < -_FACING_MIN
@@ -20,4 +23,4 @@ def in_view(camera_T_plate: RigidTransform, size_m: tuple[float, float]) -> bool
     points = camera_T_plate.apply(face)
     ahead = points[points[:, 2] > _NEAREST_M]
     slopes = np.abs(ahead[:, :2] / ahead[:, 2:])
-    return facing and bool((slopes < _SLOPE_MAX).all(axis=1).any())
+    return facing and bool((slopes < slope_max).all(axis=1).any())

@@ -13,6 +13,8 @@ from fakes.world.frames import Array
 
 EVERY_MS: Final = 4
 """Milliseconds between two evaluations: forces change over hundredths of a second."""
+KEPT_M: Final = 1.5e-3
+"""Depth from which the socket keeps a plug that is let go."""
 _NEAR_M: Final = 4e-3
 _ABOVE_M: Final = 0.1e-3
 _RELAXATION: Final = 0.15
@@ -33,6 +35,11 @@ class PlugAtSocket:
         """True depth of the plug; minus infinity away from the socket."""
         self.peak_side_n = np.zeros(len(self.states))
         self.peak_axial_n = np.zeros(len(self.states))
+        self.peak_total_n = 0.0
+        """Highest force against the insertion."""
+        self.met_at: RigidTransform | None = None
+        """socket_T_plug of the last approach, just before the plug touched: it hangs freely there,
+        so this is what the placing was wrong by. None before the first approach."""
         self._commanded_m = -np.inf
         self._inwards = True
 
@@ -48,6 +55,8 @@ class PlugAtSocket:
             self.response = None
             return np.zeros(6)
         self._follow(-z)
+        if self._inwards and -z < 0:
+            self.met_at = socket_T_plug
         place = PlugPlace(
             x, y, float(turn[2]), (float(turn[0]), float(turn[1])), self.depth_m, self._inwards
         )
@@ -56,6 +65,7 @@ class PlugAtSocket:
         self.states, self.response = response.states, response
         self.peak_side_n = np.maximum(self.peak_side_n, response.side_n)
         self.peak_axial_n = np.maximum(self.peak_axial_n, response.axial_n)
+        self.peak_total_n = max(self.peak_total_n, float(response.wrench[2]))
         return response.wrench
 
     def rests_at(self, socket_T_plug: RigidTransform) -> RigidTransform:

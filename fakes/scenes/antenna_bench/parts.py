@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import Fault, FaultBoard
 from fakes.scenes.antenna_bench.scenario import BenchScenario
+from fakes.scenes.antenna_bench.shifts import SHIFT_FAULTS
 from fakes.world.connector.contact_lot import MatingPair, MatingSizes, draw_peaks
 from fakes.world.connector.drawing import DRAWINGS, SOCKET_T_MATED_PLUG
 from fakes.world.connector.made import connector_as_made
@@ -21,6 +22,7 @@ FAULTS: Mapping[str, str] = {
     "missing_pin": "pin `contact` of the next modules is missing",
     "blocked_hole": "hole `contact` of the next sockets is blocked",
     "dirt": "the next connectors carry `specks` specks",
+    **SHIFT_FAULTS,
 }
 _TOP_THICKNESS_M = 6e-3
 

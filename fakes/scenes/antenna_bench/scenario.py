@@ -1,9 +1,20 @@
 """Sections of the scenario file that describe module, tray, socket, gripper and their contact."""
 
-from typing import Literal
+from typing import Literal, Self
+
+from pydantic import model_validator
 
 from fakes.scenario import Scenario
-from fakes.sections import DeviceName, Pair, Pose, Section, Spread, Springs, Three
+from fakes.sections import (
+    ChessboardPrint,
+    DeviceName,
+    Pair,
+    Pose,
+    Section,
+    Spread,
+    Springs,
+    Three,
+)
 
 
 class Module(Springs):
@@ -64,10 +75,70 @@ class BenchGripper(Section):
     com_in_sensor_mm: Three
 
 
+class CalibrationBoard(ChessboardPrint):
+    """The chessboard, where the operator puts it for one or the other camera."""
+
+    cell_T_board_mm_deg: Pose
+    """On its stand on the table, face up."""
+    flange_T_board_mm_deg: Pose
+    """In front of the fingers, face away from the flange: it hides them and their marks."""
+    placement: Spread
+    """How far it is put beside either of them."""
+
+
+class ReferencePlate(Section):
+    """A strip of clear glass with white dots, seen by camera I from above and by camera II from
+    below. The dots are burnt into the glass: both cameras see the very same ones, and the marks of
+    the gripper stay visible behind the strip. The glass itself is not drawn."""
+
+    camera_T_plate_mm_deg: Pose
+    """Nominal place before the fixed camera, z against its line of sight's end: away from it. The
+    fitter pushes the strip into the edge of this camera's picture, wherever the camera stands."""
+    placement: Spread
+    dots_mm: tuple[Pair, ...]
+    """As camera I sees them, from above."""
+    dot_diameter_mm: float
+
+
+class OperatorHands(Section):
+    """Somebody who plugs the held module at the panel of the arm, by feel."""
+
+    gauge_sigma_mm: float
+    """How far from stress-free the plug is left, per axis."""
+    gauge_sigma_deg: float
+    travel_mm_s: float
+    """To above the socket."""
+    plugging_mm_s: float
+    farthest_mm: float
+    """The plug has to be so near its socket: nobody jogs an arm through the whole cell."""
+    patience_s: float
+    """A plug that rests so long above its socket waits for the hands, while they stand by."""
+
+
 class BenchScenario(Scenario):
-    """The whole file."""
+    """The whole file. The arm carries one camera, the other one is fixed."""
 
     module: Module
     tray: Tray
     socket: Socket
     gripper: BenchGripper
+    board: CalibrationBoard
+    plate: ReferencePlate
+    hands: OperatorHands
+
+    @property
+    def carried_camera(self) -> DeviceName:
+        """Camera I, on the flange."""
+        return next(name for name, one in self.cameras.items() if one.carried_by is not None)
+
+    @property
+    def fixed_camera(self) -> DeviceName:
+        """Camera II, beside the arm."""
+        return next(name for name, one in self.cameras.items() if one.carried_by is None)
+
+    @model_validator(mode="after")
+    def _one_camera_of_each_kind(self) -> Self:
+        carriers = [camera.carried_by for camera in self.cameras.values()]
+        if sorted(carriers, key=str) != sorted([None, self.gripper.carried_by], key=str):
+            raise ValueError("one camera is carried by the arm of the gripper, one is fixed")
+        return self

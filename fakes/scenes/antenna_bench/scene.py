@@ -8,14 +8,23 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario import Scenario
+from fakes.scenes.antenna_bench.boards import (
+    plate_dots,
+    plate_pose,
+    plate_size_m,
+)
 from fakes.scenes.antenna_bench.gripping import ModulePlace
-from fakes.scenes.antenna_bench.mating import EVERY_MS, PlugAtSocket, mount_of
-from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, offsets_m, placed
+from fakes.scenes.antenna_bench.mating import EVERY_MS, KEPT_M, PlugAtSocket, mount_of
+from fakes.scenes.antenna_bench.operator import BenchOperator
+from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, placed
 from fakes.scenes.antenna_bench.scenario import BenchScenario
-from fakes.world.connector.insertion import PinState
+from fakes.scenes.antenna_bench.shifts import shifted
+from fakes.scenes.antenna_bench.truth import truth_of
+from fakes.sections import Optics
+from fakes.world.boards import chessboard_as_made
 from fakes.world.connector.made import gripper_marks
 from fakes.world.flaws.warmth import warmed
-from fakes.world.frames import MM, Array, from_written, stream, to_written
+from fakes.world.frames import MM, Array, from_written, stream
 from fakes.world.payload import Payload
 from fakes.world.scene import Seen
 from fakes.world.truth import drawn_spread
@@ -23,9 +32,9 @@ from fakes.world.views import in_view
 from fakes.world.world import Command, World
 
 _GRAVITY = np.array([0.0, 0.0, -9.80665])
-_KEPT_M = 1.5e-3
-"""Depth from which the socket keeps a plug that is let go."""
 _MARKS_FACE_M = (60e-3, 22e-3)
+_SEEN_BEYOND = 1.1
+"""What lies so little beside the corner of the picture is drawn, for its edges."""
 
 
 class AntennaBench(World[BenchScenario]):
@@ -46,24 +55,30 @@ class AntennaBench(World[BenchScenario]):
             com_in_flange_m=nominal.apply(np.array(gripper.com_in_sensor_mm) * MM),
         )
         spread = drawn_spread(stream(scenario.hardware_seed, "marks"), gripper.marks_spread)
-        self.flange_T_marks = from_written(gripper.flange_T_marks_mm_deg) * spread
-        self._loads = self._warmings = self._ticks = 0
+        self._flange_T_marks = from_written(gripper.flange_T_marks_mm_deg) * spread
+        self._cell_T_plate = plate_pose(
+            scenario, self.truth.cameras[scenario.fixed_camera].mount_T_camera
+        )
+        self._board = chessboard_as_made(scenario.board, scenario.hardware_seed, seed)
+        self._slope_max = max(_slope_max(optics) for optics in scenario.optics.values())
+        self.operator = BenchOperator(self)
+        self.mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
+        self.loads = self._warmings = self._ticks = 0
         self._contact_n = np.zeros(6)
         self._jaws_seen = -1.0
         self.load()
 
     def load(self) -> dict[str, Any]:
         """Lay the next module on the tray and bring the next panel."""
-        self._loads += 1
-        self.parts = draw_parts(self.scenario, self.seed, self._loads, self.faults)
+        self.loads += 1
+        self.parts = draw_parts(self.scenario, self.seed, self.loads, self.faults)
         gripper = self.scenario.gripper
         self.module = ModulePlace(
-            gripper, self.seed + self._loads, "tray", self.parts.cell_T_tray_plug,
+            gripper, self.seed + self.loads, "tray", self.parts.cell_T_tray_plug,
             from_written(gripper.flange_T_plug_mm_deg),
         )  # fmt: skip
-        mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
-        self.mating = PlugAtSocket(self.parts.pair, mount)
-        return {"load": self._loads}
+        self.mating = PlugAtSocket(self.parts.pair, self.mount)
+        return {"load": self.loads}
 
     def warm(self, kelvin: float) -> dict[str, Any]:
         """The arm's links take temperatures that differ by so much, from the next motion on."""
@@ -76,13 +91,14 @@ class AntennaBench(World[BenchScenario]):
 
     def commands(self) -> Mapping[str, Command]:
         """The hands of the operator on the control port."""
-        return {"load": self.load, "warm": self.warm}
+        return {"load": self.load, "warm": self.warm, **self.operator.commands()}
 
     # -- forces ---------------------------------------------------------------------------------
     def load_on(self, sensor: str, flange: Array, *, moving: bool) -> Array:
         """Gripper with its inertia; weight of the module; what the socket does to it."""
         if sensor != self.scenario.gripper.force_sensor:
             return np.zeros(6)
+        self.operator.advance(self._ticks)
         self._tool.advance(flange, moving=moving)
         self._ticks += 1
         if self._ticks % EVERY_MS == 0 and (moving or self._something_changes()):
@@ -100,8 +116,8 @@ class AntennaBench(World[BenchScenario]):
         """Wrench on the sensor, in its axes."""
         module, settings = self.module, self.scenario.module
         jaws = self.jaws[self.scenario.gripper.device]
-        rests_at = self._rests_at(cell_T_flange)
-        in_socket = self.mating.depth_m > _KEPT_M
+        rests_at = self.rests_at(cell_T_flange)
+        in_socket = self.mating.depth_m > KEPT_M
         module.follow(jaws, cell_T_flange, rests_at=rests_at, in_socket=in_socket)
         if module.place != "gripper":
             return np.zeros(6)
@@ -120,7 +136,7 @@ class AntennaBench(World[BenchScenario]):
         turned = sensor.rotation.inv()
         return np.concatenate([turned.apply(force + weight), turned.apply(torque)])
 
-    def _rests_at(self, cell_T_flange: RigidTransform) -> RigidTransform:
+    def rests_at(self, cell_T_flange: RigidTransform) -> RigidTransform:
         """True cell_T_plug: where the springs leave it."""
         cell_T_plug = self.module.now(cell_T_flange)
         if self.module.place != "gripper":
@@ -129,52 +145,62 @@ class AntennaBench(World[BenchScenario]):
         return socket * self.mating.rests_at(socket.inv() * cell_T_plug)
 
     # -- views ----------------------------------------------------------------------------------
-    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterator[Seen]:
-        """Socket, plug and marks, or the top of the module on its tray, as far as in view."""
+    @property
+    def flange_T_marks(self) -> RigidTransform:
+        """Where the gripper's marks are."""
+        return shifted(self.faults, "marks_shifted", self._flange_T_marks)
+
+    @property
+    def cell_T_plate(self) -> RigidTransform:
+        """Where the reference plate is."""
+        return shifted(self.faults, "plate_shifted", self._cell_T_plate)
+
+    def camera_pose(self, camera: str) -> RigidTransform:
+        """True cell_T_camera, slipped or not."""
+        pose = super().camera_pose(camera)
+        if camera == self.scenario.fixed_camera:
+            return shifted(self.faults, "camera_2_shifted", pose)
         flange = self.flange(self.scenario.gripper.carried_by)
+        return flange * shifted(self.faults, "camera_1_shifted", flange.inv() * pose)
+
+    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterator[Seen]:
+        """A calibration board alone; else connectors, marks and dots, or the top of the module on
+        its tray, as far as in view."""
+        flange = self.flange(self.scenario.gripper.carried_by)
+        cell_T_board = self.operator.cell_T_board(flange)
+        if cell_T_board is not None:
+            board = camera_T_cell * cell_T_board
+            # On the flange its plate hides fingers and plug; on its stand nothing else is near.
+            if self._sees(board, self._board.size_m):
+                yield self._board.seen(board)
+                return
         panel_m = np.array(self.scenario.socket.panel_mm) * MM
         housing_m = np.array(self.scenario.module.housing_mm) * MM
         socket = camera_T_cell * self.parts.cell_T_socket
         plug = camera_T_cell * self.module.now(flange)
         marks = camera_T_cell * flange * self.flange_T_marks
-        if self.module.place != "socket" and in_view(socket, (panel_m[0], panel_m[1])):
+        if self.module.place != "socket" and self._sees(socket, (panel_m[0], panel_m[1])):
             yield placed(self.parts.socket, socket)
-        if self.module.place == "gripper" and in_view(plug, (housing_m[0], housing_m[1])):
+        if self.module.place == "gripper" and self._sees(plug, (housing_m[0], housing_m[1])):
             yield placed(self.parts.plug, plug)
-        if in_view(marks, _MARKS_FACE_M):
+        if self._sees(marks, _MARKS_FACE_M):
             yield gripper_marks(marks)
+        dots = plate_dots(self.scenario, camera_T_cell * self.cell_T_plate)
+        if self._sees(dots.camera_T_marks, plate_size_m(self.scenario)):
+            yield dots
         top = module_top(self.scenario, self.parts, plug)
-        if self.module.place != "gripper" and in_view(top.camera_T_part, top.size_m):
+        if self.module.place != "gripper" and self._sees(top.camera_T_part, top.size_m):
             yield top
+
+    def _sees(self, camera_T_face: RigidTransform, size_m: tuple[float, float]) -> bool:
+        return in_view(camera_T_face, size_m, self._slope_max)
 
     # -- truth ----------------------------------------------------------------------------------
     def truth_report(self) -> dict[str, Any]:
-        """Poses, the plug against its socket, pins by their state, forces of each contact."""
-        flange = self.flange(self.scenario.gripper.carried_by)
-        cell_T_plug = self.module.now(flange)
-        held_at = self.parts.cell_T_socket.inv() * cell_T_plug
-        rests_at = self.parts.cell_T_socket.inv() * self._rests_at(flange)
-        offsets = np.linalg.norm(offsets_m(self.parts.pair, held_at), axis=1)
-        names = [contact.name for contact in self.parts.plug.contacts]
-        states = [PinState(state).name.lower() for state in self.mating.states]
-        return {
-            "load": self._loads,
-            "module": self.module.place,
-            "cell_T_flange_mm_deg": to_written(flange),
-            "cell_T_camera_mm_deg": {
-                name: to_written(self.camera_pose(name)) for name in self.truth.cameras
-            },
-            "cell_T_socket_mm_deg": to_written(self.parts.cell_T_socket),
-            "cell_T_plug_mm_deg": to_written(cell_T_plug),
-            "flange_T_marks_mm_deg": to_written(self.flange_T_marks),
-            "socket_T_plug_mm_deg": to_written(rests_at),
-            "offset_at_worst_contact_mm": float(offsets.max() / MM),
-            "worst_contact": names[int(offsets.argmax())],
-            "seated_depth_mm": -float(rests_at.translation[2] / MM),
-            "pins": dict(zip(names, states, strict=True)),
-            "bent": [pin.name for pin in self.parts.plug.contacts if any(pin.bend_m)],
-            "missing": [pin.name for pin in self.parts.plug.contacts if not pin.present],
-            "blocked": [hole.name for hole in self.parts.socket.contacts if hole.blocked],
-            "peak_side_n": dict(zip(names, self.mating.peak_side_n.tolist(), strict=True)),
-            "peak_axial_n": dict(zip(names, self.mating.peak_axial_n.tolist(), strict=True)),
-        }
+        """Devices as they are, the plug against its socket, pins by their state, forces."""
+        return truth_of(self)
+
+
+def _slope_max(optics: Optics) -> float:
+    """Tangent of the angle from the line of sight to a corner of the picture, and a little more."""
+    return _SEEN_BEYOND * float(np.hypot(*optics.image_px)) / 2 / optics.focal_px

@@ -1,4 +1,4 @@
-"""The boards of the calibrations: how they were made, and where the operator's hands put them."""
+"""The boards of the calibrations: discs of board P, and where the operator's hands put them."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -21,13 +21,6 @@ def board_discs(board: TargetBoard) -> tuple[SceneDisc, ...]:
         for row in range(3)
         for column in range(3)
     )
-
-
-def chessboard_bow_m(scenario: DeckScenario, hardware_seed: int) -> tuple[float, float]:
-    """How much the chessboard is bowed; it belongs to the hardware like the cameras."""
-    rng = stream(hardware_seed, "chessboard")
-    bow_x, bow_y = rng.uniform(-1, 1, 2) * scenario.chessboard.bow_spread_mm * MM
-    return float(bow_x), float(bow_y)
 
 
 def measuring_flange(scenario: DeckScenario, head: str) -> RigidTransform:

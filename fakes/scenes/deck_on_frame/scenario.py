@@ -5,7 +5,7 @@ from typing import Any, Self
 from pydantic import model_validator
 
 from fakes.scenario import Scenario
-from fakes.sections import DeviceName, Pair, Pose, Section, Spread, Springs, Three
+from fakes.sections import ChessboardPrint, DeviceName, Pair, Pose, Section, Spread, Springs, Three
 
 
 class HoleSpec(Section):
@@ -90,13 +90,9 @@ class TargetBoard(Section):
     placement: Spread
 
 
-class Chessboard(Section):
+class Chessboard(ChessboardPrint):
     """Chessboard that is held under a head by hand."""
 
-    inner_corners: tuple[int, int]
-    square_mm: float
-    size_mm: Pair
-    bow_spread_mm: float
     distance_mm: Pair
     """From the middle between the cameras."""
     offset_mm: Pair

@@ -11,7 +11,6 @@ from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
 from fakes.scenes.deck_on_frame.boards import (
     board_discs,
-    chessboard_bow_m,
     chessboard_view,
     measuring_flange,
     target_board_pose,
@@ -20,7 +19,8 @@ from fakes.scenes.deck_on_frame.contact import rim
 from fakes.scenes.deck_on_frame.gauges import pin_offsets
 from fakes.scenes.deck_on_frame.parts import PartsTruth, draw_parts, grip_slips
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
-from fakes.scenes.deck_on_frame.views import plates, seen_chessboard, seen_target_board
+from fakes.scenes.deck_on_frame.views import plates, seen_target_board
+from fakes.world.boards import chessboard_as_made
 from fakes.world.contact import Touch
 from fakes.world.frames import MM, Array, from_written, to_written
 from fakes.world.payload import Payload
@@ -61,7 +61,7 @@ class DeckOnFrame(World[DeckScenario]):
         self.loads = 0
         self._moved = False
         self._slips: Iterator[RigidTransform] = iter(())
-        self._bow_m = chessboard_bow_m(scenario, scenario.hardware_seed)
+        self._chessboard = chessboard_as_made(scenario.chessboard, scenario.hardware_seed, seed)
         if scenario.parts.loaded_at_start:
             self.load_parts()
         self.rebuild()
@@ -161,8 +161,7 @@ class DeckOnFrame(World[DeckScenario]):
             pose = camera_T_cell * placed.target_board
             yield seen_target_board(self.scenario, self.seed, pose)
         if placed.chessboard is not None:
-            pose = camera_T_cell * placed.chessboard
-            yield seen_chessboard(self.scenario, self.seed, pose, self._bow_m)
+            yield self._chessboard.seen(camera_T_cell * placed.chessboard)
 
     def targets_for(self, tracker: str) -> Iterator[Target]:  # noqa: ARG002  every one sees them
         """The discs of board P."""

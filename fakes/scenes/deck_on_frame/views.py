@@ -9,7 +9,7 @@ from fakes.scenes.deck_on_frame.boards import board_discs
 from fakes.scenes.deck_on_frame.parts import PartsTruth
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.frames import MM, stream_seed
-from fakes.world.scene import SceneChessboard, ScenePlate, SceneTargetBoard
+from fakes.world.scene import ScenePlate, SceneTargetBoard
 from fakes.world.views import in_view
 
 FRAME_THICKNESS_M = 40e-3
@@ -49,19 +49,4 @@ def seen_target_board(
         disc_diameter_m=board.disc_diameter_mm * MM,
         discs=board_discs(board),
         seed=stream_seed(seed, "target board texture"),
-    )
-
-
-def seen_chessboard(
-    scenario: DeckScenario, seed: int, camera_T_board: RigidTransform, bow_m: tuple[float, float]
-) -> SceneChessboard:
-    """The chessboard with the bow that it really has."""
-    board = scenario.chessboard
-    return SceneChessboard(
-        camera_T_board=camera_T_board,
-        inner_corners=board.inner_corners,
-        square_m=board.square_mm * MM,
-        size_m=(board.size_mm[0] * MM, board.size_mm[1] * MM),
-        bow_m=bow_m,
-        seed=stream_seed(seed, "chessboard texture"),
     )

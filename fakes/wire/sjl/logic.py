@@ -65,7 +65,7 @@ class Controller:
     @property
     def panel(self) -> Panel:
         """Key, button, drives and error number."""
-        return Panel(self.faults)
+        return Panel(self.faults, self.arm.by_hand)
 
     def moving(self, time_s: float) -> bool:
         """The arm moves, or follows a stream, in which it may stand between two steps."""

@@ -10,6 +10,8 @@ class Panel:
     """What an operator, or the controller itself, can do to a motion."""
 
     faults: FaultBoard
+    by_hand: bool = False
+    """Somebody jogs the arm."""
 
     @property
     def emergency_stop(self) -> bool:
@@ -19,7 +21,7 @@ class Panel:
     @property
     def mode(self) -> str:
         """MAN, AUT or REM."""
-        if self.faults.active("manual_mode"):
+        if self.by_hand or self.faults.active("manual_mode"):
             return "MAN"
         return "AUT" if self.faults.active("automatic_mode") else "REM"
 

@@ -33,8 +33,9 @@ def taken() -> Iterator[int]:
 
 
 def test_an_unknown_process_names_those_that_there_are() -> None:
-    assert "there is no demonstration of 'weaving'; there are: deck-to-frame" in refused(
-        "--process", "weaving"
+    assert (
+        "there is no demonstration of 'weaving'; there are: antenna-module, deck-to-frame"
+        in refused("--process", "weaving")
     )
 
 

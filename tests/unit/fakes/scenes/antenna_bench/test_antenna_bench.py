@@ -19,11 +19,6 @@ CONFIG = Path(__file__).parents[5] / "config"
 G_M_S2 = 9.80665
 
 
-@pytest.fixture(scope="module")
-def scenario() -> BenchScenario:
-    return BenchScenario.read(CONFIG / "antenna.scenario.toml")
-
-
 def test_the_taught_poses_of_the_cell_file_are_those_of_the_scenario(
     scenario: BenchScenario,
 ) -> None:
@@ -125,10 +120,11 @@ def test_what_the_cameras_see(scenario: BenchScenario) -> None:
     assert isinstance(top, ScenePlate)
     hands.grip()
     hands.taught("inspect_plug")
-    plug, marks = hands.world.camera_scene("camera_2").bodies
+    plug, marks, dots = hands.world.camera_scene("camera_2").bodies
     assert isinstance(plug, SceneConnector)
     assert isinstance(marks, SceneMarks)
     assert plug.kind == "pins"
+    assert isinstance(dots, SceneMarks)
     assert plug.camera_T_connector.translation == pytest.approx([0.0, 0.0, 0.25], abs=3e-3)
     hands.taught("socket_look")
     (socket,) = hands.world.camera_scene("camera_1").bodies
