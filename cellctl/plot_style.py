@@ -5,16 +5,21 @@ decorator of the function that draws.
 """
 
 import io
+import itertools
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
 
 INK, MUTED, GRID = "#1c2733", "#6b7785", "#dfe4ea"
 ACCENT, SECOND, THIRD = "#1f5fa8", "#c77d0a", "#7a8795"
@@ -79,3 +84,15 @@ def label_line(axes: Axes, y: float, text: str, colour: str, *, dashed: bool = F
         color=colour,
         fontsize=7,
     )
+
+
+def envelope(x: Array, y: Array, bins: int = 700) -> tuple[Array, Array]:
+    """At most ``2 · bins`` points that keep every peak: least and greatest of each stretch."""
+    if len(x) <= 2 * bins:
+        return x, y
+    edges = np.linspace(0, len(x), bins + 1).astype(int)
+    kept = []
+    for begin, end in itertools.pairwise(edges):
+        pair = {begin + int(np.argmin(y[begin:end])), begin + int(np.argmax(y[begin:end]))}
+        kept.extend(sorted(pair))
+    return x[kept], y[kept]

@@ -6,6 +6,7 @@ CalibrationError
 └── ReferenceMoved                                                    644      reference check
     ├── FixedCameraMoved, FlangeCameraMoved, GripperMarksMoved,
     └── ReferencePlateMoved, ArmMoved                                 645–649
+NobodyPlugged                                                         650      while teaching
 """
 
 from cellctl.errors.calibration import CalibrationError
@@ -90,3 +91,12 @@ class ArmMoved(ReferenceMoved):
     text = "The robot reaches other places than when it was taught"
     cause = "A collision, a lost joint reference, or warming up."
     remedy = "Let it warm up; if it stays, check the joint references and calibrate again."
+
+
+class NobodyPlugged(CalibrationError):
+    """The arm waited above the socket, and nobody plugged the module by hand."""
+
+    number = 650
+    text = "No plug was put in by hand"
+    cause = "Nobody turned the key at the panel and jogged the plug into its socket in time."
+    remedy = "Take the module out of the gripper, Reset, and start the teaching again."

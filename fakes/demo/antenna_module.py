@@ -30,6 +30,16 @@ class AntennaModuleDemo(Demo):
     scenario: ClassVar[Path] = CONFIG / "antenna.scenario.toml"
     serial: ClassVar[str] = "MOD-{seed:04d}"
     procedures: ClassVar[Sequence[Procedure]] = PROCEDURES
+    steps: ClassVar[Mapping[int, str]] = {
+        20: "find module",
+        30: "pick",
+        40: "inspect plug",
+        50: "locate socket",
+        60: "plan",
+        70: "stand-off",
+        80: "insert",
+        90: "verify",
+    }
 
     def judge(self, evidence: Evidence) -> Judgement:
         """Where the module is, what became of its pins, and every figure of a good plug."""

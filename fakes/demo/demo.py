@@ -19,6 +19,8 @@ class Procedure:
     number: int
     title: str
     prepare: Callable[[Control], None]
+    timeout_s: float = 300.0
+    """How long the line waits for it."""
 
 
 @dataclass(frozen=True, slots=True)

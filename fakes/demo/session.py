@@ -117,7 +117,8 @@ class Session:
         for procedure in self._demo.procedures:
             procedure.prepare(self._control)
             self._console.print(f"procedure {procedure.number}: {procedure.title}")
-            result = self._line("--mode", "maintenance", "--recipe", str(procedure.number))
+            number, timeout_s = str(procedure.number), f"{procedure.timeout_s:g}"
+            result = self._line("--mode", "maintenance", "--recipe", number, "--timeout", timeout_s)
             if result.get("result") != "good":
                 return self._not_good(result, self._faults())
         return GOOD

@@ -57,7 +57,8 @@ class Eyes:
 
     arm: GuardedRobot
     workers: VisionWorkers
-    recorder: RunRecorder
+    recorder: RunRecorder | None
+    """Where raw images go; None where they are not kept."""
     frames: int
 
     async def look(self, name: str, camera: Camera, measure: Callable[[Image], M]) -> Seen[M]:
@@ -70,7 +71,8 @@ class Eyes:
         images, found = [], []
         for number in range(1, self.frames + 1):
             image = measured_channel(await camera.grab())
-            self.recorder.raw_image(f"raw/{name}-frame-{number}.pgm.zst", image)
+            if self.recorder is not None:
+                self.recorder.raw_image(f"raw/{name}-frame-{number}.pgm.zst", image)
             images.append(image)
             found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)

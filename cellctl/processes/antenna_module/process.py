@@ -1,6 +1,6 @@
 """The process: an antenna module is taken from its tray and plugged (paper, section 2)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -19,6 +19,8 @@ from cellctl.errors.plugging import (
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
+from cellctl.records.entries import RunRecord
+from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.process import Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
 
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from cellctl.processes.antenna_module.run import PluggingRun
     from cellctl.processes.antenna_module.state import Ready
     from cellctl.processes.antenna_module.stations import AntennaCell
+    from cellctl.runtime.procedure import Procedure
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
 # and an operator's command must not wait for vision and force.
@@ -104,6 +107,23 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         recipes = antenna_recipes(self.services.cell.config)
         if recipes:
             await leave_stations(self.cell(recipes[0]))
+
+    @classmethod
+    def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
+        """Both connectors, what the plan rests on, force over depth."""
+        from cellctl.processes.antenna_module.report.pages import pages
+
+        return pages(record, read)
+
+    def procedures(self) -> "Sequence[Procedure]":
+        """What Maintenance offers: 206 teaches the plug correction."""
+        from cellctl.processes.antenna_module.procedures.offered import antenna_procedures
+        from cellctl.processes.antenna_module.stations import antenna_recipes
+
+        recipes = antenna_recipes(self.services.cell.config)
+        if not recipes:
+            return ()
+        return antenna_procedures(self.cell(recipes[0]), recipes, self.services)
 
     def cell(self, recipe: AntennaRecipe) -> "AntennaCell":
         """The devices in the roles of a recipe."""

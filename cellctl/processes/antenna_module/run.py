@@ -27,10 +27,20 @@ class PluggingRun:
     interruption: Interruption
     eyes: Eyes
     mover: Mover
+    prefix: str = ""
+    """Before the names of files and entries, where one run plugs several times."""
 
     @classmethod
-    def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
-        """A run whose record was opened."""
+    def of(
+        cls,
+        facts: RunFacts,
+        services: CellServices,
+        context: RunContext,
+        *,
+        prefix: str = "",
+        keep_images: bool = True,
+    ) -> Self:
+        """A run whose record was opened; ``keep_images``: raw ones belong into the record."""
         cell = facts.cell
         return cls(
             facts,
@@ -38,8 +48,14 @@ class PluggingRun:
             context.recorder,
             context.safe_point,
             context.interruption,
-            Eyes(cell.arm, cell.workers, context.recorder, facts.recipe.frames),
+            Eyes(
+                cell.arm,
+                cell.workers,
+                context.recorder if keep_images else None,
+                facts.recipe.frames,
+            ),
             Mover(cell),
+            prefix,
         )
 
     @property

@@ -18,7 +18,8 @@ async def record_judgement(
     run: PluggingRun, judgement: InsertionJudgement, limits: InsertionLimits
 ) -> None:
     """Verdict, features and their limits."""
-    await run.recorder.document(keys.INSERTION, judgement.to_record())
+    content = judgement.to_record() | {"bounds": _bounds(limits)}
+    await run.recorder.document(keys.INSERTION, content)
     found = judgement.features
     seat_mm = None if found.seat_depth_m is None else found.seat_depth_m / MM
     seat, off = limits.seat_depth_m / MM, limits.seat_tolerance_m / MM
@@ -34,3 +35,15 @@ async def record_judgement(
             ),
         ]
     )
+
+
+def _bounds(limits: InsertionLimits) -> list[tuple[float, float, float]]:
+    """From and to a depth in mm, the axial force in N that is allowed there."""
+    edges_m = (-limits.entry_height_m, limits.spring_depth_m, limits.seat_depth_m)
+    begin_m = -2 * limits.entry_height_m
+    rows = []
+    for edge_m in edges_m:
+        middle_m = (begin_m + edge_m) / 2
+        rows.append((begin_m / MM, edge_m / MM, limits.at(middle_m).axial_n))
+        begin_m = edge_m
+    return rows

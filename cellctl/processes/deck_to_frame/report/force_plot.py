@@ -1,16 +1,23 @@
 """Force against time and against travel (paper, figure 12)."""
 
-import itertools
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
-from cellctl.plot_style import ACCENT, GOOD, INK, LIMIT, SECOND, label_line, style, to_svg
+from cellctl.plot_style import (
+    ACCENT,
+    GOOD,
+    INK,
+    LIMIT,
+    SECOND,
+    envelope,
+    label_line,
+    style,
+    to_svg,
+)
 
-_BINS = 700
 _CONTACT_MM = 0.5
 
 
@@ -44,18 +51,6 @@ def force_by_travel(curve: ForceCurve, target_n: float | None, limit_n: float | 
         contact.set_ylabel("")
         whole.set_ylabel("force, N")
         return to_svg(figure)
-
-
-def envelope(x: Array, y: Array, bins: int = _BINS) -> tuple[Array, Array]:
-    """At most ``2 · bins`` points that keep every peak: least and greatest of each stretch."""
-    if len(x) <= 2 * bins:
-        return x, y
-    edges = np.linspace(0, len(x), bins + 1).astype(int)
-    kept = []
-    for begin, end in itertools.pairwise(edges):
-        pair = {begin + int(np.argmin(y[begin:end])), begin + int(np.argmax(y[begin:end]))}
-        kept.extend(sorted(pair))
-    return x[kept], y[kept]
 
 
 def _draw(axes: Axes, x: Array, curve: ForceCurve) -> None:

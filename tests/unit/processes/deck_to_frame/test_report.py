@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from cellctl.force.contact.curve import ForceCurve
+from cellctl.plot_style import envelope
 from cellctl.processes.deck_to_frame.report.force_plot import (
-    envelope,
     force_by_time,
     force_by_travel,
 )

@@ -1,0 +1,1 @@
+"""Procedures of Maintenance: calibrations, and what is taught."""

@@ -1,0 +1,135 @@
+"""Procedure 206: teaches the plug correction from plugs that somebody puts in by hand.
+
+The cell finds, picks and looks as in production, then waits above the socket. The operator turns
+the key to manual, jogs the plug into its socket by feel until it sits, and turns the key back. What
+the flange reports then, beside what the cameras have seen, is one taught plug.
+"""
+
+import asyncio
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.settling import settle
+from cellctl.clock import now_s
+from cellctl.errors.plug_calibration import NobodyPlugged
+from cellctl.errors.plugging import ModuleMissing
+from cellctl.geometry.pose import MM
+from cellctl.interfaces import RobotMode
+from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
+from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
+from cellctl.processes.antenna_module.facts import read_facts
+from cellctl.processes.antenna_module.mated import connector_T_plug
+from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.run import PluggingRun
+from cellctl.processes.antenna_module.start import move_to_start
+from cellctl.processes.antenna_module.state import Ready, SocketLocated
+from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.processes.antenna_module.steps.find_module import find_module
+from cellctl.processes.antenna_module.steps.inspect_plug import inspect_plug
+from cellctl.processes.antenna_module.steps.locate_socket import locate_socket
+from cellctl.processes.antenna_module.steps.pick import pick
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.process import CellServices, RunContext
+
+MODE = "teaching"
+SLOT = "1"
+"""Name of the one socket that a recipe has."""
+_WAITING_M = 10e-3
+"""Height of the tips over the socket's face while the arm waits for the operator."""
+_OVER_M = 20e-3
+PATIENCE_S = 900.0
+"""For the operator, each time."""
+_POLL_S = 0.1
+_LOOK_AGAIN_S = 2.0
+
+
+async def teach_plug_on_cell(
+    cell: AntennaCell, recipe: AntennaRecipe, services: CellServices, context: ProcedureContext
+) -> ProcedureOutcome:
+    """Teach as many plugs as the settings say; everything goes into a run of its own.
+
+    Raises ``TeachScatter``, ``NobodyPlugged``, and what the steps raise.
+    """
+    facts = await read_facts(cell, recipe, services.calibrations, CALIBRATIONS, teaching=True)
+    number = await context.record.open(recipe, MODE, facts.calibrations.records)
+    recorder = RunRecorder(services.store, number)
+    opened = RunContext(recorder, context.safe_point)
+    plugs: list[TaughtPlug] = []
+    total = cell.settings.taught_plugs
+    for count in range(1, total + 1):
+        await context.progress(count, total, "plug")
+        run = PluggingRun.of(facts, services, opened, prefix=f"plug-{count}/", keep_images=False)
+        plugs.append(await _one_plug(run, count))
+    correction = teach_plug({SLOT: plugs}, facts.plug_cell, facts.scheme)
+    return ProcedureOutcome(
+        kind=PLUG_CORRECTION.for_recipe(recipe.id),
+        record=correction.to_record(),
+        passed=correction.passed,
+        warnings=(),
+        picture_png=None,
+        serial_number="",
+    )
+
+
+async def _one_plug(run: PluggingRun, count: int) -> TaughtPlug:
+    await move_to_start(run)
+    located = await _looked_at(run)
+    await _wait_above(located)
+    run.say("plug by hand: key to manual, jog until it sits, key back to remote")
+    await _plugged_by_hand(run)
+    await settle(run.cell.arm.guard)
+    base_T_flange = run.cell.arm.robot.state().base_T_flange
+    await run.cell.gripper.open()
+    await run.mover.slowly_to(raised(base_T_flange, run.recipe.grip_approach_mm * MM))
+    return TaughtPlug(f"plug {count}", located.looks, base_T_flange)
+
+
+async def _looked_at(run: PluggingRun) -> SocketLocated:
+    found = None
+    give_up_s = now_s() + PATIENCE_S
+    while found is None:
+        try:
+            found = await find_module(Ready(run))
+        except ModuleMissing:
+            # Before every plug but the first the operator has the plugged module to take out.
+            if now_s() > give_up_s:
+                raise
+            run.say("lay the next module on the tray")
+            await asyncio.sleep(_LOOK_AGAIN_S)
+    return await locate_socket(await inspect_plug(await pick(found)))
+
+
+async def _wait_above(located: SocketLocated) -> None:
+    """Above the socket as far as it is known without a correction: the operator does the rest."""
+    run, look = located.run, located.looks.sockets[-1]
+    base_T_socket = look.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_socket *= look.camera_T_socket.pose
+    socket = run.drawings.socket
+    flange_T_plug = located.flange_T_connector * connector_T_plug(socket)
+    up_m = socket.seat_depth_m + _WAITING_M
+    waiting = (
+        base_T_socket * RigidTransform.from_translation([0.0, 0.0, up_m]) * flange_T_plug.inv()
+    )
+    over = raised(waiting, _OVER_M)
+    here = run.cell.arm.robot.state().base_T_flange
+    climb_m = float(over.translation[2] - here.translation[2])
+    await run.mover.to(raised(here, max(0.0, climb_m)))
+    await run.mover.to(over)
+    await run.mover.slowly_to(waiting)
+
+
+async def _plugged_by_hand(run: PluggingRun) -> None:
+    """Until the key was turned to manual and back; raises ``NobodyPlugged``."""
+    give_up_s = now_s() + PATIENCE_S
+    by_hand = False
+    while True:
+        state = run.cell.arm.robot.state()
+        if state.mode is not RobotMode.REMOTE:
+            by_hand = True
+        elif by_hand and state.ready and not state.moving:
+            return
+        if now_s() > give_up_s:
+            raise NobodyPlugged(f"nothing happened at the panel for {PATIENCE_S / 60:.0f} minutes")
+        await asyncio.sleep(_POLL_S)
