@@ -61,6 +61,7 @@ class ContactRecorder:
 
     def curve(self) -> ForceCurve:
         """All that was recorded so far."""
+        self._take_travel()
         self._take_samples()
         if not self._chunks:
             return ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))

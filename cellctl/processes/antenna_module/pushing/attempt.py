@@ -23,9 +23,6 @@ from cellctl.processes.antenna_module.pushing.way import InsertionWay
 
 _POLL_S = 0.01
 _LATE_S = 1.0
-_SETTLE_S = 0.05
-"""After a move of a tenth of a millimetre the arm has stopped swinging."""
-_READ_S = 0.1
 _LEAST_MOMENT_N_M = 0.1
 
 
@@ -41,6 +38,10 @@ class PushAttempt:
     limits: InsertionLimits
     watch: InsertionWatch
     recorder: ContactRecorder
+    settle_s: float = 0.05
+    """After a move of a tenth of a millimetre the arm has stopped swinging."""
+    read_s: float = 0.1
+    """Over which a reading is averaged."""
     fed_s: float = -np.inf
     """Time of the last sample that the watch has seen."""
 
@@ -72,8 +73,8 @@ class PushAttempt:
 
         Raises the fault of a trip that happens meanwhile, ``SensorSilent`` or ``SensorFrozen``.
         """
-        begin_s = now_s() + _SETTLE_S
-        end_s = begin_s + _READ_S
+        begin_s = now_s() + self.settle_s
+        end_s = begin_s + self.read_s
         # By the clock of the samples: what counts is when a sample was taken.
         while self.guard.latest().time_s < end_s:
             if self.guard.trip is not None:
