@@ -75,7 +75,7 @@ def features_of(
         early_pressure_m=_touch(axial, moment, early, limits),
         side_n=_largest(side),
         moment_z_n_m=_largest(np.abs(moment[:, 2])),
-        pressure_m=_pressure(axial, moment, curve.depth_m >= limits.spring_depth_m, limits),
+        pressure_m=_pressure(curve, limits),
         peak_n=_largest(axial[before_seat]),
         total_n=_largest(axial),
         seat_depth_m=None if seat is None else float(curve.depth_m[seat]),
@@ -107,7 +107,12 @@ def _touch(
     return float(-moment[at, 1] / axial[at]), float(moment[at, 0] / axial[at])
 
 
-def _pressure(axial: Array, moment: Array, sliding: Mask, limits: InsertionLimits) -> float:
+def _pressure(curve: InsertionCurve, limits: InsertionLimits) -> float:
+    period_s = float(np.median(np.diff(curve.t_s)))
+    mean_of = max(1, round(limits.pressure_mean_s / period_s))
+    axial = _smooth(curve.force_n, mean_of)[:, 2]
+    moment = _smooth(curve.moment_n_m, mean_of)
+    sliding = curve.depth_m >= limits.spring_depth_m
     sure = sliding & (axial > limits.least_pressure_n)
     if not sure.any():
         return 0.0

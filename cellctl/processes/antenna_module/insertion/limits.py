@@ -67,6 +67,9 @@ class InsertionLimits:
     least_pressure_n: float = 8.0
     """Below this axial force the centre of pressure is not certain: contacts of one lot differ by a
     quarter, and a moment good to 0.002 N·m is worth a quarter of a millimetre."""
+    pressure_mean_s: float = 0.07
+    """Over which force and moment are averaged for the centre of pressure. Gripper and module swing
+    at about 14 Hz, and on a lever of 0.2 m a few hundredths of a newton are half a millimetre."""
     seat_rise_n: float = 10.0
     seat_within_m: float = 0.1e-3
     """The force rises by ``seat_rise_n`` within this depth at the seat."""

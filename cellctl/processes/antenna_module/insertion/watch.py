@@ -6,6 +6,7 @@ from enum import Enum
 
 import numpy as np
 
+from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.insertion.curve import InsertionSample
 from cellctl.processes.antenna_module.insertion.limits import (
     InsertionLimits,
@@ -45,28 +46,28 @@ class InsertionWatch:
     def __init__(self, limits: InsertionLimits, mean_of: int = 5) -> None:
         """``mean_of``: samples whose mean is compared, against the sensor's noise."""
         self._limits = limits
-        self._latest: deque[InsertionSample] = deque(maxlen=mean_of)
+        self._latest = _RunningMean(mean_of)
+        self._slow = _RunningMean(None, limits.pressure_mean_s)
         self._trend: deque[tuple[float, float]] = deque()
         self.trip: InsertionTrip | None = None
 
     def feed(self, sample: InsertionSample) -> InsertionTrip | None:
         """The next sample; the trip, once there is one."""
-        self._latest.append(sample)
-        smooth = _mean(self._latest)
+        smooth, slow = self._latest.of(sample), self._slow.of(sample)
         if self.trip is None:
-            self.trip = self._judge(smooth)
+            self.trip = self._judge(smooth, slow)
         self._trend.append((sample.t_s, smooth.axial_n))
         while self._trend[0][0] < sample.t_s - _TREND_S:
             self._trend.popleft()
         return self.trip
 
-    def _judge(self, sample: InsertionSample) -> InsertionTrip | None:
+    def _judge(self, sample: InsertionSample, slow: InsertionSample) -> InsertionTrip | None:
         bounds = self._limits.at(sample.depth_m)
         if bounds.phase is Phase.ENTRY and self._rises(sample.axial_n):
             early_n = self._limits.entry_axial_n
             return _trip(TripCause.AXIAL_EARLY, bounds, sample, sample.axial_n, early_n)
         over = TripCause.OVER if bounds.phase is Phase.SLIDING else TripCause.AXIAL_EARLY
-        pressure = sample.centre_of_pressure_m(self._limits.least_pressure_n)
+        pressure = slow.centre_of_pressure_m(self._limits.least_pressure_n)
         lever_m = 0.0 if pressure is None else float(np.linalg.norm(pressure))
         for cause, value, limit in (
             (over, abs(sample.axial_n), bounds.axial_n),
@@ -92,12 +93,26 @@ def _trip(
     return InsertionTrip(cause, bounds.phase, sample.t_s, sample.depth_m, value, limit)
 
 
-def _mean(samples: deque[InsertionSample]) -> InsertionSample:
-    """Mean wrench at the newest depth."""
-    newest = samples[-1]
-    return InsertionSample(
-        newest.t_s,
-        newest.depth_m,
-        np.mean([sample.force_n for sample in samples], axis=0),
-        np.mean([sample.moment_n_m for sample in samples], axis=0),
-    )
+class _RunningMean:
+    """Mean wrench of the last samples at the newest depth: so many, or those of so long a time."""
+
+    def __init__(self, count: int | None, seconds: float = float("inf")) -> None:
+        self._count, self._seconds = count, seconds
+        self._samples: deque[tuple[float, Array]] = deque()
+        self._sum = np.zeros(6)
+
+    def of(self, sample: InsertionSample) -> InsertionSample:
+        """With the next sample."""
+        # Summed up as it goes: a thousand samples a second are too many to add up seventy of them
+        # for each.
+        wrench = np.concatenate([sample.force_n, sample.moment_n_m])
+        self._samples.append((sample.t_s, wrench))
+        self._sum += wrench
+        while self._is_old(self._samples[0][0], sample.t_s):
+            self._sum -= self._samples.popleft()[1]
+        mean = self._sum / len(self._samples)
+        return InsertionSample(sample.t_s, sample.depth_m, mean[:3], mean[3:])
+
+    def _is_old(self, t_s: float, now_s: float) -> bool:
+        too_many = self._count is not None and len(self._samples) > self._count
+        return too_many or t_s < now_s - self._seconds
