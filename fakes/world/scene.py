@@ -88,6 +88,8 @@ class ScenePlate:
     holes: tuple[SceneHole, ...]
     seed: int
     """For texture, scratches and false circles: fixed to the part for the whole run."""
+    brightness: float = 1.0
+    """Of its face and sides, relative to the bare metal of the rendering."""
 
 
 @dataclass(frozen=True, slots=True)

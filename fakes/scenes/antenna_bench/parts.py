@@ -141,9 +141,14 @@ def tray_face(scenario: BenchScenario, camera_T_cell: RigidTransform, seed: int)
     tray = scenario.tray
     lies = from_written(tray.cell_T_plug_mm_deg) * plug_T_top(scenario)
     down = RigidTransform.from_translation([0.0, 0.0, -tray.below_top_mm * MM])
-    width, depth = tray.size_mm
     return ScenePlate(
-        "tray", camera_T_cell * lies * down, (width * MM, depth * MM), _TRAY_THICKNESS_M, (), seed
+        "tray",
+        camera_T_cell * lies * down,
+        (tray.size_mm[0] * MM, tray.size_mm[1] * MM),
+        _TRAY_THICKNESS_M,
+        (),
+        seed,
+        tray.brightness,
     )
 
 

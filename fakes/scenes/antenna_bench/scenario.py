@@ -42,6 +42,8 @@ class Tray(Section):
     size_mm: Pair
     below_top_mm: float
     """From the module's top down to the face of the tray."""
+    brightness: float
+    """Relative to bare metal."""
 
 
 class Socket(Section):
