@@ -7,7 +7,7 @@ the draws.
 
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, StringConstraints, model_validator
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_validator
 
 Pose = tuple[float, float, float, float, float, float]
 """x, y, z in mm and A, B, C in degrees with R = Rz(A) Ry(B) Rx(C)."""
@@ -179,11 +179,27 @@ class StereoCamera(Camera):
     """A stereo head; its frame is that of its left camera."""
 
 
+class RingLamp(Section):
+    """The lamp round the lens of a camera, or beside it."""
+
+    brightness: float = Field(default=1.0, gt=0)
+    """Of every picture, exposure time included; 1 is what the rendering is made for."""
+    polar_deg: float = Field(default=60.0, gt=0, lt=90)
+    """Between its rays and the line of sight. Connectors alone show where light comes from."""
+    one_sided: float = Field(default=0.0, ge=0, le=1)
+    """Share by which the ring is brighter on one side, and darker on the other."""
+    azimuth_deg: float = 0.0
+    """Where the bright side is, from the image's x towards its y."""
+    arc_deg: float | None = Field(default=None, gt=0, le=360)
+    """Length of the lit arc; None for the whole ring, about 40 for a lamp at one side."""
+
+
 class SingleCamera(Camera):
     """A camera with one lens."""
 
     colour: bool = False
     """Three channels (RGB8) in place of grey levels."""
+    lamp: RingLamp = RingLamp()
 
 
 class Gripper(Section):

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from fakes.demo.antenna_calibration import PROCEDURES
+from fakes.demo.control import Control
 from fakes.demo.demo import Demo, Evidence, Judgement, Message, Procedure, Row
 from fakes.demo.force_row import force_row
 from fakes.demo.limited import Limited, failed_figures
@@ -49,6 +50,11 @@ class AntennaModuleDemo(Demo):
         beyond += [f"{key} of the record" for key in failed_figures(evidence.record)]
         figures |= {"beyond": beyond}
         return Judgement(evidence.good and not beyond, figures, _rows(figures))
+
+    def prepare(self, control: Control) -> None:
+        """The board is put away, and nobody stands by to plug what the cell plugs itself."""
+        control.request("remove_boards")
+        control.request("stand_by", on=False)
 
     def rows(self, now: Message) -> Mapping[str, str]:
         """The force of the insertion."""

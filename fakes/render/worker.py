@@ -20,7 +20,7 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.priority import give_way
 from fakes.render.connectors.colours import Pixels
-from fakes.render.connectors.look import ConnectorLook
+from fakes.render.connectors.look import ConnectorLook, lamps_of
 from fakes.render.connectors.picture import connector_channels
 from fakes.render.image_faults import PICTURE_FAULTS, SCENE_FAULTS
 from fakes.render.model import plain_bodies
@@ -121,6 +121,11 @@ def _clean(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
 
 
 def _rendered(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
+    brightness = np.float32(scene.lamp.brightness)
+    return tuple(brightness * picture for picture in _nominally_bright(scene, options))
+
+
+def _nominally_bright(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
     """One picture for each camera, or one for each channel of a colour camera at a connector."""
     connectors = [body for body in scene.bodies if isinstance(body, SceneConnector | SceneMarks)]
     if not connectors:
@@ -128,7 +133,7 @@ def _rendered(scene: CameraScene, options: RenderOptions) -> tuple[Image, ...]:
     (view,) = views_of(scene.optics)
     assert isinstance(scene.optics, MonoTruth)  # no scene shows connectors to a stereo head
     pixels: Pixels = "rgb" if scene.optics.colour else "grey"
-    look = ConnectorLook(sensor=options)
+    look = ConnectorLook(lamps=lamps_of(scene.lamp), sensor=options)
     return connector_channels(view, connectors, look, pixels, scene.light_seed)
 
 

@@ -5,13 +5,14 @@ for a stereo head is its left one: z forward, x right, y down. Parts and boards 
 of their visible face, towards the camera.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
+from fakes.sections import RingLamp
 from fakes.world.connector.scene import SceneConnector, SceneMarks
 
 Array = NDArray[np.float64]
@@ -87,6 +88,8 @@ class ScenePlate:
     holes: tuple[SceneHole, ...]
     seed: int
     """For texture, scratches and false circles: fixed to the part for the whole run."""
+    brightness: float = 1.0
+    """Of its face and sides, relative to the bare metal of the rendering."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,3 +163,4 @@ class CameraScene:
     noise_seed: int
     """Sensor noise; differs from exposure to exposure."""
     exposure: Exposure = Exposure()
+    lamp: RingLamp = field(default_factory=RingLamp)

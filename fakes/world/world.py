@@ -13,6 +13,7 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
 from fakes.scenario import Scenario
+from fakes.sections import RingLamp
 from fakes.world.flaws.arm import ArmFlaws
 from fakes.world.flaws.camera import CameraFlaws
 from fakes.world.flaws.sensor import SensorFlaws
@@ -140,7 +141,7 @@ class World(ABC, Generic[S_co]):
     def camera_scene(self, camera: str) -> CameraScene:
         """What a camera or stereo head sees now; every call is another exposure."""
         self._exposures += 1
-        truth = self.truth.cameras[camera]
+        truth, single = self.truth.cameras[camera], self.scenario.cameras.get(camera)
         return CameraScene(
             camera=camera,
             time_s=self.time_s,
@@ -149,6 +150,7 @@ class World(ABC, Generic[S_co]):
             light_seed=truth.light_seed,
             noise_seed=stream_seed(self.seed, "exposure", camera, self._exposures),
             exposure=self._camera_flaws[camera].exposure(self._exposures, self.time_s),
+            lamp=RingLamp() if single is None else single.lamp,
         )
 
     def targets(self, tracker: str, frames: int) -> tuple[SeenTarget, ...]:

@@ -29,7 +29,7 @@ def draw_plate(
     ``below`` is the part that shows through its through holes. ``above`` is a part that will be
     laid over this one: when it hides all holes in view, details are not worth their time.
     """
-    pose = plate.camera_T_part
+    pose, level = plate.camera_T_part, plate.brightness * options.plate_grey
     holes = [hole for hole in plate.holes if _is_near(view, plate, hole)]
     shown = [hole for hole in holes if above is None or not _is_hidden(view, plate, hole, above)]
     x, y = face_map(view, pose)
@@ -39,19 +39,19 @@ def draw_plate(
         pose=pose,
         size_m=plate.size_m,
         thickness_m=plate.thickness_m,
-        grey=0.4 * options.plate_grey,
+        grey=0.4 * level,
         seen_m=(np.array([x.min(), y.min()]), np.array([x.max(), y.max()])),
     )
     # Nothing of it can be measured, so a plain face is enough.
     if above is not None and not shown:
-        draw_face(image, x, y, plate.size_m, options.plate_grey)
+        draw_face(image, x, y, plate.size_m, level)
         return []
-    face: Image | float = options.plate_grey
+    face: Image | float = level
     if options.texture_grey > 0:
         face = sample(brushed_tile(plate.seed), x, y)
         # In place, because each of these arrays has five million pixels.
         face *= np.float32(options.texture_grey)
-        face += np.float32(options.plate_grey)
+        face += np.float32(level)
     draw_face(image, x, y, plate.size_m, face)
     draw_clutter(view, image, plate, options, light_azimuth)
     patches = (

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fakes.render.options import RenderOptions
+from fakes.sections import RingLamp
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +28,11 @@ class Lamps:
         if self.arc_deg is not None:
             power = power * np.exp(-0.5 * (away / np.radians(self.arc_deg / 2)) ** 2)
         return np.asarray(power / power.sum())
+
+
+def lamps_of(lamp: RingLamp) -> Lamps:
+    """The lamps that a scenario gives to a camera."""
+    return Lamps(lamp.polar_deg, lamp.one_sided, float(np.radians(lamp.azimuth_deg)), lamp.arc_deg)
 
 
 def _sensor() -> RenderOptions:

@@ -1,4 +1,4 @@
-"""Where the module is: on its tray, in the fingers, in the socket, or left somewhere."""
+"""Where the module is: on its tray, in the fingers, in the socket, left, or not there."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,7 +10,7 @@ from fakes.world.frames import MM, distance, from_written, stream
 from fakes.world.gripper import ON_PART, OPEN_END, PneumaticJaws
 from fakes.world.truth import drawn_spread
 
-Place = Literal["tray", "gripper", "socket", "left"]
+Place = Literal["tray", "gripper", "socket", "left", "absent"]
 _HOLDING = 0.02
 """Ratio of the travel before the part at which the jaws hold it."""
 _FREE = 0.3
@@ -41,6 +41,9 @@ class ModulePlace:
 
         ``rests_at`` is the true cell_T_plug; ``in_socket`` when the socket would keep the module.
         """
+        if self.place == "absent":
+            jaws.part_present = False
+            return
         held = self.place == "gripper"
         if held and jaws.last_position < ON_PART - _FREE:
             self.cell_T_plug = rests_at

@@ -22,9 +22,15 @@ FAULTS: Mapping[str, str] = {
     "missing_pin": "pin `contact` of the next modules is missing",
     "blocked_hole": "hole `contact` of the next sockets is blocked",
     "dirt": "the next connectors carry `specks` specks",
+    "upside_down": "the next modules lie on their tops",
+    "turned": "the next modules lie half a turn round",
+    "empty_tray": "no module comes with the next panels",
     **SHIFT_FAULTS,
 }
 _TOP_THICKNESS_M = 6e-3
+_TRAY_THICKNESS_M = 12e-3
+_FLIP = RigidTransform.from_matrix(np.diag([1.0, -1.0, -1.0, 1.0]))
+_HALF_TURN = RigidTransform.from_matrix(np.diag([-1.0, -1.0, 1.0, 1.0]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,10 +78,15 @@ def draw_parts(scenario: BenchScenario, seed: int, number: int, faults: FaultBoa
         housing_m=(scenario.socket.panel_mm[0] * MM, scenario.socket.panel_mm[1] * MM),
     )
     tray, panel = scenario.tray, scenario.socket
+    lies = from_written(tray.cell_T_plug_mm_deg) * drawn_spread(rng, tray.placement)
+    if faults.active("turned"):
+        lies *= _HALF_TURN
+    if faults.active("upside_down"):
+        lies *= plug_T_top(scenario)
     return BenchParts(
         plug,
         socket,
-        from_written(tray.cell_T_plug_mm_deg) * drawn_spread(rng, tray.placement),
+        lies,
         from_written(panel.cell_T_socket_mm_deg) * drawn_spread(rng, panel.placement),
         mating_pair(plug, socket, rng),
     )
@@ -97,14 +108,16 @@ def mating_pair(
     )
 
 
+def plug_T_top(scenario: BenchScenario) -> RigidTransform:
+    """The module's top in the frame of its plug, z away from the plug."""
+    return RigidTransform.from_translation([0.0, 0.0, -scenario.module.height_mm * MM]) * _FLIP
+
+
 def module_top(
     scenario: BenchScenario, parts: BenchParts, camera_T_plug: RigidTransform
 ) -> ScenePlate:
     """What a camera above the tray sees of a module: its top with holes."""
     module = scenario.module
-    # The top faces away from the plug: half a turn about x, and the height of the module.
-    flip = RigidTransform.from_matrix(np.diag([1.0, -1.0, -1.0, 1.0]))
-    plug_T_top = RigidTransform.from_translation([0.0, 0.0, -module.height_mm * MM]) * flip
     holes = tuple(
         SceneHole(
             f"T{index}", "pin", (x * MM, -y * MM), module.top_hole_diameter_mm * MM, None,
@@ -115,11 +128,27 @@ def module_top(
     width, depth = module.housing_mm
     return ScenePlate(
         "module",
-        camera_T_plug * plug_T_top,
+        camera_T_plug * plug_T_top(scenario),
         (width * MM, depth * MM),
         _TOP_THICKNESS_M,
         holes,
         parts.plug.seed,
+    )
+
+
+def tray_face(scenario: BenchScenario, camera_T_cell: RigidTransform, seed: int) -> ScenePlate:
+    """The tray under the module, which stands out of it."""
+    tray = scenario.tray
+    lies = from_written(tray.cell_T_plug_mm_deg) * plug_T_top(scenario)
+    down = RigidTransform.from_translation([0.0, 0.0, -tray.below_top_mm * MM])
+    return ScenePlate(
+        "tray",
+        camera_T_cell * lies * down,
+        (tray.size_mm[0] * MM, tray.size_mm[1] * MM),
+        _TRAY_THICKNESS_M,
+        (),
+        seed,
+        tray.brightness,
     )
 
 

@@ -39,6 +39,11 @@ class Tray(Section):
 
     cell_T_plug_mm_deg: Pose
     placement: Spread
+    size_mm: Pair
+    below_top_mm: float
+    """From the module's top down to the face of the tray."""
+    brightness: float
+    """Relative to bare metal."""
 
 
 class Socket(Section):

@@ -13,10 +13,10 @@ from fakes.scenes.antenna_bench.boards import (
     plate_pose,
     plate_size_m,
 )
-from fakes.scenes.antenna_bench.gripping import ModulePlace
+from fakes.scenes.antenna_bench.gripping import ModulePlace, Place
 from fakes.scenes.antenna_bench.mating import EVERY_MS, KEPT_M, PlugAtSocket, mount_of
 from fakes.scenes.antenna_bench.operator import BenchOperator
-from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, placed
+from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, placed, tray_face
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.shifts import shifted
 from fakes.scenes.antenna_bench.truth import truth_of
@@ -73,8 +73,9 @@ class AntennaBench(World[BenchScenario]):
         self.loads += 1
         self.parts = draw_parts(self.scenario, self.seed, self.loads, self.faults)
         gripper = self.scenario.gripper
+        place: Place = "absent" if self.faults.active("empty_tray") else "tray"
         self.module = ModulePlace(
-            gripper, self.seed + self.loads, "tray", self.parts.cell_T_tray_plug,
+            gripper, self.seed + self.loads, place, self.parts.cell_T_tray_plug,
             from_written(gripper.flange_T_plug_mm_deg),
         )  # fmt: skip
         self.mating = PlugAtSocket(self.parts.pair, self.mount)
@@ -164,8 +165,8 @@ class AntennaBench(World[BenchScenario]):
         return flange * shifted(self.faults, "camera_1_shifted", flange.inv() * pose)
 
     def bodies_before(self, camera_T_cell: RigidTransform) -> Iterator[Seen]:
-        """A calibration board alone; else connectors, marks and dots, or the top of the module on
-        its tray, as far as in view."""
+        """A calibration board alone; else connectors, marks and dots, or tray and module, as far as
+        in view."""
         flange = self.flange(self.scenario.gripper.carried_by)
         cell_T_board = self.operator.cell_T_board(flange)
         if cell_T_board is not None:
@@ -181,7 +182,8 @@ class AntennaBench(World[BenchScenario]):
         marks = camera_T_cell * flange * self.flange_T_marks
         if self.module.place != "socket" and self._sees(socket, (panel_m[0], panel_m[1])):
             yield placed(self.parts.socket, socket)
-        if self.module.place == "gripper" and self._sees(plug, (housing_m[0], housing_m[1])):
+        # A plug faces camera II from the fingers, and camera I where its module lies on its top.
+        if self.module.place != "absent" and self._sees(plug, (housing_m[0], housing_m[1])):
             yield placed(self.parts.plug, plug)
         if self._sees(marks, _MARKS_FACE_M):
             yield gripper_marks(marks)
@@ -189,7 +191,11 @@ class AntennaBench(World[BenchScenario]):
         if self._sees(dots.camera_T_marks, plate_size_m(self.scenario)):
             yield dots
         top = module_top(self.scenario, self.parts, plug)
-        if self.module.place != "gripper" and self._sees(top.camera_T_part, top.size_m):
+        tray = tray_face(self.scenario, camera_T_cell, self.seed)
+        if self._sees(tray.camera_T_part, tray.size_m):
+            yield tray
+        lies = self.module.place not in ("gripper", "absent")
+        if lies and self._sees(top.camera_T_part, top.size_m):
             yield top
 
     def _sees(self, camera_T_face: RigidTransform, size_m: tuple[float, float]) -> bool:

@@ -130,3 +130,13 @@ def test_the_bench_does_what_the_operator_prepares(bench_scenario: BenchScenario
     }  # fmt: skip
     assert bench.world.loads == 2
     assert bench.asked[-1] == "stand_by"
+
+
+def test_nobody_stands_by_in_production(bench_scenario: BenchScenario) -> None:
+    """A plug rests above its socket there, too, and the hands must not take it."""
+    bench = Bench(AntennaBench(bench_scenario, 1))
+    bench.request("stand_by", on=True)
+    bench.request("place_board", where="table")
+    AntennaModuleDemo().prepare(bench)
+    assert bench.world.operator.board_at is None
+    assert not bench.world.operator.stands_by

@@ -14,6 +14,7 @@ from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.connector.scene import SceneConnector, SceneMarks
 from fakes.world.frames import from_written
 from fakes.world.scene import ScenePlate
+from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at
 
 CONFIG = Path(__file__).parents[5] / "config"
 G_M_S2 = 9.80665
@@ -85,19 +86,17 @@ class Hands:
 
 def held(scenario: BenchScenario, seed: int = 3) -> Hands:
     """Before the socket, with the module already in the fingers: the way there takes long."""
-    hands = Hands(AntennaBench(scenario, seed))
+    hands = Hands(bench_at(scenario, "above_socket", seed))
     hands.world.module.place = "gripper"
     jaws = hands.world.jaws["gripper"]
     jaws.part_present = True
     jaws.drive(0.0, open_coil=False, close_coil=True)
     jaws.position(1.0)
-    hands.taught("above_socket")
     return hands
 
 
 def test_the_module_hangs_and_is_weighed(scenario: BenchScenario) -> None:
-    hands = Hands(AntennaBench(scenario, 3))
-    hands.taught("above_tray")
+    hands = Hands(bench_at(scenario, "above_tray", 3))
     empty_n = hands.force_z()
     hands.grip()
     assert hands.world.truth_report()["module"] == "gripper"
@@ -106,18 +105,19 @@ def test_the_module_hangs_and_is_weighed(scenario: BenchScenario) -> None:
 
 
 def test_jaws_close_beyond_nothing(scenario: BenchScenario) -> None:
-    hands = Hands(AntennaBench(scenario, 3))
-    hands.taught("above_tray")
+    hands = Hands(bench_at(scenario, "above_tray", 3))
     hands.jaws(close=True)
     assert hands.world.jaws["gripper"].last_position == 1.0
     assert hands.world.truth_report()["module"] == "tray"
 
 
 def test_what_the_cameras_see(scenario: BenchScenario) -> None:
-    hands = Hands(AntennaBench(scenario, 4))
-    hands.taught("tray_look")
-    (top,) = hands.world.camera_scene("camera_1").bodies
+    hands = Hands(bench_at(scenario, "tray_look", 4))
+    tray, top = hands.world.camera_scene("camera_1").bodies
+    assert isinstance(tray, ScenePlate)
     assert isinstance(top, ScenePlate)
+    assert (tray.name, top.name) == ("tray", "module")
+    assert tray.camera_T_part.translation[2] > top.camera_T_part.translation[2]
     hands.grip()
     hands.taught("inspect_plug")
     plug, marks, dots = hands.world.camera_scene("camera_2").bodies
@@ -171,6 +171,46 @@ def test_injected_flaws_are_those_of_the_next_parts(scenario: BenchScenario) -> 
     world.load()
     report = world.truth_report()
     assert (report["bent"], report["missing"], report["blocked"]) == (["4"], ["9"], ["2"])
+
+
+def test_camera_1_sees_what_is_wrong_on_the_tray(scenario: BenchScenario) -> None:
+    world = bench_at(scenario, "tray_look", 4)
+    _, good = world.camera_scene("camera_1").bodies
+    assert isinstance(good, ScenePlate)
+    world.faults.inject("empty_tray")
+    world.load()
+    (tray,) = world.camera_scene("camera_1").bodies
+    assert isinstance(tray, ScenePlate)
+    assert tray.name == "tray"
+    assert world.truth_report()["module"] == "absent"
+    world.faults.clear()
+
+    world.faults.inject("turned")
+    world.load()
+    _, turned = world.camera_scene("camera_1").bodies
+    assert isinstance(turned, ScenePlate)
+    angle = (good.camera_T_part.inv() * turned.camera_T_part).rotation.magnitude()
+    assert np.rad2deg(angle) == pytest.approx(180, abs=3)
+    world.faults.clear()
+
+    world.faults.inject("upside_down")
+    world.load()
+    plug, _ = world.camera_scene("camera_1").bodies
+    assert isinstance(plug, SceneConnector)
+    assert plug.camera_T_connector.translation == pytest.approx(
+        good.camera_T_part.translation, abs=3e-3
+    )
+
+
+def test_jaws_close_beyond_a_module_that_is_not_there(scenario: BenchScenario) -> None:
+    world = bench_at(scenario, "above_tray", 3)
+    world.faults.inject("empty_tray")
+    world.load()
+    hands = Hands(world)
+    hands.true_flange_to(hands.over_module())
+    hands.jaws(close=True)
+    assert world.jaws["gripper"].last_position == 1.0
+    assert world.truth_report()["module"] == "absent"
 
 
 def test_warmth_moves_the_flange_from_the_next_motion_on(scenario: BenchScenario) -> None:
