@@ -63,6 +63,14 @@ def distance(one: RigidTransform, other: RigidTransform) -> tuple[float, float]:
     return float(np.linalg.norm(delta.translation)), float(delta.rotation.magnitude())
 
 
+def inverse_matrix(matrix: Array) -> Array:
+    """Of a pose, 4x4."""
+    inverted = np.eye(4)
+    inverted[:3, :3] = matrix[:3, :3].T
+    inverted[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
+    return inverted
+
+
 def matrix_distance(one: Array, other: Array) -> tuple[float, float]:
     """The same between two 4x4 matrices."""
     difference = one - other

@@ -1,12 +1,13 @@
 """Where the module is: on its tray, in the fingers, in the socket, left, or not there."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenes.antenna_bench.scenario import BenchGripper
-from fakes.world.frames import MM, distance, from_written, stream
+from fakes.world.frames import MM, Array, distance, from_written, stream
 from fakes.world.gripper import ON_PART, OPEN_END, PneumaticJaws
 from fakes.world.truth import drawn_spread
 
@@ -32,23 +33,25 @@ class ModulePlace:
     def follow(
         self,
         jaws: PneumaticJaws,
-        cell_T_flange: RigidTransform,
+        flange: Array,
         *,
-        rests_at: RigidTransform,
+        rests_at: Callable[[RigidTransform], RigidTransform],
         in_socket: bool,
     ) -> None:
         """Take over what the jaws did.
 
-        ``rests_at`` is the true cell_T_plug; ``in_socket`` when the socket would keep the module.
+        ``flange`` is the matrix cell_T_flange; ``rests_at`` gives the true cell_T_plug of a flange;
+        ``in_socket`` when the socket would keep the module.
         """
         if self.place == "absent":
             jaws.part_present = False
             return
         held = self.place == "gripper"
         if held and jaws.last_position < ON_PART - _FREE:
-            self.cell_T_plug = rests_at
+            self.cell_T_plug = rests_at(RigidTransform.from_matrix(flange))
             self.place = "socket" if in_socket else "left"
         elif not held:
+            cell_T_flange = RigidTransform.from_matrix(flange)
             between = self._between(cell_T_flange)
             # Jaws that have closed beyond the part have nothing to hold any more.
             if jaws.last_position <= ON_PART:

@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.world.connector.contact_lot import MatingPair, Mount
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
@@ -15,6 +15,7 @@ EVERY_MS: Final = 4
 """Milliseconds between two evaluations: forces change over hundredths of a second."""
 KEPT_M: Final = 1.5e-3
 """Depth from which the socket keeps a plug that is let go."""
+_MATED_PLUG_T_SOCKET: Final = SOCKET_T_MATED_PLUG.inv().as_matrix()
 _NEAR_M: Final = 4e-3
 _ABOVE_M: Final = 0.1e-3
 _RELAXATION: Final = 0.15
@@ -37,17 +38,25 @@ class PlugAtSocket:
         self.peak_axial_n = np.zeros(len(self.states))
         self.peak_total_n = 0.0
         """Highest force against the insertion."""
-        self.met_at: RigidTransform | None = None
-        """socket_T_plug of the last approach, just before the plug touched: it hangs freely there,
-        so this is what the placing was wrong by. None before the first approach."""
+        self._met_at: Array | None = None
+        """Of the last approach; None before the first."""
         self._commanded_m = -np.inf
         self._inwards = True
 
-    def hold_at(self, socket_T_plug: RigidTransform) -> Array:
-        """The mount holds the free plug there; returns the wrench on the plug in socket axes."""
-        free = socket_T_plug * SOCKET_T_MATED_PLUG.inv()
-        x, y, z = free.translation.tolist()
-        turn = free.rotation.as_rotvec()
+    @property
+    def met_at(self) -> RigidTransform | None:
+        """socket_T_plug of the last approach, just before the plug touched: it hangs freely there,
+        so this is what the placing was wrong by. None before the first approach."""
+        return None if self._met_at is None else RigidTransform.from_matrix(self._met_at)
+
+    def hold_at(self, socket_T_plug: Array) -> Array:
+        """The mount holds the free plug there; returns the wrench on the plug in socket axes.
+
+        ``socket_T_plug`` is a matrix, because this is done hundreds of times a second.
+        """
+        free = socket_T_plug @ _MATED_PLUG_T_SOCKET
+        x, y, z = free[:3, 3].tolist()
+        turn = Rotation.from_matrix(free[:3, :3]).as_rotvec()
         beside = max(abs(x), abs(y)) > _NEAR_M or -z < -_ABOVE_M
         if beside:
             self.depth_m = self._commanded_m = -np.inf
@@ -56,7 +65,7 @@ class PlugAtSocket:
             return np.zeros(6)
         self._follow(-z)
         if self._inwards and -z < 0:
-            self.met_at = socket_T_plug
+            self._met_at = socket_T_plug
         place = PlugPlace(
             x, y, float(turn[2]), (float(turn[0]), float(turn[1])), self.depth_m, self._inwards
         )

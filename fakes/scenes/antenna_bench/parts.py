@@ -164,5 +164,19 @@ def offsets_m(pair: MatingPair, socket_T_plug: RigidTransform) -> Array:
     return np.asarray(nominal_T_plug.apply(tips))[:, :2] - pair.holes_m
 
 
+def placing_offsets_m(pair: MatingPair, socket_T_plug: RigidTransform) -> Array:
+    """What the plug as a whole is off at each pin, shape (n, 2): the rigid part of ``offsets_m``.
+
+    The rest is what single pins and holes are off their own places, which nobody can place away.
+    """
+    x, y = pair.holes_m.T
+    ones, zeros = np.ones_like(x), np.zeros_like(x)
+    design = np.stack(
+        [np.column_stack([ones, zeros, -y]), np.column_stack([zeros, ones, x])], axis=1
+    ).reshape(-1, 3)
+    offsets = offsets_m(pair, socket_T_plug).ravel()
+    return np.asarray((design @ np.linalg.lstsq(design, offsets, rcond=None)[0]).reshape(-1, 2))
+
+
 def _contact(fault: Fault) -> str:
     return fault.text("contact", "1")

@@ -24,7 +24,7 @@ from fakes.sections import Optics
 from fakes.world.boards import chessboard_as_made
 from fakes.world.connector.made import gripper_marks
 from fakes.world.flaws.warmth import warmed
-from fakes.world.frames import MM, Array, from_written, stream
+from fakes.world.frames import MM, Array, from_written, inverse_matrix, stream
 from fakes.world.payload import Payload
 from fakes.world.scene import Seen
 from fakes.world.truth import drawn_spread
@@ -103,7 +103,7 @@ class AntennaBench(World[BenchScenario]):
         self._tool.advance(flange, moving=moving)
         self._ticks += 1
         if self._ticks % EVERY_MS == 0 and (moving or self._something_changes()):
-            self._contact_n = self._module_load(RigidTransform.from_matrix(flange))
+            self._contact_n = self._module_load(flange)
         return np.asarray(self._tool.load + self._contact_n)
 
     def _something_changes(self) -> bool:
@@ -113,29 +113,29 @@ class AntennaBench(World[BenchScenario]):
         moved, self._jaws_seen = position != self._jaws_seen, position
         return moved or self.mating.response is not None
 
-    def _module_load(self, cell_T_flange: RigidTransform) -> Array:
-        """Wrench on the sensor, in its axes."""
+    def _module_load(self, flange: Array) -> Array:
+        """Wrench on the sensor, in its axes; ``flange`` is the matrix cell_T_flange."""
+        # Matrices here, because this is done hundreds of times a second: products of poses that
+        # check themselves would take a third of a processor.
         module, settings = self.module, self.scenario.module
         jaws = self.jaws[self.scenario.gripper.device]
-        rests_at = self.rests_at(cell_T_flange)
         in_socket = self.mating.depth_m > KEPT_M
-        module.follow(jaws, cell_T_flange, rests_at=rests_at, in_socket=in_socket)
+        module.follow(jaws, flange, rests_at=self.rests_at, in_socket=in_socket)
         if module.place != "gripper":
             return np.zeros(6)
-        cell_T_plug = module.now(cell_T_flange)
-        socket = self.parts.cell_T_socket
-        wrench = self.mating.hold_at(socket.inv() * cell_T_plug)
+        plug = flange @ module.flange_T_plug.as_matrix()
+        socket = self.parts.cell_T_socket.as_matrix()
+        wrench = self.mating.hold_at(inverse_matrix(socket) @ plug)
         module.slip(float(wrench[2]), EVERY_MS * 1e-3)
         weight = settings.mass_kg * _GRAVITY
-        com = cell_T_plug.apply(np.array(settings.com_in_plug_mm) * MM)
-        sensor = cell_T_flange * self._flange_T_sensor
-        origin = sensor.translation
-        force = socket.rotation.apply(wrench[:3])
-        torque = socket.rotation.apply(wrench[3:])
-        torque = torque + np.cross(socket.translation - origin, force)
+        com = plug[:3, :3] @ (np.array(settings.com_in_plug_mm) * MM) + plug[:3, 3]
+        sensor = flange @ self._flange_T_sensor.as_matrix()
+        origin = sensor[:3, 3]
+        force, torque = socket[:3, :3] @ wrench[:3], socket[:3, :3] @ wrench[3:]
+        torque = torque + np.cross(socket[:3, 3] - origin, force)
         torque = torque + np.cross(com - origin, weight)
-        turned = sensor.rotation.inv()
-        return np.concatenate([turned.apply(force + weight), turned.apply(torque)])
+        turned = sensor[:3, :3].T
+        return np.concatenate([turned @ (force + weight), turned @ torque])
 
     def rests_at(self, cell_T_flange: RigidTransform) -> RigidTransform:
         """True cell_T_plug: where the springs leave it."""

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fakes.scenes.antenna_bench.parts import offsets_m
+from fakes.scenes.antenna_bench.parts import offsets_m, placing_offsets_m
 from fakes.world.connector.insertion import PinState
 from fakes.world.frames import MM, to_written
 from fakes.world.scene import MonoTruth
@@ -56,7 +56,7 @@ def _plug(world: "AntennaBench") -> dict[str, Any]:
     rests_at = parts.cell_T_socket.inv() * world.rests_at(flange)
     names = [contact.name for contact in parts.plug.contacts]
     offsets = np.linalg.norm(offsets_m(parts.pair, parts.cell_T_socket.inv() * cell_T_plug), axis=1)
-    met = None if mating.met_at is None else offsets_m(parts.pair, mating.met_at)
+    met = None if mating.met_at is None else placing_offsets_m(parts.pair, mating.met_at)
     return {
         "load": world.loads,
         "module": world.module.place,
