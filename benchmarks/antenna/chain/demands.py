@@ -1,7 +1,7 @@
 """What is demanded of the chain, and whether a campaign's results meet it."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,8 @@ UNCALIBRATED_WARM = "uncalibrated, RP 0.02, 3 K"
 FACTORY_WARM = "factory, RP 0.02, 3 K"
 FACTORY_COLD = "factory, RP 0.02, 0 K"
 SEVERAL = ", 2 looks, 8 taught"
-"""What production is meant to do. The rows with four taught plugs and one look stand beside it."""
+"""What production is meant to do. It was chosen after four taught plugs and one look had left one
+plug in 299 beyond 50 µm; that row stands beside it."""
 FACTORY_RP_005 = "factory, RP 0.05, 3 K"
 
 
@@ -25,6 +26,8 @@ class Demand:
     demanded: str
     measured: str
     met: bool
+    judged: bool = True
+    """False for what is expected of a drawn cell but not demanded of the product."""
 
 
 def demands_met(
@@ -39,8 +42,11 @@ def demands_met(
         (FACTORY_RP_005, CLOSED),
     ):
         demands.append(_b9(row, scheme, results[row][scheme], whole=whole))
-    demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50), whole=whole))
-    demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75), whole=whole))
+    for row in (UNCALIBRATED_WARM, FACTORY_WARM):
+        few = _b9(f"{row}, 1 look, 4 taught", "difference", results[row]["difference"], whole=whole)
+        demands.append(replace(few, judged=False))
+    demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50)))
+    demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75)))
     demands.append(_b14(reference))
     return demands
 
@@ -84,15 +90,15 @@ def _b9(row: str, scheme: str, drawn: Drawn, *, whole: bool) -> Demand:
     )
 
 
-def _b10(drawn: Drawn, drift: str, band: tuple[float, float], *, whole: bool) -> Demand:
+def _b10(drawn: Drawn, drift: str, band: tuple[float, float]) -> Demand:
     share = drawn.within / len(drawn.errors)
     return Demand(
         "B10",
-        f"published chain (absolute), factory, {drift}: reported beside it",
-        f"{band[0]:.0%} to {band[1]:.0%} expected" + ("" if whole else ", not judged"),
+        f"published chain (absolute), factory, {drift}",
+        f"{band[0]:.0%} to {band[1]:.0%}",
         f"{share:.0%} within 50 µm",
-        # An expectation about drawn arms: far outside of it, the drawn cell is not the one meant.
-        not whole or band[0] - 0.15 <= share <= band[1] + 0.15,
+        band[0] <= share <= band[1],
+        judged=False,
     )
 
 

@@ -38,7 +38,8 @@ class Scheme:
     kinematic_share: float
     """Share of the arm's mean absolute error that stays, standard deviation per axis, at a taught
     slot. A hand-eye calibration absorbs what is common to its poses, a correction all but the
-    scatter of grip and socket. From simulated cells (benchmarks/antenna)."""
+    scatter of grip and socket. An estimate from other simulated arms than those of
+    benchmarks/antenna, which shows how well the prediction made with it holds."""
     arm_drifts: bool
     """Whether what warming moves the robot at camera II against the socket stays in the result."""
 
