@@ -76,6 +76,14 @@ class BoardView:
     right: Corners
 
 
+@dataclass(frozen=True, slots=True)
+class CameraView:
+    """The board as a single camera sees it in one exposure."""
+
+    name: str
+    corners: Corners
+
+
 class BoardShape(Enum):
     """The freedom of the board's shape in an adjustment. Its scale always stays the drawing's."""
 

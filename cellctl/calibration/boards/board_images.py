@@ -1,12 +1,19 @@
 """Corners of a calibration board in images, and the faults of images that show none."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import cv2
 import numpy as np
 
-from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Charuco, Corners
+from cellctl.calibration.boards.board import (
+    BoardView,
+    CalibrationBoard,
+    CameraView,
+    Charuco,
+    Corners,
+)
 from cellctl.calibration.boards.board_search import find_chessboard, name_chessboard
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
@@ -25,6 +32,9 @@ _BLACK_LEVEL = 16
 _FULL_LEVEL = 254
 _FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2
 
+T = TypeVar("T")
+V = TypeVar("V")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoardImages:
@@ -35,13 +45,31 @@ class BoardImages:
     right: Image
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardImage:
+    """The image of a single camera and the name it is reported by."""
+
+    name: str
+    image: Image
+
+
 @dataclass(frozen=True, slots=True)
 class DetectedViews:
-    """Views of one calibration."""
+    """Views of one calibration of a stereo head."""
 
     views: tuple[BoardView, ...]
     not_found: tuple[str, ...]
     """Pairs in which at least one camera does not see the board."""
+    image_size: tuple[int, int]
+
+
+@dataclass(frozen=True, slots=True)
+class DetectedCameraViews:
+    """Views of one calibration of a single camera."""
+
+    views: tuple[CameraView, ...]
+    not_found: tuple[str, ...]
+    """Images without the board."""
     image_size: tuple[int, int]
 
 
@@ -53,20 +81,28 @@ def detect_views(pairs: Sequence[BoardImages], board: CalibrationBoard) -> Detec
     """
     if not pairs:
         raise TooFewViews("no image pairs were given")
-    image_size = _common_size(pairs)
-    views, missing = [], []
-    for pair in pairs:
-        view = detect_view(pair, board)
-        if view is not None:
-            views.append(view)
-            continue
-        missing.append(pair.name)
-        # Trying all sizes of board takes long, so only twice, and only while most pairs fail.
-        if len(missing) in _SUSPICIOUS and len(views) < len(missing):
-            _check_board(pair, board)
+    image_size = _common_size(
+        (f"{pair.name} {side}", image)
+        for pair in pairs
+        for side, image in (("left", pair.left), ("right", pair.right))
+    )
+    views, missing = _search_all(pairs, board, detect_view, lambda pair: (pair.name, pair.left))
     if not views:
         raise BoardNotFound(f"no pair shows the {board}")
     return DetectedViews(tuple(views), tuple(missing), image_size)
+
+
+def detect_camera_views(
+    images: Sequence[BoardImage], board: CalibrationBoard
+) -> DetectedCameraViews:
+    """Find the board in all images; raises as ``detect_views`` does."""
+    if not images:
+        raise TooFewViews("no images were given")
+    image_size = _common_size((one.name, one.image) for one in images)
+    views, missing = _search_all(images, board, detect_camera_view, lambda o: (o.name, o.image))
+    if not views:
+        raise BoardNotFound(f"no image shows the {board}")
+    return DetectedCameraViews(tuple(views), tuple(missing), image_size)
 
 
 def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
@@ -80,6 +116,35 @@ def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
     if left is None or right is None:
         return None
     return BoardView(pair.name, left, right)
+
+
+def detect_camera_view(one: BoardImage, board: CalibrationBoard) -> CameraView | None:
+    """The board in one image, or None; raises ``ImageBlack`` or ``ImageSaturated``."""
+    found = detect_corners(one.image, board)
+    _check_exposure(one.name, one.image, board_found=found is not None)
+    return None if found is None else CameraView(one.name, found)
+
+
+def _search_all(
+    exposures: Sequence[T],
+    board: CalibrationBoard,
+    detect: Callable[[T, CalibrationBoard], V | None],
+    shown: Callable[[T], tuple[str, Image]],
+) -> tuple[list[V], list[str]]:
+    """Views, and the names of the exposures without one; ``shown`` gives name and an image."""
+    views: list[V] = []
+    missing: list[str] = []
+    for exposure in exposures:
+        view = detect(exposure, board)
+        if view is not None:
+            views.append(view)
+            continue
+        name, image = shown(exposure)
+        missing.append(name)
+        # Trying all sizes of board takes long, so only twice, and only while most fail.
+        if len(missing) in _SUSPICIOUS and len(views) < len(missing):
+            _check_board(name, image, board)
+    return views, missing
 
 
 def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
@@ -128,11 +193,10 @@ def _detect_charuco(image: Image, board: CalibrationBoard, charuco: Charuco) -> 
     return Corners(sorted_ids, _refine(image, pixels, 0.0))
 
 
-def _common_size(pairs: Sequence[BoardImages]) -> tuple[int, int]:
+def _common_size(images: Iterable[tuple[str, Image]]) -> tuple[int, int]:
     sizes: dict[tuple[int, int], str] = {}
-    for pair in pairs:
-        for side, image in (("left", pair.left), ("right", pair.right)):
-            sizes.setdefault((image.shape[1], image.shape[0]), f"{pair.name} {side}")
+    for name, image in images:
+        sizes.setdefault((image.shape[1], image.shape[0]), name)
     if len(sizes) > 1:
         raise MixedImageSizes("; ".join(f"{w} x {h} ({n})" for (w, h), n in sizes.items()))
     return next(iter(sizes))
@@ -149,14 +213,14 @@ def _check_exposure(name: str, image: Image, *, board_found: bool) -> None:
         raise ImageSaturated(f"{name}: {full:.0%} of the pixels are at full scale")
 
 
-def _check_board(pair: BoardImages, board: CalibrationBoard) -> None:
-    """Raise ``WrongBoard`` if there is another chessboard in a pair without the board."""
-    seen = name_chessboard(pair.left)
+def _check_board(name: str, image: Image, board: CalibrationBoard) -> None:
+    """Raise ``WrongBoard`` if there is another chessboard in an image without the board."""
+    seen = name_chessboard(image)
     if seen is None:
         return
     columns, rows = seen
     # Markers would have been found: this board has none.
     if board.charuco is not None:
-        raise WrongBoard(f"{pair.name} shows a chessboard without a marker of the {board}")
+        raise WrongBoard(f"{name} shows a chessboard without a marker of the {board}")
     if {columns, rows} != {board.columns, board.rows}:
-        raise WrongBoard(f"{pair.name} shows {columns} x {rows} inner corners, not the {board}")
+        raise WrongBoard(f"{name} shows {columns} x {rows} inner corners, not the {board}")

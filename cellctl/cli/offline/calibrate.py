@@ -5,7 +5,7 @@ Exit code 3 when a result was found but is beyond its limits; it is written all 
 
 import glob
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Protocol
@@ -15,7 +15,12 @@ import typer
 from rich.console import Console
 
 from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charuco
-from cellctl.calibration.boards.board_images import BoardImages, detect_views
+from cellctl.calibration.boards.board_images import (
+    BoardImage,
+    BoardImages,
+    detect_camera_views,
+    detect_views,
+)
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.input_file import read_input
 from cellctl.calibration.output_file import write_file
@@ -26,6 +31,10 @@ from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
 from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
+    calibrate_single_camera,
+)
+from cellctl.calibration.solvers.single_camera.single_camera_picture import single_camera_picture
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
@@ -52,6 +61,9 @@ app.command("seal")(seal)
 InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/calibration.md.")]
 OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]
 Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")]
+BoardSize = Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")]
+SquareSide = Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)]
+Shape = Annotated[BoardShape, typer.Option(help="What may deviate from the drawing of the board.")]
 
 
 class CalibrationResult(Protocol):
@@ -74,24 +86,21 @@ def stereo(
     *,
     left: Annotated[str, typer.Option(help="Left images, a pattern such as 'left-*.png'.")],
     right: Annotated[str, typer.Option(help="Right images, in the same order by name.")],
-    board: Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")],
-    square_mm: Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)],
+    board: BoardSize,
+    square_mm: SquareSide,
     out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
     charuco: Annotated[
         str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")
     ] = None,
     marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
-    board_shape: Annotated[
-        BoardShape, typer.Option(help="What may deviate from the drawing of the board.")
-    ] = BoardShape.BENT,
+    board_shape: Shape = BoardShape.BENT,
     picture: Picture = None,
 ) -> None:
     """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board."""
     pattern = _board(board, square_mm, charuco, marker_mm)
     found = detect_views(_pairs(left, right), pattern)
     console = _console()
-    if found.not_found:
-        console.print(f"board not found, left out: {', '.join(found.not_found)}", markup=False)
+    _say_left_out(console, found.not_found)
     result = calibrate_stereo(found.views, pattern, found.image_size, shape=board_shape)
     for view in result.views:
         mark = "" if view.used else "  REJECTED"
@@ -100,6 +109,38 @@ def stereo(
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
     _finish(result, result.warnings, out, picture, lambda: stereo_picture(result))
+
+
+@app.command("camera")
+def camera(
+    *,
+    images: Annotated[str, typer.Option(help="Images, a pattern such as 'c2-*.png'.")],
+    board: BoardSize,
+    square_mm: SquareSide,
+    out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
+    board_shape: Shape = BoardShape.BENT,
+    picture: Picture = None,
+) -> None:
+    """Calibrate a single camera from images of a chessboard."""
+    pattern = _board(board, square_mm, None, None)
+    named = [BoardImage(path.stem, read_image(path)) for path in _matching(images)]
+    found = detect_camera_views(named, pattern)
+    console = _console()
+    _say_left_out(console, found.not_found)
+    result = calibrate_single_camera(found.views, pattern, found.image_size, shape=board_shape)
+    for view in result.views:
+        mark = "" if view.used else "  REJECTED"
+        console.print(f"  {view.name}: {view.rms_px:.3f} px{mark}", markup=False)
+    matrix, sigma = result.camera.model.camera_matrix, result.sigma
+    for name, value, one in (
+        ("focal length", (matrix[0, 0], matrix[1, 1]), sigma[:2]),
+        ("principal point", (matrix[0, 2], matrix[1, 2]), sigma[2:4]),
+    ):
+        console.print(
+            f"{name} {value[0]:.2f}, {value[1]:.2f} px, sigma {one[0]:.2f}, {one[1]:.2f} px"
+        )
+    console.print(f"board flat to {result.flatness_m / MM:.4f} mm; id {result.camera.id}")
+    _finish(result, result.warnings, out, picture, lambda: single_camera_picture(result))
 
 
 @app.command("hand-eye")
@@ -171,19 +212,27 @@ def _board(
 
 
 def _pairs(left: str, right: str) -> list[BoardImages]:
-    # Expanded here, not by the shell: one option takes one value, and both lists must be in one
-    # order.
-    names = [sorted(glob.glob(pattern)) for pattern in (left, right)]
-    for pattern, found in zip((left, right), names, strict=True):
-        if not found:
-            raise FileInvalid(f"no file matches {pattern}")
+    names = [_matching(pattern) for pattern in (left, right)]
     # One missing image would shift every later pair by one.
     if len(names[0]) != len(names[1]):
         raise FileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
     return [
-        BoardImages(Path(one).stem, read_image(Path(one)), read_image(Path(other)))
+        BoardImages(one.stem, read_image(one), read_image(other))
         for one, other in zip(*names, strict=True)
     ]
+
+
+def _matching(pattern: str) -> list[Path]:
+    # Expanded here, not by the shell: one option takes one value, and lists must be in one order.
+    found = sorted(glob.glob(pattern))
+    if not found:
+        raise FileInvalid(f"no file matches {pattern}")
+    return [Path(one) for one in found]
+
+
+def _say_left_out(console: Console, not_found: Sequence[str]) -> None:
+    if not_found:
+        console.print(f"board not found, left out: {', '.join(not_found)}", markup=False)
 
 
 def _console() -> Console:

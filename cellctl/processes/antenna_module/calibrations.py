@@ -1,8 +1,11 @@
 """The calibration kinds of this process that its chain of poses uses."""
 
+# A fault stands in ``invalidated_by`` when what caused it has moved what the calibration holds
+# for. A robot reports a collision as an error of its controller.
 from typing import Any
 
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult
+from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.plug_calibration import (
     ArmMoved,
@@ -14,9 +17,14 @@ from cellctl.errors.plug_calibration import (
 from cellctl.errors.plugging import PlugOverForce
 from cellctl.errors.robot import ControllerFault
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.roles import CAMERA_1, CAMERA_2
 
-# A fault stands in ``invalidated_by`` when what caused it has moved what the calibration holds
-# for. A robot reports a collision as an error of its controller.
+CAMERA_1_INTRINSICS = CalibrationKind(
+    name="camera_1", parse=SingleCameraResult.from_record, device=CAMERA_1
+)
+CAMERA_2_INTRINSICS = CalibrationKind(
+    name="camera_2", parse=SingleCameraResult.from_record, device=CAMERA_2
+)
 
 FLANGE_CAMERA = CalibrationKind(
     name="flange_T_cam1",
@@ -46,9 +54,16 @@ PLUG_CORRECTION = CalibrationKind(
             PlugOverForce,
         }
     ),
+    required=False,
     per_recipe=True,
 )
 """What teaching has found, for the connector of each recipe. A camera II that moved is not among
 its faults: marks and plug lie in one picture of it."""
 
-CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (FLANGE_CAMERA, FIXED_CAMERA, PLUG_CORRECTION)
+CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (
+    CAMERA_1_INTRINSICS,
+    CAMERA_2_INTRINSICS,
+    FLANGE_CAMERA,
+    FIXED_CAMERA,
+    PLUG_CORRECTION,
+)

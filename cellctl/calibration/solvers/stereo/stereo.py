@@ -14,25 +14,20 @@ from numpy.typing import NDArray
 from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, shape_modes
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
-from cellctl.calibration.solvers.stereo.bundle import (
-    BundleResult,
-    BundleState,
-    adjust,
-    residual_norms,
-)
-from cellctl.calibration.solvers.stereo.stereo_coverage import CoverageLimits, check_coverage
+from cellctl.calibration.solvers.bundle import BundleResult, residual_norms
+from cellctl.calibration.solvers.coverage import CoverageLimits
+from cellctl.calibration.solvers.stereo.bundle import BundleState, adjust
+from cellctl.calibration.solvers.stereo.stereo_coverage import check_coverage
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult, ViewResidual
 from cellctl.calibration.solvers.stereo.stereo_start import start_values
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation, cross_validate
+from cellctl.calibration.solvers.view_rejection import MAX_REJECTED_RATIO, good_views
 from cellctl.errors.calibration import TooFewViews
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
 
 Mask = NDArray[np.bool_]
 
-_BAD_VIEW = 2.5
-"""A view is bad when its rms is so many times the median view's."""
-_MAX_REJECTED_RATIO = 0.2
 _MIN_HALF = 5
 """Views that a half calibration needs."""
 
@@ -45,7 +40,7 @@ class StereoLimits:
     rms_px: float = 0.25
     held_out_m: float = 5e-5
     baseline_sigma_m: float = 5e-5
-    rejected_ratio: float = _MAX_REJECTED_RATIO
+    rejected_ratio: float = MAX_REJECTED_RATIO
 
 
 def calibrate_stereo(
@@ -71,7 +66,7 @@ def calibrate_stereo(
     ordered, start = start_values(views, board, image_size, len(modes.sigma))
     result = adjust(ordered, flat_m, modes, start)
     view_rms = np.array([np.sqrt((n**2).mean()) for n in residual_norms(result.residuals)])
-    good = _good_views(view_rms)
+    good = good_views(view_rms)
     # Judged a second time, because coverage was checked with the views that are now rejected.
     if good.sum() < limits.coverage.views:
         raise TooFewViews(f"{good.sum()} views are left after rejecting {_names(ordered, ~good)}")
@@ -114,17 +109,8 @@ def calibrate_stereo(
     )
 
 
-def _good_views(view_rms: Array) -> Mask:
-    good = view_rms <= _BAD_VIEW * np.median(view_rms)
-    allowed = int(_MAX_REJECTED_RATIO * len(view_rms))
-    # The worst may go, up to the share that is allowed; all others stay, however bad.
-    for index in np.argsort(-view_rms)[allowed:]:
-        good[index] = True
-    return np.asarray(good, dtype=np.bool_)
-
-
 def _view_residual(
-    view: BoardView, result: BundleResult, index: int, *, used: bool
+    view: BoardView, result: BundleResult[BundleState], index: int, *, used: bool
 ) -> ViewResidual:
     left, right = (float(np.sqrt((r**2).sum(axis=1).mean())) for r in result.residuals[index])
     return ViewResidual(view.name, left, right, len(view.left.ids), len(view.right.ids), used)
@@ -161,7 +147,7 @@ def _validate(
     return cross_validate((halves[0], halves[1]), parts, board_m)
 
 
-def _covariance(result: BundleResult, pitch_relative_sigma: float) -> Array:
+def _covariance(result: BundleResult[BundleState], pitch_relative_sigma: float) -> Array:
     covariance = result.covariance[:24, :24].copy()
     # A wrong pitch stretches everything that is measured, and with it the baseline.
     scale_m = result.state.translation_m * pitch_relative_sigma
@@ -204,7 +190,7 @@ def _names(views: Sequence[BoardView], chosen: Mask) -> str:
     return ", ".join(view.name for view, is_chosen in zip(views, chosen, strict=True) if is_chosen)
 
 
-def _field(pixels: Sequence[Array], result: BundleResult, side: int) -> Array:
+def _field(pixels: Sequence[Array], result: BundleResult[BundleState], side: int) -> Array:
     """Positions and residuals of all corners, shape (n, 4), for the picture."""
     residuals = np.concatenate([pair[side] for pair in result.residuals])
     return np.concatenate([np.concatenate(list(pixels)), residuals], axis=1)

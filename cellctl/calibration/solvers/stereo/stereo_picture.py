@@ -3,14 +3,10 @@
 import numpy as np
 from matplotlib.axes import Axes
 
+from cellctl.calibration.boards.board_drawing import draw_board, draw_residuals
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
-from cellctl.geometry.pose import MM, Array
-from cellctl.plot_style import ACCENT, LIMIT, style
-
-_MAX_ARROWS = 2500
-_ARROW_SCALE = 400.0
-"""Image pixels per pixel of residual."""
+from cellctl.plot_style import LIMIT, style
 
 
 @style()
@@ -19,35 +15,16 @@ def stereo_picture(result: StereoResult) -> bytes:
     figure = new_figure(14, 9)
     axes = figure.subplots(2, 3)
     title(figure, f"Stereo head, {result.board}", passed=result.passed)
-    width, height = result.head.image_size
     for side, field, place in (
         ("left", result.left_residuals, axes[0][0]),
         ("right", result.right_residuals, axes[0][1]),
     ):
-        _residual_field(place, field)
-        place.set(title=f"{side} residuals, x {_ARROW_SCALE:.0f}", aspect="equal")
-        place.set(xlim=(0, width), ylim=(height, 0), xlabel="px")
+        draw_residuals(place, field, result.head.image_size, f"{side} residuals")
     _scatter(axes[0][2], result)
     _views(axes[1][0], result)
-    _board(axes[1][1], result)
+    draw_board(axes[1][1], result.board, result.board_m)
     list_checks(axes[1][2], result.checks, result.warnings)
     return as_png(figure)
-
-
-def _residual_field(axes: Axes, field: Array) -> None:
-    # More arrows would cover each other, and a pattern of the residuals shows with fewer.
-    chosen = field[:: max(1, len(field) // _MAX_ARROWS)]
-    axes.quiver(
-        chosen[:, 0],
-        chosen[:, 1],
-        chosen[:, 2] * _ARROW_SCALE,
-        chosen[:, 3] * _ARROW_SCALE,
-        angles="xy",
-        scale_units="xy",
-        scale=1.0,
-        width=0.002,
-        color=ACCENT,
-    )
 
 
 def _scatter(axes: Axes, result: StereoResult) -> None:
@@ -71,13 +48,3 @@ def _views(axes: Axes, result: StereoResult) -> None:
     axes.margins(y=0.12)  # room for the legend above the bars
     axes.grid(visible=False, axis="x")
     axes.legend(fontsize=8, loc="upper right", ncols=2)
-
-
-def _board(axes: Axes, result: StereoResult) -> None:
-    shape = (result.board.rows, result.board.columns)
-    x, y, z = (result.board_m[:, axis].reshape(shape) / MM for axis in range(3))
-    axes.grid(visible=False)
-    shown = axes.contourf(x, y, z * 1000, levels=15, cmap="viridis")
-    axes.figure.colorbar(shown, ax=axes, label="µm")
-    flatness_um = result.flatness_m / MM * 1000
-    axes.set(title=f"board as found, flat to {flatness_um:.0f} µm", aspect="equal", xlabel="mm")

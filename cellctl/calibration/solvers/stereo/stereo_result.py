@@ -6,14 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.calibration.boards.board import CalibrationBoard, Charuco
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.boards.board_record import board_from_record, board_to_record
 from cellctl.calibration.checks import (
     Checks,
     all_passed,
     checks_from_record,
     evidence_to_record,
 )
-from cellctl.calibration.solvers.stereo.stereo_coverage import Coverage
+from cellctl.calibration.solvers.coverage import (
+    Coverage,
+    coverage_from_record,
+    coverage_to_record,
+)
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation
 from cellctl.geometry.pose import MM, Array
 from cellctl.vision.camera.stereo_head import (
@@ -77,22 +82,22 @@ class StereoResult:
             **stereo_head_to_json(self.head),
             **evidence_to_record(self.method, self.checks, self.warnings),
             "sigma_px": self.sigma_px,
-            "board": _board_to_record(self.board),
+            "board": board_to_record(self.board),
             "board_flatness_mm": self.flatness_m / MM,
             "board_corners_mm": (self.board_m / MM).tolist(),
             "views": [_view_to_record(view) for view in self.views],
-            "coverage": [_coverage_to_record(side) for side in self.coverage],
+            "coverage": [coverage_to_record(side) for side in self.coverage],
             "cross_validation": _validation_to_record(self.validation),
         }
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> "StereoResult":
         """The inverse of ``to_record``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
-        left, right = (_coverage_from_record(side) for side in record["coverage"])
+        left, right = (coverage_from_record(side) for side in record["coverage"])
         return cls(
             head=stereo_head_from_json(record),
             method=str(record["method"]),
-            board=_board_from_record(record["board"]),
+            board=board_from_record(record["board"]),
             views=tuple(ViewResidual(**view) for view in record["views"]),
             board_m=np.asarray(record["board_corners_mm"], dtype=float) * MM,
             coverage=(left, right),
@@ -105,37 +110,6 @@ class StereoResult:
 
 def _view_to_record(view: ViewResidual) -> dict[str, Any]:
     return {name: getattr(view, name) for name in ViewResidual.__slots__}
-
-
-def _board_to_record(board: CalibrationBoard) -> dict[str, Any]:
-    charuco = board.charuco
-    return {
-        "inner_corners": [board.columns, board.rows],
-        "square_mm": board.square_m / MM,
-        "charuco_dictionary": None if charuco is None else charuco.dictionary,
-        "charuco_marker_mm": None if charuco is None else charuco.marker_m / MM,
-    }
-
-
-def _board_from_record(record: Mapping[str, Any]) -> CalibrationBoard:
-    columns, rows = record["inner_corners"]
-    charuco = None
-    if record["charuco_dictionary"] is not None:
-        charuco = Charuco(record["charuco_dictionary"], record["charuco_marker_mm"] * MM)
-    return CalibrationBoard(columns, rows, record["square_mm"] * MM, charuco)
-
-
-def _coverage_to_record(coverage: Coverage) -> dict[str, Any]:
-    return {
-        "corners_per_cell": coverage.cells.astype(int).tolist(),
-        "filled_ratio": coverage.filled_ratio,
-        "tilt_ratio": coverage.tilt_ratio,
-    }
-
-
-def _coverage_from_record(record: Mapping[str, Any]) -> Coverage:
-    cells = np.asarray(record["corners_per_cell"], dtype=float)
-    return Coverage(cells, float(record["filled_ratio"]), float(record["tilt_ratio"]))
 
 
 def _validation_to_record(validation: CrossValidation | None) -> dict[str, float] | None:

@@ -3,17 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Corners
+from cellctl.calibration.solvers.camera_start import start_of_camera
 from cellctl.calibration.solvers.stereo.bundle import BundleState
 from cellctl.errors.calibration import (
     CalibrationCamerasSwapped,
     CalibrationCameraUpsideDown,
     PairsInconsistent,
-    SolveFailed,
 )
 from cellctl.geometry.pose import Array
 
@@ -32,8 +31,8 @@ def start_values(
     """
     if board.symmetric:
         views = [_same_direction(view, board) for view in views]
-    left, left_T_board = _single_camera([view.left for view in views], board, image_size)
-    right, right_T_board = _single_camera([view.right for view in views], board, image_size)
+    left, left_T_board = start_of_camera([view.left for view in views], board, image_size)
+    right, right_T_board = start_of_camera([view.right for view in views], board, image_size)
     relative = [r @ np.linalg.inv(a) for a, r in zip(left_T_board, right_T_board, strict=True)]
     rotation, translation_m = _common_pose([view.name for view in views], np.stack(relative))
     return list(views), BundleState(
@@ -45,36 +44,6 @@ def start_values(
         np.stack([pose[:3, :3] for pose in left_T_board]),
         np.stack([pose[:3, 3] for pose in left_T_board]),
     )
-
-
-def _single_camera(
-    images: Sequence[Corners], board: CalibrationBoard, image_size: tuple[int, int]
-) -> tuple[Array, list[Array]]:
-    """Nine numbers of the camera and camera_T_board as 4x4 matrices."""
-    flat = board.corners_m
-    points = [flat[corners.ids].astype(np.float32) for corners in images]
-    pixels = [corners.pixels.astype(np.float32)[:, None, :] for corners in images]
-    try:
-        _, matrix, distortion, turns, shifts = cv2.calibrateCamera(
-            # Each camera by itself first: the joint adjustment converges only from a start near the
-            # solution, and wrong files show themselves in the poses of single cameras.
-            points,
-            pixels,
-            image_size,
-            np.eye(3),
-            np.zeros(5),
-        )
-    except cv2.error as error:
-        raise SolveFailed(f"start values of a camera: {error.err}") from error
-    poses = []
-    for turn, shift in zip(turns, shifts, strict=True):
-        pose = np.eye(4)
-        pose[:3, :3] = Rotation.from_rotvec(np.ravel(turn)).as_matrix()
-        pose[:3, 3] = np.ravel(shift)
-        poses.append(pose)
-    k = np.asarray(matrix, dtype=float)
-    inner = [k[0, 0], k[1, 1], k[0, 2], k[1, 2]]
-    return np.concatenate([inner, np.ravel(distortion)[:5]]), poses
 
 
 def _common_pose(names: Sequence[str], relative: Array) -> tuple[Array, Array]:

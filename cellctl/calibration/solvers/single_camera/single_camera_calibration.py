@@ -1,0 +1,216 @@
+"""Calibration of one camera from views of a board.
+
+The camera, all board poses and the shape of the board are adjusted together. The shape is released
+for the same reason as with a stereo head: a board of 17 mm that is bent by 4 µm moves the focal
+length of a 25 mm lens by half a percent and does not show in the residuals.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.calibration.boards.board import (
+    BoardShape,
+    CalibrationBoard,
+    CameraView,
+    shape_modes,
+)
+from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.boards.projection import camera_model
+from cellctl.calibration.checks import LimitCheck
+from cellctl.calibration.solvers.bundle import BundleResult, residual_norms
+from cellctl.calibration.solvers.camera_start import start_of_camera
+from cellctl.calibration.solvers.coverage import Coverage, CoverageLimits, coverage
+from cellctl.calibration.solvers.single_camera.single_camera_bundle import (
+    CAMERA,
+    CameraBundle,
+    adjust_camera,
+)
+from cellctl.calibration.solvers.single_camera.single_camera_result import (
+    CameraViewResidual,
+    SingleCameraResult,
+)
+from cellctl.calibration.solvers.view_rejection import MAX_REJECTED_RATIO, good_views
+from cellctl.errors.calibration import PoorCoverage, TooFewViews, WrongBoard
+from cellctl.vision.camera.single_camera import SingleCamera
+
+_MIN_HALF = 8
+"""Views that a half calibration needs."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleCameraLimits:
+    """Limits of the result. Pixel figures count both axes of a corner, as OpenCV does."""
+
+    coverage: CoverageLimits = field(
+        # A long lens sees a small board: tilted by 20° its far side is hardly smaller than its near
+        # one. Whether that was enough shows in the sigma of the focal length.
+        default_factory=lambda: CoverageLimits(tilt_ratio=0.003)
+    )
+    rms_px: float = 0.25
+    held_out_px: float = 0.3
+    focal_sigma_ratio: float = 2e-3
+    """Of the focal length. Focal length and distance go together: what stays of an error within the
+    depth of the views is smaller by the ratio of that depth to the distance."""
+    rejected_ratio: float = MAX_REJECTED_RATIO
+
+
+def calibrate_single_camera(
+    views: Sequence[CameraView],
+    board: CalibrationBoard,
+    image_size: tuple[int, int],
+    *,
+    shape: BoardShape = BoardShape.BENT,
+    limits: SingleCameraLimits | None = None,
+) -> SingleCameraResult:
+    """Calibrate a camera; ``image_size`` is width, height in px.
+
+    Raises ``WrongBoard``, ``TooFewViews``, ``PoorCoverage`` or ``SolveFailed``; figures beyond
+    their limits are in ``checks``.
+    """
+    limits = limits or SingleCameraLimits()
+    if board.symmetric:
+        raise WrongBoard(f"{board} looks the same turned by 180°; one side must be odd, one even")
+    covered, coverage_checks = _covered(views, board, image_size, limits.coverage)
+    flat_m, modes = board.corners_m, shape_modes(board, shape)
+    result = adjust_camera(views, flat_m, modes, _start(views, board, image_size, len(modes.sigma)))
+    rms = np.array([np.sqrt((norms**2).mean()) for norms in residual_norms(result.residuals)])
+    good = good_views(rms)
+    residuals = tuple(
+        CameraViewResidual(view.name, float(rms[i]), len(view.corners.ids), bool(good[i]))
+        for i, view in enumerate(views)
+    )
+    if good.sum() < limits.coverage.views:
+        raise TooFewViews(f"{good.sum()} views are left after rejecting {_rejected(residuals)}")
+    kept = [view for view, is_good in zip(views, good, strict=True) if is_good]
+    # Bad views have pulled the solution, so it is adjusted once more without them, from where it
+    # is.
+    if not good.all():
+        result = adjust_camera(kept, flat_m, modes, _of_views(result.state, good))
+    state = result.state
+    norms = np.concatenate(residual_norms(result.residuals))
+    rms_px = float(np.sqrt((norms**2).mean()))
+    held_out_px = _held_out_px(kept, board, shape, state)
+    sigma = np.sqrt(np.diag(result.covariance)[:CAMERA])
+    focal_ratio = float((sigma[:2] / state.camera[:2]).max())
+    return SingleCameraResult(
+        camera=SingleCamera(image_size, camera_model(state.camera)),
+        method=f"joint bundle adjustment, board shape {shape.value}",
+        board=board,
+        views=residuals,
+        board_m=flat_m + modes.modes @ state.shape,
+        coverage=covered,
+        sigma=sigma,
+        rms_px=rms_px,
+        held_out_px=held_out_px,
+        sigma_px=result.sigma_px,
+        checks=(
+            *coverage_checks,
+            LimitCheck("reprojection rms", rms_px, limits.rms_px, "px"),
+            LimitCheck("focal length sigma", focal_ratio, limits.focal_sigma_ratio, ""),
+            LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
+            *_held_out_check(held_out_px, limits),
+        ),
+        warnings=_warnings(len(kept), _rejected(residuals), held_out_px),
+        residuals=_field(kept, result),
+    )
+
+
+def _covered(
+    views: Sequence[CameraView],
+    board: CalibrationBoard,
+    image_size: tuple[int, int],
+    limits: CoverageLimits,
+) -> tuple[Coverage, tuple[LimitCheck, ...]]:
+    if len(views) < limits.views:
+        names = ", ".join(view.name for view in views) or "none"
+        raise TooFewViews(f"{len(views)} usable views, at least {limits.views} needed: {names}")
+    covered = coverage([view.corners for view in views], board, image_size)
+    checks = (
+        LimitCheck("views", len(views), limits.views, "", "min"),
+        LimitCheck(
+            "image cells with corners", covered.filled_ratio, limits.filled_ratio, "", "min"
+        ),
+        LimitCheck("tilt of the board", covered.tilt_ratio, limits.tilt_ratio, "", "min"),
+    )
+    # Refused before solving: a solution from such views exists, has small residuals, and is wrong.
+    failed = [str(check) for check in checks if not check.passed]
+    if failed:
+        raise PoorCoverage("; ".join(failed))
+    return covered, checks
+
+
+def _start(
+    views: Sequence[CameraView], board: CalibrationBoard, image_size: tuple[int, int], modes: int
+) -> CameraBundle:
+    camera, poses = start_of_camera([view.corners for view in views], board, image_size)
+    return CameraBundle(
+        camera,
+        np.zeros(modes),
+        np.stack([pose[:3, :3] for pose in poses]),
+        np.stack([pose[:3, 3] for pose in poses]),
+    )
+
+
+def _of_views(state: CameraBundle, chosen: NDArray[np.bool_]) -> CameraBundle:
+    return replace(
+        state,
+        view_rotations=state.view_rotations[chosen],
+        view_translations_m=state.view_translations_m[chosen],
+    )
+
+
+def _held_out_px(
+    views: Sequence[CameraView], board: CalibrationBoard, shape: BoardShape, state: CameraBundle
+) -> float | None:
+    """Residual of each half of the views in a camera that was calibrated with the other half."""
+    if len(views) < 2 * _MIN_HALF:
+        return None
+    modes = shape_modes(board, shape)
+    # Every other view: neighbours in time are alike, so both halves cover the whole range.
+    first = np.arange(len(views)) % 2 == 0
+    squares, count = 0.0, 0
+    for own in (first, ~first):
+        seen = [view for view, is_own in zip(views, own, strict=True) if is_own]
+        half = adjust_camera(seen, board.corners_m, modes, _of_views(state, own)).state
+        camera, board_m = camera_model(half.camera), board.corners_m + modes.modes @ half.shape
+        for view, is_own in zip(views, own, strict=True):
+            if is_own:
+                continue
+            corners = view.corners
+            _, rms_px = board_in_camera(camera, board_m[corners.ids], corners.pixels)
+            squares += rms_px**2 * len(corners.ids)
+            count += len(corners.ids)
+    return float(np.sqrt(squares / count))
+
+
+def _held_out_check(
+    held_out_px: float | None, limits: SingleCameraLimits
+) -> tuple[LimitCheck, ...]:
+    if held_out_px is None:
+        return ()
+    return (LimitCheck("held-out rms", held_out_px, limits.held_out_px, "px"),)
+
+
+def _warnings(kept: int, rejected: str, held_out_px: float | None) -> tuple[str, ...]:
+    warnings = []
+    if rejected:
+        warnings.append(f"views rejected for their residuals: {rejected}")
+    if kept < 20:
+        warnings.append(f"{kept} views; 20 to 40 are advisable")
+    if held_out_px is None:
+        warnings.append(f"no cross-validation: it needs {2 * _MIN_HALF} views")
+    return tuple(warnings)
+
+
+def _rejected(residuals: Sequence[CameraViewResidual]) -> str:
+    return ", ".join(view.name for view in residuals if not view.used)
+
+
+def _field(views: Sequence[CameraView], result: BundleResult[CameraBundle]) -> NDArray[np.float64]:
+    """Positions and residuals of all corners, shape (n, 4), for the picture."""
+    pixels = np.concatenate([view.corners.pixels for view in views])
+    residuals = np.concatenate([images[0] for images in result.residuals])
+    return np.concatenate([pixels, residuals], axis=1)

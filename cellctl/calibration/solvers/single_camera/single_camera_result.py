@@ -1,0 +1,111 @@
+"""The result of the calibration of one camera."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.boards.board_record import board_from_record, board_to_record
+from cellctl.calibration.checks import (
+    Checks,
+    all_passed,
+    checks_from_record,
+    evidence_to_record,
+)
+from cellctl.calibration.solvers.coverage import (
+    Coverage,
+    coverage_from_record,
+    coverage_to_record,
+)
+from cellctl.geometry.pose import MM, Array
+from cellctl.vision.camera.single_camera import (
+    SingleCamera,
+    single_camera_from_json,
+    single_camera_to_json,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class CameraViewResidual:
+    """Rms residual of one image, both axes together."""
+
+    name: str
+    rms_px: float
+    corners: int
+    used: bool
+    """False for a view that was rejected as bad; its residual is from before."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SingleCameraResult:
+    """A calibrated camera and how far to trust it."""
+
+    camera: SingleCamera
+    method: str
+    board: CalibrationBoard
+    views: tuple[CameraViewResidual, ...]
+    board_m: Array
+    """Corners of the board as found, shape (n, 3)."""
+    coverage: Coverage
+    sigma: Array
+    """Standard deviations of the nine ``CAMERA_PARAMETERS``, shape (9,)."""
+    rms_px: float
+    """Of the corners of all views that were used, both axes together."""
+    held_out_px: float | None
+    """The same of views that the calibration has not seen; None with too few views."""
+    sigma_px: float
+    """Standard deviation of a corner coordinate."""
+    checks: Checks
+    warnings: tuple[str, ...]
+    residuals: Array = field(default_factory=lambda: np.zeros((0, 4)))
+    """Columns u, v, du, dv in px; for the picture only, not in the record."""
+
+    @property
+    def passed(self) -> bool:
+        """The verdict."""
+        return all_passed(self.checks)
+
+    @property
+    def flatness_m(self) -> float:
+        """Height of the board from its lowest to its highest corner."""
+        return float(np.ptp(self.board_m[:, 2]))
+
+    def to_record(self) -> dict[str, Any]:
+        """Plain data: the camera's file with the evidence added."""
+        return {
+            **single_camera_to_json(self.camera),
+            **evidence_to_record(self.method, self.checks, self.warnings),
+            "sigma": self.sigma.tolist(),
+            "rms_px": self.rms_px,
+            "held_out_px": self.held_out_px,
+            "sigma_px": self.sigma_px,
+            "board": board_to_record(self.board),
+            "board_flatness_mm": self.flatness_m / MM,
+            "board_corners_mm": (self.board_m / MM).tolist(),
+            "views": [
+                {name: getattr(view, name) for name in CameraViewResidual.__slots__}
+                for view in self.views
+            ],
+            "coverage": coverage_to_record(self.coverage),
+        }
+
+    @classmethod
+    def from_record(cls, record: Mapping[str, Any]) -> "SingleCameraResult":
+        """The inverse of ``to_record``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
+        held_out_px = record["held_out_px"]
+        return cls(
+            camera=single_camera_from_json(record),
+            method=str(record["method"]),
+            board=board_from_record(record["board"]),
+            views=tuple(CameraViewResidual(**view) for view in record["views"]),
+            board_m=np.asarray(record["board_corners_mm"], dtype=float) * MM,
+            coverage=coverage_from_record(record["coverage"]),
+            sigma=np.asarray(record["sigma"], dtype=float),
+            rms_px=float(record["rms_px"]),
+            held_out_px=None if held_out_px is None else float(held_out_px),
+            sigma_px=float(record["sigma_px"]),
+            checks=checks_from_record(record["checks"]),
+            warnings=tuple(record["warnings"]),
+        )
