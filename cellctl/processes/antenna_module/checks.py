@@ -28,6 +28,9 @@ def recipe_issues(
             where = f"cameras.{camera}.carried_by"
             wanted = "nobody: camera II is fixed" if carrier is None else carrier
             yield ConfigIssue(where, repr(carried_by), wanted)
+    if cell.cameras[recipe.device(CAMERA_1)].flange_T_camera is None:
+        where = f"cameras.{recipe.device(CAMERA_1)}.flange_T_camera"
+        yield ConfigIssue(where, "nothing", "the camera's place on the flange by the drawing")
     try:
         read_drawings(recipe, folder)
     except CellError as fault:

@@ -7,6 +7,7 @@ from pydantic import Field
 from cellctl.config.base import Section
 
 _Small = Annotated[float, Field(ge=0, le=10)]
+_Shift = Annotated[float, Field(ge=0, le=200)]
 
 
 class ArmSection(Section):
@@ -44,6 +45,13 @@ class AntennaSettings(Section):
     tilt_deg: Annotated[float, Field(ge=5, le=30)] = 20.0
     turn_deg: Annotated[float, Field(ge=10, le=60)] = 40.0
     depth_mm: Annotated[float, Field(ge=5, le=60)] = 20.0
+    shift_mm: tuple[_Shift, _Shift] = (18.0, 6.0)
+    """How far the middle of the board goes to either side in the picture, along its width and its
+    height. Corners of the board must stay in the picture, turned and nearer too."""
+    board_distance_mm: Annotated[float, Field(ge=50, le=1000)] = 250.0
+    """From camera I to the board on the table, at ``board_look``."""
+    flange_T_board_mm: Annotated[float, Field(ge=0, le=1000)] = 205.0
+    """From the flange to the board that hangs on it, along z of the flange."""
     taught_plugs: Annotated[int, Field(ge=4, le=50)] = 8
     """Plugs of one teaching."""
     validity_days: Annotated[int, Field(ge=1, le=3650)] = 30

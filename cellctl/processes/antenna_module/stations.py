@@ -3,9 +3,12 @@
 from dataclasses import dataclass
 from typing import cast
 
+from scipy.spatial.transform import RigidTransform
+
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.cell import CellConfig
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces import Camera, Gripper
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import CAMERA_1, CAMERA_2, FORCE, GRIPPER
@@ -24,17 +27,24 @@ class AntennaCell:
     camera_2: Camera
     gripper: Gripper
     settings: AntennaSettings
+    flange_T_camera_1: RigidTransform
+    """By the cell file, for planning views only; what was measured, procedure 203 stores."""
 
     @classmethod
     def of(cls, cell: Cell, recipe: AntennaRecipe) -> "AntennaCell":
         """Roles as the recipe binds them; the check of the cell file saw to it that all exist."""
+        camera_1 = recipe.device(CAMERA_1)
+        # The check of the cell file saw to it that a camera on a robot has its place there.
+        on_flange = cell.config.cameras[camera_1].flange_T_camera
+        assert on_flange is not None
         return cls(
             cell,
             cell.guarded_robot(recipe.device(FORCE)),
-            cell.cameras[recipe.device(CAMERA_1)],
+            cell.cameras[camera_1],
             cell.cameras[recipe.device(CAMERA_2)],
             cell.grippers[recipe.device(GRIPPER)],
             cast(AntennaSettings, cell.config.processes[recipe.process]),
+            pose_from_xyzabc(on_flange),
         )
 
     @property

@@ -1,6 +1,5 @@
 """The input file of a hand-eye calibration."""
 
-from collections import Counter
 from typing import Annotated, Any
 
 import numpy as np
@@ -15,10 +14,9 @@ from cellctl.calibration.input_file import (
     numbers,
 )
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
-from cellctl.errors.plugging import WristConfigurationsDiffer
+from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.geometry.wrist import wrist_configuration
 from cellctl.vision.camera.stereo_head import CameraModel
 
 
@@ -104,26 +102,17 @@ class HandEyeFile(InputFile):
         Raises ``BoardPoseInvalid`` when corners give no pose, ``WristConfigurationsDiffer`` when
         the joints that the file gives mix two ways in which the arm is folded.
         """
-        self._require_one_wrist()
+        require_one_wrist(
+            {
+                entry.name or f"pose {number}": np.radians(entry.joints_deg)
+                for number, entry in enumerate(self.poses, start=1)
+                if entry.joints_deg is not None
+            }
+        )
         return tuple(
             HandEyePose(entry.name or f"pose {number}", entry.base_T_flange, self._board(entry))
             for number, entry in enumerate(self.poses, start=1)
         )
-
-    def _require_one_wrist(self) -> None:
-        # An arm's kinematic error differs from one way of folding it to the other by more than
-        # the calibration is to be good for: several times the error of the result was measured.
-        joints = {
-            entry.name or f"pose {number}": wrist_configuration(np.radians(entry.joints_deg))
-            for number, entry in enumerate(self.poses, start=1)
-            if entry.joints_deg is not None
-        }
-        usual = Counter(joints.values()).most_common(1)
-        other = [name for name, signs in joints.items() if signs != usual[0][0]]
-        if other:
-            raise WristConfigurationsDiffer(
-                f"signs of A3 and A5 {usual[0][0]}, but otherwise in {', '.join(other)}"
-            )
 
     def _board(self, entry: HandEyeEntry) -> UncertainPose:
         """camera_T_board as given, or from corners."""

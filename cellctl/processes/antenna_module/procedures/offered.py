@@ -1,18 +1,27 @@
 """The procedures of Maintenance that this process offers, with their numbers."""
 
-from collections.abc import Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from datetime import timedelta
 from functools import partial
 
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.processes.antenna_module.procedures.camera_intrinsics import (
+    calibrate_camera_on_cell,
+)
+from cellctl.processes.antenna_module.procedures.camera_mounting import (
+    calibrate_mounting_on_cell,
+)
 from cellctl.processes.antenna_module.procedures.teach_plug import teach_plug_on_cell
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
-from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 
 TEACH = 206
 TEACH_BY_RECIPE = 20_600
 """Plus the number of a recipe: its plug correction; 206 means the first recipe."""
+
+Run = Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
 
 
 def antenna_procedures(
@@ -22,7 +31,26 @@ def antenna_procedures(
     valid_for = timedelta(days=cell.settings.validity_days)
     by_number = {TEACH: recipes[0]}
     by_number |= {TEACH_BY_RECIPE + recipe.id: recipe for recipe in recipes}
-    return [
+
+    def procedure(number: int, label: str, run: Run) -> Procedure:
+        return Procedure(number, number, label, run, valid_for)
+
+    in_hand, to_hand = Setup.EYE_IN_HAND, Setup.EYE_TO_HAND
+    cameras = [
+        procedure(201, "calibrate camera I", partial(calibrate_camera_on_cell, cell, in_hand)),
+        procedure(202, "calibrate camera II", partial(calibrate_camera_on_cell, cell, to_hand)),
+        procedure(
+            203,
+            "camera I on the flange",
+            partial(calibrate_mounting_on_cell, cell, services, in_hand),
+        ),
+        procedure(
+            204,
+            "camera II beside the robot",
+            partial(calibrate_mounting_on_cell, cell, services, to_hand),
+        ),
+    ]
+    return cameras + [
         Procedure(
             number,
             TEACH,

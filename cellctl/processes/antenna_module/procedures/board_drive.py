@@ -1,0 +1,116 @@
+"""One drive round a calibration board: the flange at every stop, and what the camera saw there."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.boards.board import CalibrationBoard, CameraView
+from cellctl.calibration.boards.board_images import BoardImage, detect_camera_view
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
+from cellctl.errors.calibration import BoardNotFound
+from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces import Camera
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.looking import Eyes
+from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.procedures.board_poses import swung_poses
+from cellctl.processes.antenna_module.roles import BOARD_LOOK, BOARD_SHOW, HOME
+from cellctl.processes.antenna_module.start import leave_stations
+from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.runtime.procedure import ProcedureContext
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardStop:
+    """Arm and camera at one stop."""
+
+    base_T_flange: RigidTransform
+    view: CameraView
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardDrive:
+    """Everything that one drive has shown."""
+
+    stops: tuple[BoardStop, ...]
+    image_size: tuple[int, int]
+    """Width, height in px."""
+
+    @property
+    def views(self) -> tuple[CameraView, ...]:
+        """Of all stops."""
+        return tuple(stop.view for stop in self.stops)
+
+
+def board_of(cell: AntennaCell) -> CalibrationBoard:
+    """The board of the settings."""
+    columns, rows = (int(number) for number in cell.settings.board.split("x"))
+    return CalibrationBoard(columns, rows, cell.settings.square_mm * MM)
+
+
+def camera_of(cell: AntennaCell, setup: Setup) -> Camera:
+    """Camera I for eye in hand, camera II for eye to hand."""
+    return cell.camera_1 if setup is Setup.EYE_IN_HAND else cell.camera_2
+
+
+async def drive_round_board(
+    context: ProcedureContext, cell: AntennaCell, setup: Setup
+) -> BoardDrive:
+    """Swing camera I about the board on the table, or the board on the flange over camera II.
+
+    Ends at home. Raises ``BoardNotFound``, ``WristConfigurationsDiffer``, the faults of images
+    that show no board, and what moves and cameras raise.
+    """
+    mover = Mover(cell)
+    await leave_stations(cell)
+    await mover.to_taught(BOARD_LOOK if setup is Setup.EYE_IN_HAND else BOARD_SHOW)
+    here = cell.arm.robot.state().base_T_flange
+    poses = swung_poses(cell.settings, here, _flange_T_pivot(cell, setup))
+    drive, joints = await _stops(context, cell, setup, poses)
+    await mover.to(here)
+    await mover.to_taught(HOME)
+    if not drive.stops:
+        raise BoardNotFound(f"no {board_of(cell)} in any of {len(poses)} views")
+    require_one_wrist(joints)
+    return drive
+
+
+async def _stops(
+    context: ProcedureContext, cell: AntennaCell, setup: Setup, poses: Sequence[RigidTransform]
+) -> tuple[BoardDrive, dict[str, Array]]:
+    """The drive, and the joints (rad) by the name of the view."""
+    mover, camera = Mover(cell), camera_of(cell, setup)
+    eyes = Eyes(cell.arm, cell.workers, recorder=None, frames=1)
+    stops: list[BoardStop] = []
+    joints: dict[str, Array] = {}
+    image_size = (0, 0)
+    for number, base_T_flange in enumerate(poses, start=1):
+        await context.progress(number, len(poses), "view")
+        await mover.to(base_T_flange)
+        name = f"view {number}"
+        seen = await eyes.look(name, camera, partial(_find, name=name, board=board_of(cell)))
+        height, width = seen.images[0].shape
+        image_size = (width, height)
+        view = seen.frames[0]
+        # A view without the board is no fault: at the borders of the picture it may be cut off.
+        # What all views together must cover, the solver checks.
+        if view is not None:
+            stops.append(BoardStop(seen.base_T_flange, view))
+            joints[name] = seen.joints_rad
+    return BoardDrive(tuple(stops), image_size), joints
+
+
+def _find(image: Image, *, name: str, board: CalibrationBoard) -> CameraView | None:
+    return detect_camera_view(BoardImage(name, image), board)
+
+
+def _flange_T_pivot(cell: AntennaCell, setup: Setup) -> RigidTransform:
+    """Middle of the board, x along the width of the picture."""
+    settings = cell.settings
+    if setup is Setup.EYE_TO_HAND:
+        return RigidTransform.from_translation([0.0, 0.0, settings.flange_T_board_mm * MM])
+    ahead = RigidTransform.from_translation([0.0, 0.0, settings.board_distance_mm * MM])
+    return cell.flange_T_camera_1 * ahead
