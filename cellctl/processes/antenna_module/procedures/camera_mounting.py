@@ -3,8 +3,10 @@
 import asyncio
 from dataclasses import replace
 
+import numpy as np
+
 from cellctl.calibration.boards.board_in_camera import board_in_camera
-from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye import HandEyeLimits, calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
     HandEyePose,
@@ -36,6 +38,8 @@ _LOCAL_SHARE = 0.45
 """Of the arm's mean absolute error, standard deviation per axis among neighbouring poses."""
 _REACH_M = 0.8
 """The lever that makes an error of position from one of angle."""
+_LIMITS = HandEyeLimits(position_sigma_m=2e-4, rotation_sigma_rad=float(np.radians(0.03)))
+"""Taught plugs take an error of 0.3 mm and 0.05° out again to a micrometre (docs/plugging.md)."""
 
 
 async def calibrate_mounting_on_cell(
@@ -77,7 +81,7 @@ def mounting_of(
         corners = stop.view.corners
         seen, _ = board_in_camera(model, board_m[corners.ids], corners.pixels)
         poses.append(HandEyePose(stop.view.name, stop.base_T_flange, seen))
-    result = calibrate_hand_eye(poses, setup, noise=noise)
+    result = calibrate_hand_eye(poses, setup, noise=noise, limits=_LIMITS)
     return replace(result, camera_id=camera.camera.id)
 
 
