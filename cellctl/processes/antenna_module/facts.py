@@ -106,7 +106,9 @@ async def read_facts(
 
 def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell) -> TaughtReference:
     """Raises ``CalibrationMissing`` or ``CalibrationsDoNotBelongTogether``."""
-    reference = snapshot.get(REFERENCE)
+    reference = snapshot.find(REFERENCE)
+    if reference is None:
+        raise CalibrationMissing(f"{REFERENCE.name}: none that is valid, procedure 205 teaches it")
     reference.require_made_with(ReferenceMadeWith.of(plug_cell))
     return reference
 
