@@ -53,9 +53,11 @@ class AntennaModuleDemo(Demo):
         return Judgement(evidence.good and not beyond, figures, _rows(figures))
 
     def prepare(self, control: Control) -> None:
-        """The board is put away, and nobody stands by to plug what the cell plugs itself."""
+        """The board is put away, nobody stands by to plug what the cell plugs itself, and a module
+        is laid on the tray: with what was injected into it."""
         control.request("remove_boards")
         control.request("stand_by", on=False)
+        control.request("load")
 
     def rows(self, now: Message) -> Mapping[str, str]:
         """The force of the insertion."""

@@ -69,9 +69,12 @@ class OwnCell:
 
     def _write_cell(self) -> None:
         text = self._shipped_cell.read_text(encoding="utf-8")
-        copytree(ROOT / "config" / "demo-calibration", self.calibration, dirs_exist_ok=True)
-        text = text.replace('"demo-calibration"', f'"{self.calibration}"')
-        text = text.replace('"features/', f'"{ROOT}/config/features/')
+        shipped = str(tomllib.loads(text)["calibration_dir"])
+        if (CONFIG / shipped).is_dir():
+            copytree(CONFIG / shipped, self.calibration, dirs_exist_ok=True)
+        text = text.replace(f'"{shipped}"', f'"{self.calibration}"')
+        for folder in ("features", "connectors"):
+            text = text.replace(f'"{folder}/', f'"{CONFIG}/{folder}/')
         self.cell.write_text(self._renumbered(text), encoding="utf-8")
 
     @property

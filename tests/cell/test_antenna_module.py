@@ -1,0 +1,65 @@
+"""Antenna modules on the fake cell, as `make demo-antenna` plugs them: daemon, line and all."""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.cell.own_cell import OwnCell
+
+pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
+PROCESS = ("--process", "antenna-module")
+
+
+@pytest.fixture
+def antenna(tmp_path: Path) -> Iterator[OwnCell]:
+    cell = OwnCell.make(tmp_path, "antenna")
+    yield cell
+    cell.kill_all()
+
+
+def result_of(out: Path) -> dict[str, Any]:
+    result: dict[str, Any] = json.loads((out / "result.json").read_text(encoding="utf-8"))
+    return result
+
+
+def test_a_module_is_plugged(antenna: OwnCell) -> None:
+    out = antenna.folder / "run"
+    demo = antenna.demo(out, *PROCESS, "--seed", "2")
+    assert demo.end(300) == 0, demo.stdout + demo.stderr
+    demo.nobody_left()
+    result = result_of(out)
+    assert result["passed"]
+    assert result["pins_inside"] == result["pins"] == 15
+    assert result["met_offset_mm"] < 0.05
+    assert result["peak_side_n"] < 3.0
+    assert result["damaged"] == []
+    page = (out / "report" / "report.html").read_text(encoding="utf-8")
+    assert page.count("data:image/png;base64") == 2
+    drawings = re.findall(r"<figure>\s*<svg.*?</figure>", page, re.DOTALL)
+    for caption in ("what the predicted error", "Force on the plug"):
+        assert any(caption in drawing for drawing in drawings), f"no drawing {caption!r}"
+
+
+@pytest.mark.parametrize(
+    ("fault", "number", "place"),
+    [
+        ("world:empty_tray", "F580", "absent"),
+        ("world:turned", "F581", "tray"),
+        ("world:bent_pin", "F473", "gripper"),
+    ],
+)
+def test_a_module_that_cannot_be_plugged(
+    antenna: OwnCell, fault: str, number: str, place: str
+) -> None:
+    out = antenna.folder / "run"
+    demo = antenna.demo(out, *PROCESS, "--seed", "2", "--fault", fault)
+    assert demo.end(300) == 2, demo.stdout + demo.stderr
+    assert number in demo.stdout
+    result = result_of(out)
+    assert not result["passed"]
+    assert result["module"] == place
+    assert result["pins_inside"] == 0
