@@ -65,7 +65,9 @@ _MAX_CHI2 = 22.5
 MOVED_M = 10e-6
 """A place that is farther from the taught one than this has moved. Four times the noise of a check
 with eight angles, and half of what must be found."""
-_SIGMAS = 4.0
+_SIGMAS = 4.5
+"""A false alarm costs a calibration: three places of two coordinates exceed it once in 10 000
+checks."""
 _DRIFTS = 3.0
 """So many standard deviations of what warming does to the arm are no fault: plans include them."""
 

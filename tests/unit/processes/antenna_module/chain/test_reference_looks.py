@@ -28,7 +28,7 @@ from tests.unit.processes.antenna_module.chain.reference_draws import (
     drawn_looks,
 )
 
-COUNT, TAUGHT_COUNT = 4, 12
+COUNT, TAUGHT_COUNT = 4, 16
 D = 20e-6 * np.array([np.cos(0.7), np.sin(0.7)])
 
 
