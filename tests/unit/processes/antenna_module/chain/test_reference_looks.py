@@ -74,14 +74,18 @@ def test_the_reading_has_every_place() -> None:
 
 
 def test_an_arm_that_repeats_badly_makes_no_reference() -> None:
-    bad = replace(ARM, repeatability_m=2.5 * ARM.repeatability_m)
+    bad = replace(
+        ARM,
+        repeatability_m=2.5 * ARM.repeatability_m,
+        repeatability_rad=2.5 * ARM.repeatability_rad,
+    )
     checks = drawn_looks(TAUGHT_COUNT, np.random.default_rng(1)).checks(bad)
     assert [check.name for check in checks if not check.passed] == ["sigma of a place"]
 
 
 def test_the_noise_of_the_arm_alone_is_no_fault_and_seldom_in_doubt() -> None:
-    found = [verdict(seed, {}) for seed in range(1500)]
-    assert sum(fault is not None for fault, _ in found) <= 3
+    found = [verdict(seed, {}) for seed in range(200)]
+    assert sum(fault is not None for fault, _ in found) == 0
     assert np.mean([doubtful for _, doubtful in found]) < 0.25
 
 
@@ -97,7 +101,7 @@ def test_the_noise_of_the_arm_alone_is_no_fault_and_seldom_in_doubt() -> None:
 def test_20_um_are_found_and_the_device_is_named(
     moved: Mapping[str, Array], fault: type[ReferenceMoved]
 ) -> None:
-    found = [verdict(seed, moved)[0] for seed in range(300)]
+    found = [verdict(seed, moved)[0] for seed in range(100)]
     assert np.mean([one is not None for one in found]) >= 0.95
     assert np.mean([one is fault for one in found]) >= 0.9
 

@@ -1,5 +1,6 @@
 """Step 10: when it looks, how often, and what it raises; the drive is scripted."""
 
+import importlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import timedelta
@@ -22,12 +23,13 @@ from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Ready
-from cellctl.processes.antenna_module.steps import check_reference as step
 from tests.unit.processes.antenna_module.chain.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import drawn_looks
 
 MOVED: Mapping[str, Array] = {"marks": np.array([60e-6, 0.0])}
 EVERY_H = 2.0
+# By its name: the package offers the function under the name of the module.
+step = importlib.import_module("cellctl.processes.antenna_module.steps.check_reference")
 
 
 @dataclass
