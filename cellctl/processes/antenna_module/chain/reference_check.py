@@ -66,8 +66,7 @@ MOVED_M = 10e-6
 """A place that is farther from the taught one than this has moved. Four times the noise of a check
 with eight angles, and half of what must be found."""
 _SIGMAS = 4.5
-"""A false alarm costs a calibration: three places of two coordinates exceed it once in 10 000
-checks."""
+"""A false alarm costs a calibration. Where nothing has moved, 2 of 2500 drawn checks exceed it."""
 _DRIFTS = 3.0
 """So many standard deviations of what warming does to the arm are no fault: plans include them."""
 

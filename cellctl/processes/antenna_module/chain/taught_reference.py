@@ -81,8 +81,9 @@ class TaughtReference:
             raise ValueError("every place has x and y")
         if not (np.isfinite(places).all() and 0.0 < sigma_m < np.inf):
             raise ValueError("places and their standard deviation must be numbers")
+        axis, marks, plate_1, plate_2 = places
         return cls(
             ReferenceMadeWith.from_record(record["made_with"]),
-            ReferenceReading(*places, sigma_m),
+            ReferenceReading(axis, marks, plate_1, plate_2, sigma_m),
             checks_from_record(record["checks"]),
         )

@@ -44,7 +44,7 @@ async def check_reference(ready: Ready) -> Checked:
 async def _check(run: PluggingRun, taught: TaughtReference, count: int) -> None:
     arm = run.facts.plug_cell.arm
     looks = await _looks(run, count, first=1)
-    # Few looks find what has moved, and take one time in six for moved what has not: the noise of
+    # Few looks find what has moved, and take one time in ten for moved what has not: the noise of
     # the arm. Twice as many tell both apart, and the good check stays short.
     if in_doubt(taught.reading, looks.reading(arm)):
         looks += await _looks(run, count, first=count + 1)
