@@ -22,16 +22,43 @@ def ship(
     """Copy calibrations and pictures of a demonstration, without their last day."""
     made = run / "calibration"
     folder.mkdir(parents=True, exist_ok=True)
-    for file in sorted(made.glob("*.json")):
-        if file.name.endswith(".invalidated.json"):
-            continue
-        content = json.loads(file.read_text(encoding="utf-8"))
-        content |= {"valid_until": NEVER}
-        content |= {"id": _identity(content)}
-        (folder / file.name).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        typer.echo(f"{folder / file.name}")
+    texts = {
+        file.name: file.read_text(encoding="utf-8")
+        for file in sorted(made.glob("*.json"))
+        if not file.name.endswith(".invalidated.json")
+    }
+    for name, text in _without_last_day(texts).items():
+        (folder / name).write_text(text, encoding="utf-8")
+        typer.echo(f"{folder / name}")
     for picture in sorted(made.glob("*.png")):
         shutil.copyfile(picture, folder / picture.name)
+
+
+def _without_last_day(texts: dict[str, str]) -> dict[str, str]:
+    """Files by name that never expire, with identities of their own.
+
+    A calibration that was made with others names them by their identities, which change as well:
+    those are done first.
+    """
+    ids = {name: str(json.loads(text)["id"]) for name, text in texts.items()}
+    done: dict[str, str] = {}
+    while len(done) < len(texts):
+        waiting = [name for name in texts if name not in done]
+        ready = [
+            name
+            for name in waiting
+            if not any(ids[other] in texts[name] for other in waiting if other != name)
+        ]
+        if not ready:
+            raise ValueError(f"these calibrations name each other: {', '.join(waiting)}")
+        for name in ready:
+            text = texts[name]
+            for other, shipped in done.items():
+                text = text.replace(ids[other], str(json.loads(shipped)["id"]))
+            content = json.loads(text) | {"valid_until": NEVER}
+            content |= {"id": _identity(content)}
+            done[name] = json.dumps(content, indent=1) + "\n"
+    return done
 
 
 def _identity(content: dict[str, object]) -> str:

@@ -9,7 +9,7 @@ from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_limits import Sensing
 from cellctl.clock import now_s
 from cellctl.errors import CellError
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.chain.requirements import require_fresh
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.insertion.verdict import (
@@ -26,6 +26,9 @@ from cellctl.processes.antenna_module.state import AtStandOff, Inserted
 from cellctl.processes.antenna_module.steps.stand_off import way_of
 
 _log = log.get(__name__)
+_TURNED_FORCE = 0.005
+"""Crosstalk and mounting of a force sensor turn the force that it reports by so much (rad). On the
+lever from the sensor to the contacts that is a moment, and moves the centre of pressure."""
 
 
 async def insert(over: AtStandOff) -> Inserted:
@@ -109,6 +112,9 @@ def limits_of(run: PluggingRun) -> InsertionLimits:
     entry ends before the springs can begin.
     """
     insertion, place = run.recipe.insertion, run.recipe.base_T_socket
+    flange_T_plug = pose_from_xyzabc(run.recipe.flange_T_plug)
+    sensor_T_plug = run.cell.arm.flange_T_sensor.inv() * flange_T_plug
+    lever_m = float(np.linalg.norm(sensor_T_plug.translation))
     sigma_mm = float(np.hypot(place.height_sigma_mm, run.recipe.plug_height_sigma_mm))
     margin_m = insertion.height_sigmas * sigma_mm * MM
     limits = InsertionLimits.of(run.drawings.socket)
@@ -117,4 +123,5 @@ def limits_of(run: PluggingRun) -> InsertionLimits:
         spring_depth_m=limits.spring_depth_m - margin_m,
         entry_height_m=limits.entry_height_m + margin_m,
         seat_tolerance_m=insertion.seat_tolerance_mm * MM,
+        centre_of_pressure_m=limits.centre_of_pressure_m + _TURNED_FORCE * lever_m,
     )
