@@ -89,6 +89,8 @@ async def read_facts(
         raise CalibrationMissing(f"{kind.name}: the scheme {scheme.name} needs taught plugs")
     plug_cell = plug_cell_of(snapshot, cell.settings, recipe)
     plate = cell.settings.reference
+    drawings = read_drawings(recipe, cell.cell.folder)
+    gripper = drawings.gripper.name
     return RunFacts(
         cell=cell,
         recipe=recipe,
@@ -98,18 +100,18 @@ async def read_facts(
         plug_cell=plug_cell,
         scheme=scheme,
         correction=correction,
-        drawings=read_drawings(recipe, cell.cell.folder),
+        drawings=drawings,
         plate=None if plate is None else read_plate(plate, cell.cell.folder),
-        reference=None if plate is None or teaching else _reference(snapshot, plug_cell),
+        reference=None if plate is None or teaching else _reference(snapshot, plug_cell, gripper),
     )
 
 
-def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell) -> TaughtReference:
+def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell, gripper: str) -> TaughtReference:
     """Raises ``CalibrationMissing`` or ``CalibrationsDoNotBelongTogether``."""
     reference = snapshot.find(REFERENCE)
     if reference is None:
         raise CalibrationMissing(f"{REFERENCE.name}: none that is valid, procedure 205 teaches it")
-    reference.require_made_with(ReferenceMadeWith.of(plug_cell))
+    reference.require_made_with(ReferenceMadeWith.of(plug_cell, gripper))
     return reference
 
 

@@ -19,11 +19,6 @@ class Ready:
 
 
 @dataclass(frozen=True, slots=True)
-class Checked(Ready):
-    """Nothing has moved since the reference was taught, as far as that is due to be known."""
-
-
-@dataclass(frozen=True, slots=True)
 class ModuleFound(Ready):
     """Camera I has seen the module on its tray."""
 

@@ -50,7 +50,9 @@ async def teach_reference_on_cell(
     await Mover(cell).to_taught(HOME)
     arm = facts.plug_cell.arm
     taught = TaughtReference(
-        ReferenceMadeWith.of(facts.plug_cell), looks.reading(arm), looks.checks(arm)
+        ReferenceMadeWith.of(facts.plug_cell, facts.drawings.gripper.name),
+        looks.reading(arm),
+        looks.checks(arm),
     )
     warnings = _since_last_time(facts, taught)
     return ProcedureOutcome(

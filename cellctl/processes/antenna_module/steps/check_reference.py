@@ -18,27 +18,27 @@ from cellctl.processes.antenna_module.chain.taught_reference import TaughtRefere
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import Checked, Ready
+from cellctl.processes.antenna_module.state import Ready
 
 _log = log.get(__name__)
 
 
-async def check_reference(ready: Ready) -> Checked:
+async def check_reference(ready: Ready) -> Ready:
     """Look at gripper marks and plate where that is due; few times, and again when in doubt.
 
-    Raises the ``ReferenceMoved`` of the device that has moved, ``LooksIncomplete`` or
+    Gives back what it is given: nothing has moved. Raises the ``ReferenceMoved`` of the device that has moved, ``LooksIncomplete`` or
     ``TurnInvalid``. Does nothing in a cell without a reference plate.
     """
     run = ready.run
     taught, section = run.facts.reference, run.cell.settings.reference
     if taught is None or section is None:
-        return Checked(run)
+        return ready
     begun = utc_now()
     made = run.facts.calibrations.stored[REFERENCE.name].made
     if run.last_check.due(begun, made, timedelta(hours=section.every_h)):
         await _check(run, taught, section.looks)
         run.last_check.passed = begun
-    return Checked(run)
+    return ready
 
 
 async def _check(run: PluggingRun, taught: TaughtReference, count: int) -> None:

@@ -107,11 +107,12 @@ def test_20_um_are_found_and_the_device_is_named(
 
 
 def test_an_arm_that_warms_up_is_no_fault_and_one_that_was_hit_is() -> None:
-    taught = ReferenceReading(*np.zeros((4, 2)), sigma_m=2e-6)
+    none = np.zeros(2)
+    taught = ReferenceReading(none, none, none, none, sigma_m=2e-6)
 
     def after(drift_m: float) -> ReferenceReading:
         along = np.array([drift_m, 0.0])
-        return ReferenceReading(along, np.zeros(2), -along, np.zeros(2), sigma_m=3e-6)
+        return ReferenceReading(along, none, -along, none, sigma_m=3e-6)
 
     assert require_nothing_moved(taught, after(5e-6), ARM.drift_m) is None
     warmed = require_nothing_moved(taught, after(60e-6), ARM.drift_m)
