@@ -26,8 +26,8 @@ _log = log.get(__name__)
 async def check_reference(ready: Ready) -> Ready:
     """Look at gripper marks and plate where that is due; few times, and again when in doubt.
 
-    Gives back what it is given: nothing has moved. Raises the ``ReferenceMoved`` of the device that has moved, ``LooksIncomplete`` or
-    ``TurnInvalid``. Does nothing in a cell without a reference plate.
+    Gives back what it is given: nothing has moved. Raises the ``ReferenceMoved`` of the device that
+    has, ``LooksIncomplete`` or ``TurnInvalid``. Does nothing in a cell without a reference plate.
     """
     run = ready.run
     taught, section = run.facts.reference, run.cell.settings.reference
