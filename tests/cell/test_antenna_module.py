@@ -63,3 +63,17 @@ def test_a_module_that_cannot_be_plugged(
     assert not result["passed"]
     assert result["module"] == place
     assert result["pins_inside"] == 0
+
+
+def test_marks_that_have_moved_are_named_before_anything_is_picked(antenna: OwnCell) -> None:
+    antenna.change("every_h = 87600.0", "every_h = 0.0")
+    antenna.fake(seed=2).ready()
+    daemon = antenna.daemon()
+    daemon.ready()
+    with antenna.control() as control:
+        control.request("inject", device="world", name="marks_shifted", x_mm=0.03)
+    plc = antenna.plc("--recipe", "1", "--serial", "MOD-0002")
+    assert plc.end(300) != 0, plc.stdout
+    assert [entry["number"] for entry in daemon.log if entry.get("event") == "fault"] == [647]
+    (lost,) = (e for e in daemon.log if e.get("event") == "calibrations invalidated")
+    assert lost["items"] == ["reference", "plug_correction_1"]

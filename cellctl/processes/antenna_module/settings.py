@@ -45,7 +45,7 @@ class ReferenceSection(Section):
     looks: Annotated[int, Field(ge=4, le=16, multiple_of=2)] = 4
     """At the marks and as many at the plate. A check that is in doubt looks twice as often."""
     taught_looks: Annotated[int, Field(ge=8, le=32, multiple_of=2)] = 16
-    every_h: Annotated[float, Field(ge=0, le=168)] = 1.0
+    every_h: Annotated[float, Field(ge=0, le=87_600)] = 1.0
     """A run whose last check is older begins with one; 0: every run."""
 
 
