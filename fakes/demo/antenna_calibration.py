@@ -30,5 +30,6 @@ PROCEDURES = (
     Procedure(202, "lens of camera II", _board_on_flange),
     Procedure(203, "camera I on the flange", _board_on_table),
     Procedure(204, "camera II in the base frame", _board_on_flange),
+    Procedure(205, "reference: axis, marks and plate", _put_away),
     Procedure(206, "plug correction, taught", _stand_by, timeout_s=1200.0),
 )

@@ -32,6 +32,7 @@ class AntennaModuleDemo(Demo):
     serial: ClassVar[str] = "MOD-{seed:04d}"
     procedures: ClassVar[Sequence[Procedure]] = PROCEDURES
     steps: ClassVar[Mapping[int, str]] = {
+        10: "check reference",
         20: "find module",
         30: "pick",
         40: "inspect plug",

@@ -13,10 +13,12 @@ from cellctl.errors.plug_calibration import (
     FlangeCameraMoved,
     GripperMarksMoved,
     ReferenceMoved,
+    ReferencePlateMoved,
 )
 from cellctl.errors.plugging import PlugOverForce
 from cellctl.errors.robot import ControllerFault
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.roles import CAMERA_1, CAMERA_2
 
 CAMERA_1_INTRINSICS = CalibrationKind(
@@ -60,10 +62,29 @@ PLUG_CORRECTION = CalibrationKind(
 """What teaching has found, for the connector of each recipe. A camera II that moved is not among
 its faults: marks and plug lie in one picture of it."""
 
+REFERENCE = CalibrationKind(
+    name="reference",
+    parse=TaughtReference.from_record,
+    invalidated_by=frozenset(
+        {
+            FixedCameraMoved,
+            FlangeCameraMoved,
+            GripperMarksMoved,
+            ReferencePlateMoved,
+            ArmMoved,
+            ReferenceMoved,
+        }
+    ),
+    required=False,
+)
+"""Where axis, marks and plate are; the settings say whether a run needs it. Whatever has moved
+stays where it is then, so all of these faults ask for a new one."""
+
 CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (
     CAMERA_1_INTRINSICS,
     CAMERA_2_INTRINSICS,
     FLANGE_CAMERA,
     FIXED_CAMERA,
+    REFERENCE,
     PLUG_CORRECTION,
 )

@@ -2,13 +2,15 @@
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors import CellError
-from cellctl.processes.antenna_module.drawings import read_drawings
+from cellctl.processes.antenna_module.drawings import read_drawings, read_plate
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE
+from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE, REFERENCE_LOOK
+from cellctl.processes.antenna_module.settings import AntennaSettings
 
 
 def recipe_issues(
@@ -35,3 +37,21 @@ def recipe_issues(
         read_drawings(recipe, folder)
     except CellError as fault:
         yield ConfigIssue(key, fault.detail, "drawings that can be used")
+    yield from _reference_issues(cell, recipe, folder)
+
+
+def _reference_issues(
+    cell: CellConfig, recipe: AntennaRecipe, folder: Path
+) -> Iterator[ConfigIssue]:
+    settings = cast(AntennaSettings, cell.processes[recipe.process])
+    if settings.reference is None:
+        return
+    arm = recipe.device(ARM)
+    if REFERENCE_LOOK not in cell.robots[arm].poses_deg:
+        where = f"robots.{arm}.poses_deg"
+        yield ConfigIssue(where, "nothing", f"{REFERENCE_LOOK}: camera I over the reference plate")
+    try:
+        read_plate(settings.reference, folder)
+    except CellError as fault:
+        where = f"processes.{recipe.process}.reference"
+        yield ConfigIssue(where, fault.detail, "drawings that can be used")

@@ -1,4 +1,4 @@
-"""The drawings that a recipe names."""
+"""The drawings that a recipe and the settings of the process name."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,7 +6,8 @@ from pathlib import Path
 from cellctl.errors.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
-from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
+from cellctl.processes.antenna_module.settings import ReferenceSection
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,3 +34,22 @@ def read_drawings(recipe: AntennaRecipe, folder: Path) -> Drawings:
         raise ConnectorFileInvalid(f"contacts of {plug.name} and {socket.name} are not the same")
     gripper = read_marks(folder / recipe.gripper_marks)
     return Drawings(plug, socket, gripper, read_marks(folder / recipe.module_top))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plate:
+    """The reference plate as either camera sees it."""
+
+    above: Marks
+    """By camera I."""
+    below: Marks
+    """By camera II."""
+    base_T_plate: Place
+
+
+def read_plate(section: ReferenceSection, folder: Path) -> Plate:
+    """Read the drawings of the plate beside the cell file; raises ``MarksFileInvalid``."""
+    above, below = (
+        read_marks(folder / name) for name in (section.plate_above, section.plate_below)
+    )
+    return Plate(above, below, section.base_T_plate)

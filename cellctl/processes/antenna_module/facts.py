@@ -20,6 +20,7 @@ from cellctl.processes.antenna_module.calibrations import (
     FIXED_CAMERA,
     FLANGE_CAMERA,
     PLUG_CORRECTION,
+    REFERENCE,
 )
 from cellctl.processes.antenna_module.chain.cell_figures import (
     RP_OVER_SIGMA,
@@ -30,7 +31,11 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
 )
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.drawings import Drawings, read_drawings
+from cellctl.processes.antenna_module.chain.taught_reference import (
+    ReferenceMadeWith,
+    TaughtReference,
+)
+from cellctl.processes.antenna_module.drawings import Drawings, Plate, read_drawings, read_plate
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.processes.antenna_module.stations import AntennaCell
@@ -53,6 +58,10 @@ class RunFacts:
     correction: PlugCorrection | None
     """Of this recipe; None for a scheme that does without."""
     drawings: Drawings
+    plate: Plate | None
+    """None in a cell without one."""
+    reference: TaughtReference | None
+    """None in a cell without a plate, and while it is being taught."""
 
 
 async def read_facts(
@@ -65,8 +74,8 @@ async def read_facts(
 ) -> RunFacts:
     """Read and check everything; ``kinds`` are the calibrations that count in the run.
 
-    ``teaching``: the correction is not needed, it is about to be made. Raises the faults of
-    calibrations and drawings, and ``SpeedOverridden``.
+    ``teaching``: correction and reference are not needed, one of them is about to be made. Raises
+    the faults of calibrations and drawings, and ``SpeedOverridden``.
     """
     require_full_speed(cell.arm.robot)
     kinds = [kind.for_recipe(recipe.id) for kind in kinds]
@@ -78,17 +87,32 @@ async def read_facts(
     correction = snapshot.find(kind) if scheme.taught else None
     if scheme.taught and correction is None and not teaching:
         raise CalibrationMissing(f"{kind.name}: the scheme {scheme.name} needs taught plugs")
+    plug_cell = plug_cell_of(snapshot, cell.settings, recipe)
+    plate = cell.settings.reference
+    drawings = read_drawings(recipe, cell.cell.folder)
+    gripper = drawings.gripper.name
     return RunFacts(
         cell=cell,
         recipe=recipe,
         calibrations=snapshot,
         camera_1=snapshot.get(CAMERA_1_INTRINSICS).camera,
         camera_2=snapshot.get(CAMERA_2_INTRINSICS).camera,
-        plug_cell=plug_cell_of(snapshot, cell.settings, recipe),
+        plug_cell=plug_cell,
         scheme=scheme,
         correction=correction,
-        drawings=read_drawings(recipe, cell.cell.folder),
+        drawings=drawings,
+        plate=None if plate is None else read_plate(plate, cell.cell.folder),
+        reference=None if plate is None or teaching else _reference(snapshot, plug_cell, gripper),
     )
+
+
+def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell, gripper: str) -> TaughtReference:
+    """Raises ``CalibrationMissing`` or ``CalibrationsDoNotBelongTogether``."""
+    reference = snapshot.find(REFERENCE)
+    if reference is None:
+        raise CalibrationMissing(f"{REFERENCE.name}: none that is valid, procedure 205 teaches it")
+    reference.require_made_with(ReferenceMadeWith.of(plug_cell, gripper))
+    return reference
 
 
 def plug_cell_of(

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.stations import AntennaCell
 
 FREE = WrenchTolerance(force_n=15.0, moment_n_m=4.0)
@@ -28,10 +28,13 @@ class Mover:
 
     async def to_taught(self, pose: str) -> None:
         """A joint move to a taught pose."""
+        await self.to_joints(np.radians(self.cell.arm.config.poses_deg[pose]))
+
+    async def to_joints(self, joints_rad: Array) -> None:
+        """A joint move, shape (6,)."""
         arm = self.cell.arm
         # The weight is not identified: what the arm's tilt makes of it is part of the tolerance.
         await arm.guard.set_gravity_compensation(GravityCompensation.none())
-        joints_rad = np.radians(arm.config.poses_deg[pose])
         await move_joint_free(self.cell.cell, arm, joints_rad)
 
     async def to(self, base_T_flange: RigidTransform) -> None:

@@ -16,12 +16,13 @@ from cellctl.errors.plugging import (
     PlugShortSeat,
     PlugSideForce,
 )
+from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
-from cellctl.runtime.process import Prepared, Process, RunContext
+from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
@@ -55,6 +56,10 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         }
     )
 
+    def __init__(self, services: CellServices) -> None:
+        super().__init__(services)
+        self._last_check = LastCheck()
+
     @classmethod
     def check(
         cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
@@ -85,7 +90,7 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         """Facts, record, eyes and arm."""
         from cellctl.processes.antenna_module.run import PluggingRun
 
-        return PluggingRun.of(prepared.facts, self.services, context)
+        return PluggingRun.of(prepared.facts, self.services, context, last_check=self._last_check)
 
     async def begin(self, run: "PluggingRun") -> "Ready":
         """Gripper open and empty, arm at home."""
@@ -94,7 +99,7 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         return await move_to_start(run)
 
     def steps(self, recipe: Recipe) -> "Steps[Ready, Any]":  # noqa: ARG002 - alike for all
-        """Find, pick, inspect, locate, plan, stand-off, insert, verify."""
+        """Check reference, find, pick, inspect, locate, plan, stand-off, insert, verify."""
         from cellctl.processes.antenna_module.steps import PLUGGING
 
         return PLUGGING
@@ -116,7 +121,7 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         return pages(record, read)
 
     def procedures(self) -> "Sequence[Procedure]":
-        """What Maintenance offers: 206 teaches the plug correction."""
+        """What Maintenance offers: calibrations, the reference, the plug correction."""
         from cellctl.processes.antenna_module.procedures.offered import antenna_procedures
         from cellctl.processes.antenna_module.stations import antenna_recipes
 

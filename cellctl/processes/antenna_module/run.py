@@ -5,6 +5,7 @@ from typing import Self
 
 from cellctl.processes.antenna_module.drawings import Drawings
 from cellctl.processes.antenna_module.facts import RunFacts
+from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moving import Mover
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -27,6 +28,7 @@ class PluggingRun:
     interruption: Interruption
     eyes: Eyes
     mover: Mover
+    last_check: LastCheck
     prefix: str = ""
     """Before the names of files and entries, where one run plugs several times."""
 
@@ -37,6 +39,7 @@ class PluggingRun:
         services: CellServices,
         context: RunContext,
         *,
+        last_check: LastCheck | None = None,
         prefix: str = "",
         keep_images: bool = True,
     ) -> Self:
@@ -55,6 +58,7 @@ class PluggingRun:
                 facts.recipe.frames,
             ),
             Mover(cell),
+            LastCheck() if last_check is None else last_check,
             prefix,
         )
 

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from cellctl.config.base import Section
+from cellctl.processes.antenna_module.recipe import Place
 
 _Small = Annotated[float, Field(ge=0, le=10)]
 _Shift = Annotated[float, Field(ge=0, le=200)]
@@ -32,6 +33,22 @@ class CamerasSection(Section):
     drift_deg: _Small = 0.001
 
 
+class ReferenceSection(Section):
+    """The plate beside camera II, and how often the cell is compared with what was taught."""
+
+    plate_above: str
+    """Drawing of the plate's dots as camera I sees them, relative to the cell file."""
+    plate_below: str
+    """The same dots as camera II sees them."""
+    base_T_plate: Place
+    """Its z points to camera I."""
+    looks: Annotated[int, Field(ge=4, le=16, multiple_of=2)] = 4
+    """At the marks and as many at the plate. A check that is in doubt looks twice as often."""
+    taught_looks: Annotated[int, Field(ge=8, le=32, multiple_of=2)] = 16
+    every_h: Annotated[float, Field(ge=0, le=168)] = 1.0
+    """A run whose last check is older begins with one; 0: every run."""
+
+
 class AntennaSettings(Section):
     """Figures of the cell, and settings of the calibration procedures."""
 
@@ -54,4 +71,6 @@ class AntennaSettings(Section):
     """From the flange to the board that hangs on it, along z of the flange."""
     taught_plugs: Annotated[int, Field(ge=4, le=50)] = 8
     """Plugs of one teaching."""
+    reference: ReferenceSection | None = None
+    """None in a cell without a plate: nobody notices there what moves after the calibration."""
     validity_days: Annotated[int, Field(ge=1, le=3650)] = 30

@@ -65,6 +65,41 @@ _MAX_CHI2 = 22.5
 MOVED_M = 10e-6
 """A place that is farther from the taught one than this has moved. Four times the noise of a check
 with eight angles, and half of what must be found."""
+_SIGMAS = 4.5
+"""A false alarm costs a calibration. Where nothing has moved, 2 of 2500 drawn checks exceed it."""
+_DRIFTS = 3.0
+"""So many standard deviations of what warming does to the arm are no fault: plans include them."""
+
+
+def furthest_m(taught: ReferenceReading, now: ReferenceReading) -> float:
+    """How far the place is from its taught one that has moved most."""
+    return float(np.linalg.norm(now.stacked() - taught.stacked(), axis=1).max())
+
+
+def in_doubt(taught: ReferenceReading, now: ReferenceReading) -> bool:
+    """Whether more looks must tell a device that has moved from an arm that repeats badly."""
+    return furthest_m(taught, now) > MOVED_M
+
+
+def moved_limit_m(taught: ReferenceReading, now: ReferenceReading) -> float:
+    """How far a place may be: beyond it is more than noise."""
+    return max(MOVED_M, _SIGMAS * float(np.hypot(taught.sigma_m, now.sigma_m)))
+
+
+def require_nothing_moved(
+    taught: ReferenceReading, now: ReferenceReading, arm_drift_m: float
+) -> ArmMoved | None:
+    """As ``require_reference``, but an arm that has only warmed up is given back as a warning.
+
+    ``arm_drift_m``: standard deviation, per axis, of what warming moves one place against another.
+    """
+    try:
+        require_reference(taught, now, moved_limit_m(taught, now))
+    except ArmMoved as fault:
+        if furthest_m(taught, now) > _DRIFTS * arm_drift_m:
+            raise
+        return fault
+    return None
 
 
 def require_reference(

@@ -39,6 +39,8 @@ class ToolTurnResult:
     """Per axis."""
     stops: int
     checks: Checks
+    residuals_m: Array
+    """Seen less fitted, in the axes of the camera, shape (stops, 2)."""
 
     method = "circle about the flange axis"
 
@@ -76,14 +78,15 @@ def calibrate_tool_turn(
         raise TurnInvalid(f"angles leave a gap of {np.degrees(gap):.0f}°, allowed 180°")
     seen = np.array([stop.seen_m for stop in stops])
     # A camera that looks against the axis sees the joint turn the other way.
-    (axis, offset, rms), (_, _, other) = sorted(
+    best, worse = sorted(
         (_fit(sign * angles, seen) for sign in (1.0, -1.0)), key=lambda fit: fit[2]
     )
+    axis, offset, rms, residuals = best
     radius = float(np.linalg.norm(offset))
     if rms > residual_limit_m and rms > 0.1 * radius:
         raise TurnInvalid(
             f"residual {rms * 1e6:.0f} µm at a radius of {radius / MM:.3f} mm; "
-            f"turning the other way {other * 1e6:.0f} µm"
+            f"turning the other way {worse[2] * 1e6:.0f} µm"
         )
     sigma = rms / float(np.sqrt(len(stops)))
     checks = (
@@ -91,7 +94,7 @@ def calibrate_tool_turn(
         LimitCheck("residual rms", rms / MM, residual_limit_m / MM, "mm"),
         LimitCheck("sigma of the offset", sigma / MM, sigma_limit_m / MM, "mm"),
     )
-    return ToolTurnResult(axis, offset, sigma, rms, len(stops), checks)
+    return ToolTurnResult(axis, offset, sigma, rms, len(stops), checks, residuals)
 
 
 def _largest_gap(angles: Array) -> float:
@@ -99,14 +102,15 @@ def _largest_gap(angles: Array) -> float:
     return float(np.diff(np.append(around, around[0] + 2 * np.pi)).max())
 
 
-def _fit(angles: Array, seen: Array) -> tuple[Array, Array, float]:
-    """Centre, offset and residual rms per axis."""
+def _fit(angles: Array, seen: Array) -> tuple[Array, Array, float, Array]:
+    """Centre, offset, residual rms per axis, residuals of shape (n, 2)."""
     cosines, sines = np.cos(angles), np.sin(angles)
     ones, zeros = np.ones_like(angles), np.zeros_like(angles)
     of_x = np.column_stack([ones, zeros, cosines, -sines])
     of_y = np.column_stack([zeros, ones, sines, cosines])
     matrix, known = np.concatenate([of_x, of_y]), np.concatenate([seen[:, 0], seen[:, 1]])
     solution = np.linalg.lstsq(matrix, known, rcond=None)[0]
-    residuals = matrix @ solution - known
+    residuals = known - matrix @ solution
     spare = max(1, len(known) - 4)
-    return solution[:2], solution[2:], float(np.sqrt(residuals @ residuals / spare))
+    rms = float(np.sqrt(residuals @ residuals / spare))
+    return solution[:2], solution[2:], rms, np.asarray(residuals.reshape(2, -1).T)

@@ -12,6 +12,9 @@ from cellctl.processes.antenna_module.procedures.camera_mounting import (
     calibrate_mounting_on_cell,
 )
 from cellctl.processes.antenna_module.procedures.teach_plug import teach_plug_on_cell
+from cellctl.processes.antenna_module.procedures.teach_reference import (
+    teach_reference_on_cell,
+)
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
@@ -50,6 +53,10 @@ def antenna_procedures(
             partial(calibrate_mounting_on_cell, cell, services, to_hand),
         ),
     ]
+    section = cell.settings.reference
+    if section is not None:
+        teach = partial(teach_reference_on_cell, cell, recipes[0], section, services)
+        cameras.append(procedure(205, "teach reference", teach))
     return cameras + [
         Procedure(
             number,

@@ -7,6 +7,7 @@ from cellctl.records.entries import PoseOrigin
 
 MEASURED, COMMANDED, REPORTED = PoseOrigin.MEASURED, PoseOrigin.COMMANDED, PoseOrigin.REPORTED
 
+REFERENCE, REFERENCE_MOVED = "reference", "reference.moved"
 TRAY = "module.on_tray"
 MASS = "module.mass"
 PLUG, MARKS, SOCKET = "plug", "marks", "socket"

@@ -1,6 +1,7 @@
 """The steps of one plugging in their order, with the numbers that the line and the record see."""
 
-from cellctl.processes.antenna_module.state import Ready, SocketLocated, Verified
+from cellctl.processes.antenna_module.state import Ready, Verified
+from cellctl.processes.antenna_module.steps.check_reference import check_reference
 from cellctl.processes.antenna_module.steps.find_module import find_module
 from cellctl.processes.antenna_module.steps.insert import insert
 from cellctl.processes.antenna_module.steps.inspect_plug import inspect_plug
@@ -11,6 +12,7 @@ from cellctl.processes.antenna_module.steps.stand_off import stand_off
 from cellctl.processes.antenna_module.steps.verify import verify
 from cellctl.runtime.steps import Restart, Steps, StepSpec
 
+CHECK_REFERENCE = StepSpec(10, "check reference", check_reference)
 FIND_MODULE = StepSpec(20, "find module", find_module)
 PICK = StepSpec(30, "pick", pick)
 # From here on a module is in the gripper: the steps cannot begin again with it, so a Hold waits
@@ -22,8 +24,14 @@ STAND_OFF = StepSpec(70, "stand-off", stand_off, restart=Restart.NO_WAY_BACK)
 INSERT = StepSpec(80, "insert", insert, contact=True, restart=Restart.NO_WAY_BACK)
 VERIFY = StepSpec(90, "verify", verify, contact=True, restart=Restart.NO_WAY_BACK)
 
-TO_SOCKET: Steps[Ready, SocketLocated] = (
-    Steps.first(FIND_MODULE).then(PICK).then(INSPECT_PLUG).then(LOCATE_SOCKET)
+PLUGGING: Steps[Ready, Verified] = (
+    Steps.first(CHECK_REFERENCE)
+    .then(FIND_MODULE)
+    .then(PICK)
+    .then(INSPECT_PLUG)
+    .then(LOCATE_SOCKET)
+    .then(PLAN)
+    .then(STAND_OFF)
+    .then(INSERT)
+    .then(VERIFY)
 )
-"""What a teaching needs, too."""
-PLUGGING: Steps[Ready, Verified] = TO_SOCKET.then(PLAN).then(STAND_OFF).then(INSERT).then(VERIFY)

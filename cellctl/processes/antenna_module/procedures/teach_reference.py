@@ -1,0 +1,73 @@
+"""Procedure 205: where axis, gripper marks and plate are, for later checks to compare with."""
+
+from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, REFERENCE
+from cellctl.processes.antenna_module.chain.reference_check import (
+    require_nothing_moved,
+)
+from cellctl.processes.antenna_module.chain.taught_reference import (
+    ReferenceMadeWith,
+    TaughtReference,
+)
+from cellctl.processes.antenna_module.facts import RunFacts, read_facts
+from cellctl.processes.antenna_module.looking import Eyes
+from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.procedures.reference_picture import reference_picture
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
+from cellctl.processes.antenna_module.roles import HOME
+from cellctl.processes.antenna_module.settings import ReferenceSection
+from cellctl.processes.antenna_module.start import leave_stations
+from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.process import CellServices
+
+
+async def teach_reference_on_cell(
+    cell: AntennaCell,
+    recipe: AntennaRecipe,
+    section: ReferenceSection,
+    services: CellServices,
+    context: ProcedureContext,
+) -> ProcedureOutcome:
+    """Turn the marks over camera II and look at the plate, often; the gripper is empty.
+
+    A valid reference that was made with the same calibrations is compared first: raises the
+    ``ReferenceMoved`` of what has moved since. That invalidates what depends on it, which the new
+    reference would hide. Raises also what drive and store raise.
+    """
+    facts = await read_facts(cell, recipe, services.calibrations, CALIBRATIONS, teaching=True)
+    await leave_stations(cell)
+    await cell.gripper.open()
+
+    async def tell(number: int, total: int) -> None:
+        await context.progress(number, total, "look")
+
+    plate = facts.plate
+    # It is offered in a cell with a plate only.
+    assert plate is not None
+    eyes = Eyes(cell.arm, cell.workers, recorder=None, frames=1)
+    looks = await ReferenceDrive(facts, plate, eyes, tell).looks(section.taught_looks)
+    await Mover(cell).to_taught(HOME)
+    arm = facts.plug_cell.arm
+    taught = TaughtReference(
+        ReferenceMadeWith.of(facts.plug_cell, facts.drawings.gripper.name),
+        looks.reading(arm),
+        looks.checks(arm),
+    )
+    warnings = _since_last_time(facts, taught)
+    return ProcedureOutcome(
+        kind=REFERENCE,
+        record=taught.to_record(),
+        passed=taught.passed,
+        warnings=warnings,
+        picture_png=await cell.workers.run(reference_picture, looks, taught.checks),
+        serial_number="",
+    )
+
+
+def _since_last_time(facts: RunFacts, taught: TaughtReference) -> tuple[str, ...]:
+    before = facts.calibrations.find(REFERENCE)
+    if before is None or before.made_with != taught.made_with:
+        return ()
+    warmed = require_nothing_moved(before.reading, taught.reading, facts.plug_cell.arm.drift_m)
+    return () if warmed is None else (f"arm has warmed up since the last time: {warmed.detail}",)
