@@ -4,13 +4,10 @@ from functools import partial
 
 import numpy as np
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_limits import Sensing
 from cellctl.errors.connector import ConnectorError
 from cellctl.errors.plugging import MovedOnRelease, PlugNotHeld
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.insertion.limits import Phase
-from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
 from cellctl.processes.antenna_module.looking import combined, plane_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
@@ -19,8 +16,7 @@ from cellctl.processes.antenna_module.pushing.push_in import FINE_M
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Inserted, Verified
-from cellctl.processes.antenna_module.steps.insert import limits_of
-from cellctl.processes.antenna_module.steps.stand_off import way_of
+from cellctl.processes.antenna_module.steps.contact import contact
 from cellctl.processes.antenna_module.vision.measure import measure_marks
 from cellctl.records.figures import Limit
 
@@ -35,20 +31,9 @@ async def verify(inserted: Inserted) -> Verified:
     """
     run = inserted.run
     arm = run.cell.arm
-    way = way_of(inserted)
-    limits = limits_of(run)
     with run.cell.cell.trips_awaited(arm.sensor_name):
-        async with ContactRecorder(arm.robot, arm.guard, way.depth_of) as recorder:
-            attempt = PushAttempt(
-                arm.robot,
-                arm.guard,
-                Sensing.of(arm.sensor),
-                way,
-                run.drawings.socket,
-                limits,
-                InsertionWatch(limits),
-                recorder,
-            )
+        async with contact(inserted) as attempt:
+            limits = attempt.limits
             await attempt.arm(limits.at(limits.seat_depth_m))
             await _pull(run, attempt)
     await arm.guard.disarm()

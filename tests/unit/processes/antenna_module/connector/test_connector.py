@@ -17,7 +17,7 @@ from cellctl.processes.antenna_module.connector.connector import (
 )
 
 FOLDER = Path("config/connectors")
-SHIPPED = sorted(FOLDER.glob("*-*.toml"))
+SHIPPED = sorted(path for kind in ("pins", "holes") for path in FOLDER.glob(f"*-{kind}.toml"))
 TEXT = (FOLDER / "micro-d-15-pins.toml").read_text()
 
 

@@ -17,7 +17,7 @@ from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TripReason
 from cellctl.interfaces import Robot, RobotMode, RobotState
-from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
+from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
@@ -164,7 +164,7 @@ class Push:
         self.recorder = ContactRecorder(robot, guard, self.world.way.depth_of)
         await self.recorder.__aenter__()
         return PushAttempt(
-            robot, guard, Sensing(1000.0, 0.1, 0.3), self.world.way, cast(Connector, SOCKET),
+            robot, guard, Sensing(1000.0, 0.1, 0.3), self.world.way, SOCKET,
             self.limits, InsertionWatch(self.limits), self.recorder, settle_s=0.0, read_s=0.004,
         )  # fmt: skip
 
