@@ -117,10 +117,11 @@ def test_covariance_is_honest(seeds: int) -> None:
     assert all(result.passed and not result.warnings for result in results)
 
 
-def test_eye_to_hand() -> None:
+@pytest.mark.parametrize("seeds", [1, pytest.param(3, marks=pytest.mark.long)])
+def test_eye_to_hand(seeds: int) -> None:
     results = [
         calibrate_hand_eye(make_poses(seed, Setup.EYE_TO_HAND), Setup.EYE_TO_HAND, noise=NOISE)
-        for seed in range(3)
+        for seed in range(seeds)
     ]
     for result in results:
         assert np.abs(errors(result)[:3]).max() < 3e-4
