@@ -60,7 +60,7 @@ class Seated:
     scope="module",
     params=[
         pytest.param((1, 3e6), id="stiff"),
-        # A soft contact takes the same way in three times as many steps.
+        # One mating, of some seconds, is what a standard run has the time for.
         pytest.param((2, 1e6), id="soft", marks=pytest.mark.long),
     ],
 )
