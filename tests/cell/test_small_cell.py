@@ -6,8 +6,7 @@ import pytest
 
 from tests.cell.own_cell import OwnCell
 
-# `test_writing_a_process.py` runs a part on the same cell in the standard tests.
-pytestmark = [pytest.mark.timeout(120), pytest.mark.long]
+pytestmark = pytest.mark.timeout(120)
 
 
 def test_the_daemon_finds_every_device(tmp_path: Path) -> None:
