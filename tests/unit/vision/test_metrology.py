@@ -38,9 +38,9 @@ def machined_frame() -> Run:
 def test_clean_holes_are_measured_near_the_physical_limit(clean: Run) -> None:
     assert not clean.failures
     for kind, errors in clean.holes.items():
-        # 40 and 80 image points of five exposures: the median scatters by less than 13 % and 9 %, of
-        # three by 17 % and 12 %. The bound knows nothing of a cone, whose grey must be
-        # estimated too.
+        # Five exposures give 40 and 80 image points, whose median scatters by less than 13 % and
+        # 9 %; three exposures, by 17 % and 12 %. The bound knows nothing of a cone, whose grey must
+        # be estimated too.
         assert errors.median_ratio() < {"pin": 1.4, "countersink": 1.9}[kind]
         assert errors.worst_px() < 6.0 * max(errors.bounds_px)
 
