@@ -14,6 +14,7 @@ _SHARED_IMAGES = (
     "tests/unit/calibration/",
     "tests/unit/cli/test_calibrate.py",
 )
+_SHARED_MATING = ("tests/unit/processes/deck_to_frame/test_mate.py",)
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs.
@@ -32,14 +33,16 @@ class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no 
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
     This matters when pytest is called by hand with several workers; `make test` gives them one.
-    Files whose tests share rendered images go out whole, so that these are made once; the others
-    singly. (`--dist loadgroup` would do, but xdist 3.8 loses the groups with pytest 9.2, silently.)
+    Files whose tests share rendered images or a simulated mating go out whole, so that these are
+    made once; the others singly. (`--dist loadgroup` would do, but xdist 3.8 loses the groups with
+    pytest 9.2, silently.)
     """
 
     def _split_scope(self, nodeid: str) -> str:
         if nodeid.startswith("tests/cell/"):
             return "cell"
-        return nodeid.split("::", maxsplit=1)[0] if nodeid.startswith(_SHARED_IMAGES) else nodeid
+        shared = nodeid.startswith(_SHARED_IMAGES + _SHARED_MATING)
+        return nodeid.split("::", maxsplit=1)[0] if shared else nodeid
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -7,8 +7,11 @@ measures, while each test runs, how long the machine withheld its processors. On
 such a pause is tried again, at most twice, and the summary names each. Any other failure counts.
 """
 
+import gc
+import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -101,10 +104,27 @@ def pytest_runtest_protocol(item: pytest.Item, nextitem: pytest.Item | None) -> 
                 break
             # Fixtures of wider scope may have failed as well: everything is set up anew.
             item.session._setupstate.teardown_exact(None)
+            reports = []
+            _forget_failure()
             item.user_properties.append((_PROPERTY, excuse))
         for report in reports:
             item.ihook.pytest_runtest_logreport(report=report)
     return True
+
+
+def _forget_failure() -> None:
+    """Let go of sockets and programs that the failed try has left open, without the warnings.
+
+    A test that fails does not reach its last lines. What it leaves would be reported as an error at
+    the end of the session, although its failure was excused.
+    """
+    # The runner keeps the last exception for debuggers, and with it every variable of the test.
+    for name in ("last_exc", "last_type", "last_value", "last_traceback"):
+        if hasattr(sys, name):
+            delattr(sys, name)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResourceWarning)
+        gc.collect()
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -1,6 +1,7 @@
 """Motion of an arm along a path: how far at a time, and which joint angles there."""
 
-from dataclasses import dataclass, replace
+import math
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -27,6 +28,18 @@ class Profile:
     stop_s: float = np.inf
     """When braking begins early."""
     braking: float = np.inf
+    # Asked for several times in each millisecond of every arm.
+    _peak: float = field(init=False, repr=False)
+    _ramp_s: float = field(init=False, repr=False)
+    _full_end_s: float = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        peak = min(self.speed, math.sqrt(self.length * self.acceleration))
+        ramp_s = peak / self.acceleration
+        end_s = self.start_s + self.length / peak + ramp_s if self.length > 0 else self.start_s
+        object.__setattr__(self, "_peak", peak)
+        object.__setattr__(self, "_ramp_s", ramp_s)
+        object.__setattr__(self, "_full_end_s", end_s)
 
     @property
     def end_s(self) -> float:
@@ -53,20 +66,6 @@ class Profile:
         if time_s >= self.stop_s:
             return self
         return replace(self, stop_s=max(time_s, self.start_s), braking=braking)
-
-    @property
-    def _peak(self) -> float:
-        return min(self.speed, float(np.sqrt(self.length * self.acceleration)))
-
-    @property
-    def _ramp_s(self) -> float:
-        return self._peak / self.acceleration
-
-    @property
-    def _full_end_s(self) -> float:
-        if self.length <= 0:
-            return self.start_s
-        return self.start_s + self.length / self._peak + self._ramp_s
 
     def _full_at(self, time_s: float) -> float:
         since_s, left_s = time_s - self.start_s, self._full_end_s - time_s

@@ -48,7 +48,9 @@ def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
 @pytest.mark.parametrize(
     ("device", "fault", "words"),
     [
-        ("force", "silent", ("F205", "force sensor", "no frame")),
+        pytest.param(
+            "force", "silent", ("F205", "force sensor", "no frame"), marks=pytest.mark.long
+        ),
         ("main", "wrong_version", ("F204", "SR500A", "SJL/2")),
         pytest.param("tracker", "silent", ("F205", "tracker"), marks=pytest.mark.long),
     ],
@@ -62,6 +64,7 @@ def test_one_device_is_silent_or_strange(
     assert "T90A-2" not in said  # which is well
 
 
+@pytest.mark.long  # `tests/unit/records/test_store.py` shows the lock without two daemons
 def test_store_is_in_use(visited: OwnCell) -> None:
     daemon = visited.daemon()
     daemon.ready()
@@ -69,6 +72,7 @@ def test_store_is_in_use(visited: OwnCell) -> None:
     assert daemon.process.poll() is None
 
 
+@pytest.mark.long  # `tests/unit/calibration/store` shows each reason without a cell
 def test_calibrations_that_cannot_be_used(visited: OwnCell) -> None:
     """One daemon, three states of the folder: Start is refused each time, with the reason."""
     folder = visited.folder / "calibration"

@@ -166,6 +166,7 @@ def test_demonstration(own: OwnCell, moment: str) -> None:
         assert head.result == "aborted"
 
 
+@pytest.mark.long  # the line drives such a cell in other tests, and Ctrl-C ends one above
 def test_cell_that_stays_up(own: OwnCell) -> None:
     """`make cell`: both stay until Ctrl-C, which is not a failure."""
     demo = own.demo(own.folder / "run", "--stay")

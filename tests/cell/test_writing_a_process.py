@@ -128,6 +128,8 @@ def test_without_the_package_the_recipe_is_refused(small: SmallCell) -> None:
     assert "recipes.0.process" in done.stdout
 
 
+# The standard tests hold the guide's types and `cellctl check`, and start the same cell without it.
+@pytest.mark.long
 def test_a_part_is_weighed_over_modbus(
     small: SmallCell, plc: OutsidePlc, installed: Path, tmp_path: Path
 ) -> None:

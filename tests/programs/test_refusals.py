@@ -67,7 +67,9 @@ def test_store_may_not_be_written(own: OwnCell) -> None:
     ("options", "words"),
     [
         (["--fault", "head_1:measles"], ["no such fault", "no_hole"]),
-        (["--fault", "nobody:silent"], ["unknown device", "head_1"]),
+        pytest.param(
+            ["--fault", "nobody:silent"], ["unknown device", "head_1"], marks=pytest.mark.long
+        ),
     ],
 )
 def test_demonstration_refuses_nonsense(own: OwnCell, options: list[str], words: list[str]) -> None:

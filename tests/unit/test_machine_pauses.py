@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 PAUSED = """
-import os, signal, subprocess, sys
+import os, signal, socket, subprocess, sys
 from pathlib import Path
 
 TRIED = Path(__file__).with_name("tried")
@@ -14,6 +14,7 @@ def test_that_fails_at_first(shared):
     if TRIED.exists():
         return
     TRIED.touch()
+    left_open = socket.socket()
     waker = f"import os, signal, time; time.sleep(0.5); os.kill({os.getpid()}, signal.SIGCONT)"
     with subprocess.Popen([sys.executable, "-c", waker]):
         os.kill(os.getpid(), signal.SIGSTOP)
@@ -43,6 +44,13 @@ def test_that_fails():
 def outcome_of(test: str, folder: Path) -> subprocess.CompletedProcess[str]:
     (folder / "test_it.py").write_text(test)
     command = [sys.executable, "-m", "pytest", "-p", "tests.machine_pauses", "-c", "/dev/null"]
+    # As in this project: what a test leaves open is an error.
+    command += [
+        "-W",
+        "error::ResourceWarning",
+        "-W",
+        "error::pytest.PytestUnraisableExceptionWarning",
+    ]
     return subprocess.run(
         [*command, "--rootdir", str(folder), str(folder / "test_it.py")],
         check=False,

@@ -248,9 +248,9 @@ def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def stereo(images: Path, out: Path, *more: object, board: str = "9x6") -> Result:
+def stereo(images: Path, out: Path, *more: object) -> Result:
     return call("stereo", "--left", images / "l-*.png", "--right", images / "r-*.png",
-                "--board", board, "--square-mm", 20, "--out", out, *more)  # fmt: skip
+                "--board", "9x6", "--square-mm", 20, "--out", out, *more)  # fmt: skip
 
 
 def test_stereo_from_images(images: Path, tmp_path: Path) -> None:
@@ -273,7 +273,8 @@ def test_stereo_from_images(images: Path, tmp_path: Path) -> None:
 
 def test_stereo_with_wrong_inputs(images: Path, tmp_path: Path) -> None:
     out = tmp_path / "head.json"
-    result = stereo(images, out, board="8x6")
+    result = call("stereo", "--left", images / "l-0[0-2].png", "--right", images / "r-0[0-2].png",
+                  "--board", "8x6", "--square-mm", 20, "--out", out)  # fmt: skip
     assert isinstance(result.exception, WrongBoard)
     result = call("stereo", "--left", images / "r-0[0-7].png", "--right", images / "l-0[0-7].png",
                   "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip

@@ -32,17 +32,30 @@ def view(number: int) -> Array:
 
 def draw(board: CalibrationBoard, homography: Array, *, samples: int = 8) -> Image:
     """A chessboard; each pixel is the mean of samples that lie on no common row or column."""
-    u, v = np.meshgrid(np.arange(SIZE[0], dtype=float), np.arange(SIZE[1], dtype=float))
+    grey = np.full((SIZE[1], SIZE[0]), 200.0)
+    columns, rows = _where(board, homography)
+    u, v = np.meshgrid(*(np.arange(one.start, one.stop, dtype=float) for one in (columns, rows)))
     back = np.linalg.inv(homography)
-    grey = np.zeros(u.shape)
+    middles = np.tensordot(back, np.stack([u, v, np.ones_like(u)]), axes=1)
+    dark = np.zeros(u.shape)
     for sample in range(samples):
         du, dv = (sample + 0.5) / samples - 0.5, (sample * 0.618034) % 1 - 0.5
-        x, y, w = np.tensordot(back, np.stack([u + du, v + dv, np.ones_like(u)]), axes=1)
-        x, y = x / w / SQUARE_PX, y / w / SQUARE_PX
+        x, y, w = middles + (back @ [du, dv, 0.0])[:, np.newaxis, np.newaxis]
+        x, y = x / (w * SQUARE_PX), y / (w * SQUARE_PX)
         inside = (x > -1) & (x < board.columns) & (y > -1) & (y < board.rows)
-        dark = inside & ((np.floor(x) + np.floor(y)) % 2 == 0)
-        grey += np.where(dark, 40.0, 200.0) / samples
+        dark += inside & ((np.floor(x) + np.floor(y)) % 2 == 0)
+    grey[rows, columns] -= 160.0 * dark / samples
     return np.clip(np.rint(cv2.GaussianBlur(grey, (0, 0), 1.0)), 0, 255).astype(np.uint8)
+
+
+def _where(board: CalibrationBoard, homography: Array) -> tuple[slice, slice]:
+    """Columns and rows of the image that hold the whole board."""
+    ends = [(x, y) for x in (-1, board.columns) for y in (-1, board.rows)]
+    points = np.column_stack([np.array(ends) * SQUARE_PX, np.ones(4)]) @ homography.T
+    pixels = points[:, :2] / points[:, 2:]
+    low = np.clip(np.floor(pixels.min(axis=0)) - 1, 0, SIZE).astype(int)
+    high = np.clip(np.ceil(pixels.max(axis=0)) + 2, 0, SIZE).astype(int)
+    return slice(low[0], high[0]), slice(low[1], high[1])
 
 
 def expected(board: CalibrationBoard, homography: Array) -> Array:

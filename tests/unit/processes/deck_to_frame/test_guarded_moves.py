@@ -68,6 +68,8 @@ def raised(world: MatingCell, height_m: float) -> RigidTransform:
     return up * world.arm.encoder_pose(world.world.time_s)
 
 
+# A whole mating comes before. `test_leaving_contact.py` lifts a deck off without one.
+@pytest.mark.long
 def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
     world = MatingCell(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
     plan = plan_for(world, nominal_settings(LATENCY_S))

@@ -68,10 +68,11 @@ def test_heads_that_moved_hardly_move_the_deck() -> None:
     assert (joint < 1.1 * apart).all(), "and nothing is paid for it"
 
 
-def test_the_covariance_is_honest_whatever_the_heads_did() -> None:
+@pytest.mark.parametrize("draws", [50, pytest.param(200, marks=pytest.mark.long)])
+def test_the_covariance_is_honest_whatever_the_heads_did(draws: int) -> None:
     rng = np.random.default_rng(2)
     squared, misfits = [], []
-    for _ in range(200):
+    for _ in range(draws):
         result = together(*both(rng, rng.normal(size=6) * DRIFT))
         off = error(result.part_1_T_part_2.pose)
         squared.append(float(off @ np.linalg.solve(result.part_1_T_part_2.covariance, off)))

@@ -1,4 +1,5 @@
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -32,6 +33,7 @@ FLANGE_T_CAMERA = pose_from_xyzabc([60, -20, 90, 10, 5, -3])
 BASE_T_BOARD = pose_from_xyzabc([1500, 100, 200, 20, 0, 0])
 NOISE = RobotNoise(5e-5, float(np.radians(0.005)))
 SIGMA_PX = 0.1
+FEW_AND_ALL = pytest.mark.parametrize("seeds", [3, pytest.param(6, marks=pytest.mark.long)])
 
 
 def small(rng: np.random.Generator, position_m: float, rotation_rad: float) -> RigidTransform:
@@ -75,12 +77,10 @@ def errors(result: HandEyeResult) -> Array:
     return np.concatenate(pose_error(FLANGE_T_CAMERA, result.camera.pose))
 
 
-@pytest.fixture(scope="module")
-def in_hand() -> list[HandEyeResult]:
-    return [
-        calibrate_hand_eye(make_poses(seed, Setup.EYE_IN_HAND), Setup.EYE_IN_HAND, noise=NOISE)
-        for seed in range(6)
-    ]
+@cache
+def in_hand(seed: int) -> HandEyeResult:
+    poses = make_poses(seed, Setup.EYE_IN_HAND)
+    return calibrate_hand_eye(poses, Setup.EYE_IN_HAND, noise=NOISE)
 
 
 def rms(values: Array) -> tuple[float, float]:
@@ -89,12 +89,14 @@ def rms(values: Array) -> tuple[float, float]:
     return float(np.sqrt(squares[:3].sum())), float(np.sqrt(squares[3:].sum()))
 
 
-def test_accuracy_against_the_closed_form(in_hand: list[HandEyeResult]) -> None:
-    position_m, rotation_rad = rms(np.stack([errors(result) for result in in_hand]))
+@FEW_AND_ALL
+def test_accuracy_against_the_closed_form(seeds: int) -> None:
+    results = [in_hand(seed) for seed in range(seeds)]
+    position_m, rotation_rad = rms(np.stack([errors(result) for result in results]))
     assert position_m < 8e-5
     assert np.degrees(rotation_rad) < 0.01
     closed = []
-    for seed in range(6):
+    for seed in range(seeds):
         poses = make_poses(seed, Setup.EYE_IN_HAND)
         x, _, _ = closed_form(
             [pose.base_T_flange for pose in poses], [pose.camera_T_board.pose for pose in poses]
@@ -103,20 +105,23 @@ def test_accuracy_against_the_closed_form(in_hand: list[HandEyeResult]) -> None:
     assert position_m < rms(np.stack(closed))[0]
 
 
-def test_covariance_is_honest(in_hand: list[HandEyeResult]) -> None:
+@FEW_AND_ALL
+def test_covariance_is_honest(seeds: int) -> None:
+    results = [in_hand(seed) for seed in range(seeds)]
     total = sum(
         float(errors(result) @ np.linalg.solve(result.camera.covariance, errors(result)))
-        for result in in_hand
+        for result in results
     )
-    band = chi2(6 * len(in_hand)).interval(0.999)
+    band = chi2(6 * len(results)).interval(0.999)
     assert 0.7 * band[0] < total < band[1]
-    assert all(result.passed and not result.warnings for result in in_hand)
+    assert all(result.passed and not result.warnings for result in results)
 
 
-def test_eye_to_hand() -> None:
+@pytest.mark.parametrize("seeds", [1, pytest.param(3, marks=pytest.mark.long)])
+def test_eye_to_hand(seeds: int) -> None:
     results = [
         calibrate_hand_eye(make_poses(seed, Setup.EYE_TO_HAND), Setup.EYE_TO_HAND, noise=NOISE)
-        for seed in range(3)
+        for seed in range(seeds)
     ]
     for result in results:
         assert np.abs(errors(result)[:3]).max() < 3e-4
@@ -174,8 +179,8 @@ def test_poses_must_differ() -> None:
         calibrate_hand_eye(about_z, Setup.EYE_IN_HAND)
 
 
-def test_record_and_picture(in_hand: list[HandEyeResult]) -> None:
-    result = in_hand[0]
+def test_record_and_picture() -> None:
+    result = in_hand(0)
     again = HandEyeResult.from_record(json.loads(json.dumps(result.to_record())))
     np.testing.assert_allclose(
         again.camera.pose.as_matrix(), result.camera.pose.as_matrix(), atol=1e-12

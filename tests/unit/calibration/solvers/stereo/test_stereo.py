@@ -1,5 +1,7 @@
 import json
+from collections.abc import Iterable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -29,8 +31,11 @@ from tests.unit.calibration.solvers.stereo.synthetic import (
     volume_points,
 )
 
+FEW = range(2)
 SEEDS = range(4)
+"""A calibration of thirty views takes seconds: four of each kind are for the tests marked long."""
 TRUTH = table_1_head()
+BOW_M = 5e-5
 
 
 def errors_m(head: StereoHead) -> tuple[float, float]:
@@ -51,23 +56,33 @@ def parameter_errors(head: StereoHead) -> Array:
     return np.concatenate([left, right, turn, head.translation_m - TRUTH.translation_m])
 
 
-def calibrations(sag_m: float, shape: BoardShape) -> list[StereoResult]:
-    return [
-        calibrate_stereo(
-            make_views(np.random.default_rng(seed), 30, sag_m=sag_m), BOARD, IMAGE_SIZE, shape=shape
-        )
-        for seed in SEEDS
-    ]
+@cache
+def calibration(seed: int, sag_m: float, shape: BoardShape) -> StereoResult:
+    views = make_views(np.random.default_rng(seed), 30, sag_m=sag_m)
+    return calibrate_stereo(views, BOARD, IMAGE_SIZE, shape=shape)
 
 
-@pytest.fixture(scope="module")
-def flat() -> list[StereoResult]:
-    return calibrations(0.0, BoardShape.BENT)
+def calibrations(
+    sag_m: float, shape: BoardShape = BoardShape.BENT, seeds: Iterable[int] = SEEDS
+) -> list[StereoResult]:
+    return [calibration(seed, sag_m, shape) for seed in seeds]
 
 
-@pytest.fixture(scope="module")
-def bowed() -> list[StereoResult]:
-    return calibrations(5e-5, BoardShape.BENT)
+@pytest.fixture(params=[FEW, pytest.param(SEEDS, marks=pytest.mark.long)], ids=["few", "all"])
+def seeds(request: pytest.FixtureRequest) -> range:
+    chosen = request.param
+    assert isinstance(chosen, range)
+    return chosen
+
+
+@pytest.fixture
+def flat(seeds: range) -> list[StereoResult]:
+    return calibrations(0.0, seeds=seeds)
+
+
+@pytest.fixture
+def bowed(seeds: range) -> list[StereoResult]:
+    return calibrations(BOW_M, seeds=seeds)
 
 
 def rms(results: list[StereoResult]) -> Array:
@@ -76,9 +91,8 @@ def rms(results: list[StereoResult]) -> Array:
 
 
 @pytest.mark.long
-def test_bow_costs_nothing_when_the_board_is_released(
-    flat: list[StereoResult], bowed: list[StereoResult]
-) -> None:
+def test_bow_costs_nothing_when_the_board_is_released() -> None:
+    flat, bowed = calibrations(0.0), calibrations(BOW_M)
     rigid_flat = calibrations(0.0, BoardShape.RIGID)
     assert (rms(bowed) < 1.3 * rms(flat)).all()
     assert (rms(bowed) < 1.3 * rms(rigid_flat)).all(), "nor against a board known to be flat"
@@ -86,10 +100,8 @@ def test_bow_costs_nothing_when_the_board_is_released(
 
 
 @pytest.mark.long
-def test_bow_ruins_a_rigid_board_without_showing_in_the_residuals(
-    bowed: list[StereoResult],
-) -> None:
-    rigid = calibrations(5e-5, BoardShape.RIGID)
+def test_bow_ruins_a_rigid_board_without_showing_in_the_residuals() -> None:
+    bowed, rigid = calibrations(BOW_M), calibrations(BOW_M, BoardShape.RIGID)
     assert rms(rigid)[0] > 5 * rms(bowed)[0]
     assert all(result.head.rms_px < 0.1 and result.passed for result in rigid)
 
@@ -100,7 +112,7 @@ def test_flatness_of_the_board_is_found(
     for result in flat:
         assert result.flatness_m < 8e-6
     for result in bowed:
-        assert result.flatness_m == pytest.approx(5e-5, abs=5e-6)
+        assert result.flatness_m == pytest.approx(BOW_M, abs=5e-6)
 
 
 def test_covariance_matches_the_scatter(
@@ -114,7 +126,7 @@ def test_covariance_matches_the_scatter(
         scaled = result.head.covariance / np.outer(scale, scale)
         total += float((error / scale) @ np.linalg.solve(scaled, error / scale))
     # The two sets share seeds, so only half of the freedom is independent.
-    band = chi2(24 * len(SEEDS)).interval(0.999)
+    band = chi2(24 * len(flat)).interval(0.999)
     assert band[0] < total / 2 < band[1]
 
 
@@ -172,8 +184,8 @@ def test_bad_view_is_named_and_left_out() -> None:
     assert result.sigma_px == pytest.approx(0.05, rel=0.1)
 
 
-def test_record_survives_json(bowed: list[StereoResult]) -> None:
-    result = bowed[0]
+def test_record_survives_json() -> None:
+    result = calibration(0, BOW_M, BoardShape.BENT)
     again = StereoResult.from_record(json.loads(json.dumps(result.to_record())))
     np.testing.assert_allclose(again.head.translation_m, result.head.translation_m, rtol=1e-12)
     assert again.head.covariance is not None
