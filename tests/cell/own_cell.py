@@ -73,8 +73,9 @@ class OwnCell:
         if (CONFIG / shipped).is_dir():
             copytree(CONFIG / shipped, self.calibration, dirs_exist_ok=True)
         text = text.replace(f'"{shipped}"', f'"{self.calibration}"')
-        for folder in ("features", "connectors"):
-            text = text.replace(f'"{folder}/', f'"{CONFIG}/{folder}/')
+        text = text.replace('"features/', f'"{CONFIG}/features/')
+        # Beside the cell file, as shipped: a taught correction knows its drawings by these names.
+        copytree(CONFIG / "connectors", self.folder / "connectors", dirs_exist_ok=True)
         self.cell.write_text(self._renumbered(text), encoding="utf-8")
 
     @property
