@@ -44,7 +44,7 @@ from cellctl.vision.camera.single_camera import SingleCamera
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RunFacts:
+class PluggingFacts:
     """Recipe, calibrations and drawings of one run."""
 
     cell: AntennaCell
@@ -71,7 +71,7 @@ async def read_facts(
     kinds: Kinds,
     *,
     teaching: bool = False,
-) -> RunFacts:
+) -> PluggingFacts:
     """Read and check everything; ``kinds`` are the calibrations that count in the run.
 
     ``teaching``: correction and reference are not needed, one of them is about to be made. Raises
@@ -91,7 +91,7 @@ async def read_facts(
     plate = cell.settings.reference
     drawings = read_drawings(recipe, cell.cell.folder)
     gripper = drawings.gripper.name
-    return RunFacts(
+    return PluggingFacts(
         cell=cell,
         recipe=recipe,
         calibrations=snapshot,

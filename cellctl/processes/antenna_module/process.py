@@ -27,9 +27,9 @@ from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
     from cellctl.calibration.store.kind import Kinds
-    from cellctl.processes.antenna_module.facts import RunFacts
+    from cellctl.processes.antenna_module.facts import PluggingFacts
     from cellctl.processes.antenna_module.run import PluggingRun
-    from cellctl.processes.antenna_module.state import Ready
+    from cellctl.processes.antenna_module.state import GripperEmpty
     from cellctl.processes.antenna_module.stations import AntennaCell
     from cellctl.runtime.procedure import Procedure
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 # and an operator's command must not wait for vision and force.
 
 
-class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
+class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
     """System B: find, pick, look from below, look at the socket, plug, verify."""
 
     name = "antenna-module"
@@ -76,7 +76,7 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
 
         return CALIBRATIONS
 
-    async def prepare(self, recipe: Recipe) -> "Prepared[RunFacts]":
+    async def prepare(self, recipe: Recipe) -> "Prepared[PluggingFacts]":
         """Read calibrations and drawings, and compare them with what is connected."""
         from cellctl.processes.antenna_module.facts import read_facts
 
@@ -86,19 +86,19 @@ class AntennaModule(Process["RunFacts", "PluggingRun", "Ready"]):
         )
         return Prepared(facts, tuple(facts.calibrations.records))
 
-    def open(self, prepared: "Prepared[RunFacts]", context: RunContext) -> "PluggingRun":
+    def open(self, prepared: "Prepared[PluggingFacts]", context: RunContext) -> "PluggingRun":
         """Facts, record, eyes and arm."""
         from cellctl.processes.antenna_module.run import PluggingRun
 
         return PluggingRun.of(prepared.facts, self.services, context, last_check=self._last_check)
 
-    async def begin(self, run: "PluggingRun") -> "Ready":
+    async def begin(self, run: "PluggingRun") -> "GripperEmpty":
         """Gripper open and empty, arm at home."""
         from cellctl.processes.antenna_module.start import move_to_start
 
         return await move_to_start(run)
 
-    def steps(self, recipe: Recipe) -> "Steps[Ready, Any]":  # noqa: ARG002 - alike for all
+    def steps(self, recipe: Recipe) -> "Steps[GripperEmpty, Any]":  # noqa: ARG002 - alike for all
         """Check reference, find, pick, inspect, locate, plan, stand-off, insert, verify."""
         from cellctl.processes.antenna_module.steps import PLUGGING
 

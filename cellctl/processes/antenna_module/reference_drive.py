@@ -16,7 +16,7 @@ from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLook
 from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
 from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.drawings import Plate
-from cellctl.processes.antenna_module.facts import RunFacts
+from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.looking import Eyes, Seen, nominal, plane_by
 from cellctl.processes.antenna_module.moving import Mover
 from cellctl.processes.antenna_module.recipe import Place
@@ -36,7 +36,7 @@ Tell = Callable[[int, int], Awaitable[None]]
 class ReferenceDrive:
     """What the drive needs of a run or a procedure."""
 
-    facts: RunFacts
+    facts: PluggingFacts
     plate: Plate
     eyes: Eyes
     tell: Tell

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from cellctl.processes.antenna_module.drawings import Drawings
-from cellctl.processes.antenna_module.facts import RunFacts
+from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moving import Mover
@@ -21,7 +21,7 @@ from cellctl.runtime.steps import SafePoint
 class PluggingRun:
     """One open run, however often its steps begin anew after a Hold."""
 
-    facts: RunFacts
+    facts: PluggingFacts
     board: ProgressBoard
     recorder: RunRecorder
     safe_point: SafePoint
@@ -35,7 +35,7 @@ class PluggingRun:
     @classmethod
     def of(
         cls,
-        facts: RunFacts,
+        facts: PluggingFacts,
         services: CellServices,
         context: RunContext,
         *,

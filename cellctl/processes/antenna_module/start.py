@@ -9,19 +9,19 @@ from cellctl.processes.antenna_module.moving import Mover, raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import Ready
+from cellctl.processes.antenna_module.state import GripperEmpty
 from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
 
 _BESIDE_M = 60e-3
 """Flange so near a place of plug or tray, seen from above, may have its fingers round a module."""
 
 
-async def move_to_start(run: PluggingRun) -> Ready:
+async def move_to_start(run: PluggingRun) -> GripperEmpty:
     """Gripper empty and open, arm at home. Raises ``ModuleInGripper``."""
     run.say("to the beginning")
     await leave_stations(run.cell)
     await run.cell.gripper.open()
-    return Ready(run)
+    return GripperEmpty(run)
 
 
 async def leave_stations(cell: AntennaCell) -> None:

@@ -11,23 +11,23 @@ from cellctl.processes.antenna_module.insertion.verdict import InsertionJudgemen
 from cellctl.processes.antenna_module.run import PluggingRun
 
 
-@dataclass(frozen=True, slots=True)
-class Ready:
+@dataclass(frozen=True, slots=True, eq=False)
+class GripperEmpty:
     """Gripper open and empty, arm at home; nothing is measured yet."""
 
     run: PluggingRun
 
 
-@dataclass(frozen=True, slots=True)
-class ModuleFound(Ready):
+@dataclass(frozen=True, slots=True, eq=False)
+class ModuleFound(GripperEmpty):
     """Camera I has seen the module on its tray."""
 
     base_T_connector: RigidTransform
     """Where its plug is, as far as the top shows it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Picked(Ready):
+@dataclass(frozen=True, slots=True, eq=False)
+class Picked(GripperEmpty):
     """The module hangs in the gripper, clear of the tray."""
 
     module_kg: float
@@ -35,7 +35,7 @@ class Picked(Ready):
     """Raw force of the sensor with the module hanging free, shape (3,)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlugInspected(Picked):
     """Camera II has seen plug and marks in one picture."""
 
@@ -44,32 +44,32 @@ class PlugInspected(Picked):
     """The plug in the gripper by its drawing's frame, for ways and wrenches."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SocketLocated(PlugInspected):
     """Camera I has seen the socket."""
 
     looks: Looks
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Planned(SocketLocated):
     """Where the flange has to go."""
 
     plan: PlugPlan
 
 
-@dataclass(frozen=True, slots=True)
-class AtStandOff(Planned):
+@dataclass(frozen=True, slots=True, eq=False)
+class OverSocket(Planned):
     """The tips stand over the socket's face; the force counts from here."""
 
 
-@dataclass(frozen=True, slots=True)
-class Inserted(AtStandOff):
+@dataclass(frozen=True, slots=True, eq=False)
+class Inserted(OverSocket):
     """The plug sits in its socket, held by the gripper."""
 
     judgement: InsertionJudgement
 
 
-@dataclass(frozen=True, slots=True)
-class Verified(Inserted):
+@dataclass(frozen=True, slots=True, eq=False)
+class Released(Inserted):
     """The module was pulled, let go and seen in its place."""

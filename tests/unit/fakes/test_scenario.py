@@ -72,7 +72,7 @@ def test_names_tell_devices_apart(small: dict[str, Any], name: str, said: str) -
 
 def test_a_stereo_head_needs_a_stereo_rig(small: dict[str, Any]) -> None:
     head = small["cameras"].pop("camera")
-    del head["colour"]
+    del head["colour"], head["lamp"]
     small["stereo_cameras"] = {"head": head}
     with pytest.raises(ValidationError, match="has no stereo rig"):
         PlateScenario.model_validate(small)

@@ -32,7 +32,7 @@ Joints = Annotated[Array, PlainValidator(_joints_rad)]
 _Small = Annotated[float, Field(ge=0, le=10)]
 
 
-class PoseRecord(InputFile):
+class CameraPoseRecord(InputFile):
     """A pose as the calibrations write it."""
 
     matrix_mm: InputPose
@@ -50,8 +50,8 @@ class HandEyeRecord(InputFile):
     """What ``cellctl calibrate hand-eye`` has written, of either setup."""
 
     camera_id: Identity
-    flange_T_camera: PoseRecord | None = None
-    base_T_camera: PoseRecord | None = None
+    flange_T_camera: CameraPoseRecord | None = None
+    base_T_camera: CameraPoseRecord | None = None
 
     def mounted(self, identity: str, *, in_hand: bool) -> MountedCamera:
         """The camera; raises ``ValueError`` for a record of the other setup."""

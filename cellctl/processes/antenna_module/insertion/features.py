@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
-from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, Phase
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, InsertionPhase
 
 Mask = NDArray[np.bool_]
 
@@ -63,7 +63,7 @@ def features_of(
     force, moment = _smooth(curve.force_n, mean_of), _smooth(curve.moment_n_m, mean_of)
     axial = force[:, 2]
     side = np.hypot(force[:, 0], force[:, 1])
-    early = np.array([limits.phase_at(depth) is Phase.ENTRY for depth in curve.depth_m])
+    early = np.array([limits.phase_at(depth) is InsertionPhase.ENTRY for depth in curve.depth_m])
     seat = _seat(curve.depth_m, axial, limits)
     before_seat = (
         np.ones(len(axial), dtype=bool) if seat is None else curve.depth_m < curve.depth_m[seat]

@@ -6,7 +6,7 @@ from enum import Enum
 from cellctl.processes.antenna_module.connector.connector import Connector
 
 
-class Phase(Enum):
+class InsertionPhase(Enum):
     """Where the plug is."""
 
     ABOVE = "above"
@@ -22,7 +22,7 @@ class Phase(Enum):
 class PhaseLimits:
     """Bounds of one phase; N, N·m, m/s."""
 
-    phase: Phase
+    phase: InsertionPhase
     speed_m_s: float
     axial_n: float
     side_n: float
@@ -82,20 +82,20 @@ class InsertionLimits:
         """The limits of a drawing."""
         return cls(connector.spring_depth_m, connector.seat_depth_m, connector.force_n[1])
 
-    def phase_at(self, depth_m: float) -> Phase:
+    def phase_at(self, depth_m: float) -> InsertionPhase:
         """The phase at a depth."""
         if depth_m < -self.entry_height_m:
-            return Phase.ABOVE
-        return Phase.ENTRY if depth_m < self.spring_depth_m else Phase.SLIDING
+            return InsertionPhase.ABOVE
+        return InsertionPhase.ENTRY if depth_m < self.spring_depth_m else InsertionPhase.SLIDING
 
     def at(self, depth_m: float) -> PhaseLimits:
         """Speed and bounds at a depth."""
         infinite = float("inf")
         phase = self.phase_at(depth_m)
-        if phase is Phase.ABOVE:
+        if phase is InsertionPhase.ABOVE:
             above = self.above_n
             return PhaseLimits(phase, self.travel_m_s, above, above, infinite, infinite)
-        if phase is Phase.ENTRY:
+        if phase is InsertionPhase.ENTRY:
             return PhaseLimits(
                 phase,
                 self.entry_m_s,

@@ -10,7 +10,7 @@ from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.insertion.curve import InsertionSample
 from cellctl.processes.antenna_module.insertion.limits import (
     InsertionLimits,
-    Phase,
+    InsertionPhase,
     PhaseLimits,
 )
 
@@ -32,7 +32,7 @@ class InsertionTrip:
     """Why and where to stop."""
 
     cause: TripCause
-    phase: Phase
+    phase: InsertionPhase
     t_s: float
     depth_m: float
     value: float
@@ -63,10 +63,10 @@ class InsertionWatch:
 
     def _judge(self, sample: InsertionSample, slow: InsertionSample) -> InsertionTrip | None:
         bounds = self._limits.at(sample.depth_m)
-        if bounds.phase is Phase.ENTRY and self._rises(sample.axial_n):
+        if bounds.phase is InsertionPhase.ENTRY and self._rises(sample.axial_n):
             early_n = self._limits.entry_axial_n
             return _trip(TripCause.AXIAL_EARLY, bounds, sample, sample.axial_n, early_n)
-        over = TripCause.OVER if bounds.phase is Phase.SLIDING else TripCause.AXIAL_EARLY
+        over = TripCause.OVER if bounds.phase is InsertionPhase.SLIDING else TripCause.AXIAL_EARLY
         pressure = slow.centre_of_pressure_m(self._limits.least_pressure_n)
         lever_m = 0.0 if pressure is None else float(np.linalg.norm(pressure))
         for cause, value, limit in (

@@ -23,7 +23,7 @@ from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.start import move_to_start
-from cellctl.processes.antenna_module.state import Ready, SocketLocated
+from cellctl.processes.antenna_module.state import GripperEmpty, SocketLocated
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.processes.antenna_module.steps.find_module import find_module
 from cellctl.processes.antenna_module.steps.inspect_plug import inspect_plug
@@ -91,7 +91,7 @@ async def _looked_at(run: PluggingRun) -> SocketLocated:
     give_up_s = now_s() + PATIENCE_S
     while found is None:
         try:
-            found = await find_module(Ready(run))
+            found = await find_module(GripperEmpty(run))
         except ModuleMissing:
             # Before every plug but the first the operator has the plugged module to take out.
             if now_s() > give_up_s:

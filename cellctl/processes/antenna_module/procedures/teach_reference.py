@@ -8,7 +8,7 @@ from cellctl.processes.antenna_module.chain.taught_reference import (
     ReferenceMadeWith,
     TaughtReference,
 )
-from cellctl.processes.antenna_module.facts import RunFacts, read_facts
+from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
 from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moving import Mover
 from cellctl.processes.antenna_module.procedures.reference_picture import reference_picture
@@ -65,7 +65,7 @@ async def teach_reference_on_cell(
     )
 
 
-def _since_last_time(facts: RunFacts, taught: TaughtReference) -> tuple[str, ...]:
+def _since_last_time(facts: PluggingFacts, taught: TaughtReference) -> tuple[str, ...]:
     before = facts.calibrations.find(REFERENCE)
     if before is None or before.made_with != taught.made_with:
         return ()

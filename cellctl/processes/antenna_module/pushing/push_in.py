@@ -13,7 +13,7 @@ from cellctl.errors.plugging import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.guard.report import GuardTrip
-from cellctl.processes.antenna_module.insertion.limits import Phase
+from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
 from cellctl.processes.antenna_module.insertion.verdict import judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, TripCause
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
@@ -79,7 +79,7 @@ async def _travel_near(attempt: PushAttempt) -> None:
     await _watched(attempt, motion, above.phase)
 
 
-async def _watched(attempt: PushAttempt, motion: Motion, phase: Phase) -> None:
+async def _watched(attempt: PushAttempt, motion: Motion, phase: InsertionPhase) -> None:
     """Run a move, then judge its samples by what the guard cannot: trend and centre of pressure."""
     trip = await attempt.move(motion)
     if trip is not None:
@@ -96,12 +96,12 @@ def _words(trip: InsertionTrip) -> str:
     )
 
 
-def _fault(attempt: PushAttempt, trip: GuardTrip, phase: Phase) -> CellError:
+def _fault(attempt: PushAttempt, trip: GuardTrip, phase: InsertionPhase) -> CellError:
     """What a trip of the guard means here; of sensor or links it stays what it is."""
     if not trip.force:
         return trip.fault()
     if trip.component == _AXIAL:
-        cause = TripCause.OVER if phase is Phase.SLIDING else TripCause.AXIAL_EARLY
+        cause = TripCause.OVER if phase is InsertionPhase.SLIDING else TripCause.AXIAL_EARLY
     else:
         cause = TripCause.SIDE
     return _met(attempt, cause, str(trip))

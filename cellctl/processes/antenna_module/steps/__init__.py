@@ -1,6 +1,6 @@
 """The steps of one plugging in their order, with the numbers that the line and the record see."""
 
-from cellctl.processes.antenna_module.state import Ready, Verified
+from cellctl.processes.antenna_module.state import GripperEmpty, Released
 from cellctl.processes.antenna_module.steps.check_reference import check_reference
 from cellctl.processes.antenna_module.steps.find_module import find_module
 from cellctl.processes.antenna_module.steps.insert import insert
@@ -24,7 +24,7 @@ STAND_OFF = StepSpec(70, "stand-off", stand_off, restart=Restart.NO_WAY_BACK)
 INSERT = StepSpec(80, "insert", insert, contact=True, restart=Restart.NO_WAY_BACK)
 VERIFY = StepSpec(90, "verify", verify, contact=True, restart=Restart.NO_WAY_BACK)
 
-PLUGGING: Steps[Ready, Verified] = (
+PLUGGING: Steps[GripperEmpty, Released] = (
     Steps.first(CHECK_REFERENCE)
     .then(FIND_MODULE)
     .then(PICK)

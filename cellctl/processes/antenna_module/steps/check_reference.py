@@ -18,12 +18,12 @@ from cellctl.processes.antenna_module.chain.taught_reference import TaughtRefere
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import Ready
+from cellctl.processes.antenna_module.state import GripperEmpty
 
 _log = log.get(__name__)
 
 
-async def check_reference(ready: Ready) -> Ready:
+async def check_reference(ready: GripperEmpty) -> GripperEmpty:
     """Look at gripper marks and plate where that is due; few times, and again when in doubt.
 
     Gives back what it is given: nothing has moved. Raises the ``ReferenceMoved`` of the device that

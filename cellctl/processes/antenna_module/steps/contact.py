@@ -13,7 +13,7 @@ from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import AtStandOff
+from cellctl.processes.antenna_module.state import OverSocket
 from cellctl.processes.antenna_module.steps.stand_off import way_of
 
 _TURNED_FORCE = 0.005
@@ -22,7 +22,7 @@ lever from the sensor to the contacts that is a moment, and moves the centre of 
 
 
 @asynccontextmanager
-async def contact(over: AtStandOff) -> AsyncIterator[PushAttempt]:
+async def contact(over: OverSocket) -> AsyncIterator[PushAttempt]:
     """Everything that moves with limits along the way of the plan; recorded meanwhile."""
     run, way = over.run, way_of(over)
     arm, limits = run.cell.arm, limits_of(run)

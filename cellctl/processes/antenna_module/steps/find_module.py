@@ -19,11 +19,11 @@ from cellctl.processes.antenna_module.moving import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.roles import TRAY_LOOK
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import ModuleFound, Ready
+from cellctl.processes.antenna_module.state import GripperEmpty, ModuleFound
 from cellctl.processes.antenna_module.vision.measure import measure_marks
 
 
-async def find_module(ready: Ready) -> ModuleFound:
+async def find_module(ready: GripperEmpty) -> ModuleFound:
     """Look, bring the camera over the module, look again.
 
     Raises ``ModuleMissing`` or ``ModuleMisplaced``.

@@ -14,13 +14,13 @@ from cellctl.processes.antenna_module.pushing.back_out import back_out
 from cellctl.processes.antenna_module.pushing.push_in import push_in
 from cellctl.processes.antenna_module.record.insertion import record_curve, record_judgement
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import AtStandOff, Inserted
+from cellctl.processes.antenna_module.state import Inserted, OverSocket
 from cellctl.processes.antenna_module.steps.contact import contact, limits_of
 
 _log = log.get(__name__)
 
 
-async def insert(over: AtStandOff) -> Inserted:
+async def insert(over: OverSocket) -> Inserted:
     """Push in and judge the curve; after any fault of the contact straight out again.
 
     There is no second try: a module that has met a force fault belongs into quarantine. Raises the

@@ -10,7 +10,7 @@ from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.pushing.way import InsertionWay
 from cellctl.processes.antenna_module.record import keys
-from cellctl.processes.antenna_module.state import AtStandOff, Planned
+from cellctl.processes.antenna_module.state import OverSocket, Planned
 
 _OVER_M = 20e-3
 """Height over the stand-off at which the plug comes over the socket."""
@@ -19,7 +19,7 @@ _TOUCH_N = 3.0
 """What arm and hoses may change of the raw force between two places in one orientation."""
 
 
-async def stand_off(planned: Planned) -> AtStandOff:
+async def stand_off(planned: Planned) -> OverSocket:
     """Beside the socket's panel no straight way is free: up, across, then down slowly.
 
     Raises ``TareImplausible`` when something but gripper and module is felt.
@@ -37,7 +37,7 @@ async def stand_off(planned: Planned) -> AtStandOff:
     reached = run.cell.arm.robot.state().base_T_flange
     await run.recorder.pose("stand_off", keys.REPORTED, "base", "flange", reached)
     await _tare(planned)
-    return AtStandOff(
+    return OverSocket(
         run,
         planned.module_kg,
         planned.hanging_n,

@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.errors.connector import ConnectorError
 from cellctl.errors.plugging import MovedOnRelease, PlugNotHeld
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.processes.antenna_module.insertion.limits import Phase
+from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
 from cellctl.processes.antenna_module.looking import combined, plane_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
@@ -15,7 +15,7 @@ from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.pushing.push_in import FINE_M
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import Inserted, Verified
+from cellctl.processes.antenna_module.state import Inserted, Released
 from cellctl.processes.antenna_module.steps.contact import contact
 from cellctl.processes.antenna_module.vision.measure import measure_marks
 from cellctl.records.figures import Limit
@@ -24,7 +24,7 @@ PULL_SPEED_M_S = 0.2e-3
 _AXIAL = 2
 
 
-async def verify(inserted: Inserted) -> Verified:
+async def verify(inserted: Inserted) -> Released:
     """Pull, release, leave, look.
 
     Raises ``PlugNotHeld`` or ``MovedOnRelease``: the module stays where it is, for the operator.
@@ -41,7 +41,7 @@ async def verify(inserted: Inserted) -> Verified:
     here = arm.robot.state().base_T_flange
     await run.mover.slowly_to(raised(here, run.recipe.insertion.retreat_mm * MM))
     await _look_after_release(inserted)
-    return Verified(
+    return Released(
         run,
         inserted.module_kg,
         inserted.hanging_n,
@@ -56,7 +56,7 @@ async def verify(inserted: Inserted) -> Verified:
 async def _pull(run: PluggingRun, attempt: PushAttempt) -> None:
     """Up in fine steps until the plug resists with the force of the test."""
     insertion = run.recipe.insertion
-    assert attempt.limits.phase_at(attempt.depth_m) is Phase.SLIDING
+    assert attempt.limits.phase_at(attempt.depth_m) is InsertionPhase.SLIDING
     wanted_n, most_m = insertion.pull_n, insertion.pull_travel_mm * MM
     begin_m = attempt.depth_m
     pulled_m, pull_n = 0.0, 0.0

@@ -18,7 +18,7 @@ from cellctl.processes.antenna_module import reference_drive
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.drawings import Plate
-from cellctl.processes.antenna_module.facts import RunFacts
+from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.looking import Eyes, Seen
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
@@ -126,7 +126,7 @@ def drive(world: World, told: list[tuple[int, int]]) -> ReferenceDrive:
     async def tell(number: int, total: int) -> None:
         told.append((number, total))
 
-    return ReferenceDrive(cast(RunFacts, facts), plate, cast(Eyes, world), tell)
+    return ReferenceDrive(cast(PluggingFacts, facts), plate, cast(Eyes, world), tell)
 
 
 async def test_the_reading_is_in_the_axes_of_the_base(world: World) -> None:

@@ -15,7 +15,7 @@ from cellctl.errors.plugging import (
     PlugSideForce,
 )
 from cellctl.processes.antenna_module.connector.connector import read_connector
-from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, Phase
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, InsertionPhase
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch, TripCause
 from tests.unit.processes.antenna_module.insertion.curves import Shape, curve
@@ -87,7 +87,7 @@ def test_a_standing_pin_is_stopped_within_a_tenth_of_a_millimetre() -> None:
     trip = watch(Shape(pin_n_per_mm=115, pin_mm=(-4.4, 0.5))).trip
     assert trip is not None
     assert trip.cause is TripCause.AXIAL_EARLY
-    assert trip.phase is Phase.ENTRY
+    assert trip.phase is InsertionPhase.ENTRY
     # The curve was taken at 0.4 mm/s: with 250 ms until it stands 0.1 mm more, below 0.15 mm.
     assert 0.0 < trip.depth_m < 0.05e-3
 
@@ -96,7 +96,7 @@ def test_a_hose_that_pulls_steadily_is_no_contact() -> None:
     assert watch(replace(GOOD, drift_n=1.3)).trip is None
     trip = watch(replace(GOOD, drift_n=3.2)).trip
     assert trip is not None
-    assert trip.phase is Phase.ABOVE
+    assert trip.phase is InsertionPhase.ABOVE
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """A plug on an arm that moves at once, and a guard that feels what a depth makes."""
 
+import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -116,13 +117,13 @@ class PlugArm:
 
     async def step(self, target: RigidTransform, *, speed_m_s: float) -> RobotState:
         assert speed_m_s <= 0.4e-3 + 1e-9
-        return self._go(target)
+        return await self._go(target)
 
     async def move_linear(
         self, target: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
         assert speed_m_s <= 5e-3
-        return self._go(target)
+        return await self._go(target)
 
     async def stop(self) -> None:
         self.asked.append("stop")
@@ -132,7 +133,7 @@ class PlugArm:
         self.asked.append("rearm")
         self.world.latched = False
 
-    def _go(self, target: RigidTransform) -> RobotState:
+    async def _go(self, target: RigidTransform) -> RobotState:
         assert not self.world.latched
         world = self.world
         world.targets_mm.append(world.way.depth_of(target) * 1e3)
@@ -146,6 +147,8 @@ class PlugArm:
                     TripReason.FILTERED_LIMIT, now_s(), "beyond", component, 1.0
                 )
                 world.latched = True
+                # An arm needs a moment to stand still, and the sensor goes on sending.
+                await asyncio.sleep(0.02)
                 raise MotionAborted("stopped by the guard")
         return self.state()
 

@@ -22,7 +22,7 @@ from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import Ready
+from cellctl.processes.antenna_module.state import GripperEmpty
 from tests.unit.processes.antenna_module.chain.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import drawn_looks
 
@@ -57,7 +57,7 @@ class Rig:
     recorder: Recorder = field(default_factory=Recorder)
     last_check: LastCheck = field(default_factory=LastCheck)
 
-    def ready(self, *, taught_h: float, plate: bool = True) -> Ready:
+    def ready(self, *, taught_h: float, plate: bool = True) -> GripperEmpty:
         looks = drawn_looks(12, np.random.default_rng(1))
         plug_cell = cell()
         taught = TaughtReference(
@@ -81,7 +81,7 @@ class Rig:
             eyes=Eyes(cast(Any, None), cast(Any, None), recorder=None, frames=3),
             say=lambda _: None,
         )
-        return Ready(cast(PluggingRun, run))
+        return GripperEmpty(cast(PluggingRun, run))
 
     def drive(self, _facts: object, _plate: object, eyes: Eyes, _tell: object) -> "Rig":
         assert eyes.frames == 1
