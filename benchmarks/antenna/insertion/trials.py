@@ -26,7 +26,6 @@ DRAWING = Path("config/connectors/micro-d-15-holes.toml")
 """Of the socket: the wrench is in its axes."""
 RATE_HZ = 100.0
 LATENCY_S = 0.25
-STEP_M = 0.04e-3
 START_M, END_M = -0.3e-3, 2.8e-3
 SEATED_N = 15.0
 """Above what sliding takes: there the drive ends."""
@@ -85,7 +84,7 @@ class InsertionOutcome:
 def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> InsertionOutcome:
     """Drive, watch, stop, judge.
 
-    In steps of 0.04 mm the step under way is finished whatever the force: so it is driven where a
+    In steps of the entry the step under way is finished whatever the force: so it is driven where a
     stop request may be missed.
     """
     rng = np.random.default_rng([seed, int(in_steps)])
@@ -121,7 +120,9 @@ def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> Inserti
 def _rest_of_step_s(driven_m: float, speed_m_s: float) -> float:
     """Until the step under way is finished, whatever is asked for meanwhile."""
     done_m = driven_m - START_M
-    return float((np.ceil(done_m / STEP_M) * STEP_M - done_m) / speed_m_s)
+    return float(
+        (np.ceil(done_m / _LIMITS.entry_step_m) * _LIMITS.entry_step_m - done_m) / speed_m_s
+    )
 
 
 def _draw(fault: Fault, rng: np.random.Generator) -> tuple[MatingPair, PlugPlace]:

@@ -59,10 +59,13 @@ async def push_in(attempt: PushAttempt, step_m: float) -> float:
 def _step_m(attempt: PushAttempt, depth_m: float, step_m: float) -> float:
     limits = attempt.limits
     fine_from_m = limits.seat_depth_m - limits.seat_tolerance_m - step_m
+    touch_m = -limits.early_touch_m
     if depth_m >= fine_from_m:
         return FINE_M
+    if touch_m - 1e-9 <= depth_m < limits.spring_depth_m:
+        step_m = min(step_m, limits.entry_step_m)
     # A move must not lead from one phase into another, whose limits are others.
-    bounds_m = [edge_m - depth_m for edge_m in (limits.spring_depth_m, fine_from_m)]
+    bounds_m = [edge_m - depth_m for edge_m in (touch_m, limits.spring_depth_m, fine_from_m)]
     return min([step_m, *(bound_m for bound_m in bounds_m if bound_m > 1e-9)])
 
 

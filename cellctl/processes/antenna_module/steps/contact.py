@@ -56,6 +56,7 @@ def limits_of(run: PluggingRun) -> InsertionLimits:
         limits,
         spring_depth_m=limits.spring_depth_m - margin_m,
         entry_height_m=limits.entry_height_m + margin_m,
+        early_touch_m=margin_m,
         seat_tolerance_m=insertion.seat_tolerance_mm * MM,
         centre_of_pressure_m=limits.centre_of_pressure_m + _TURNED_FORCE * lever_m,
     )
