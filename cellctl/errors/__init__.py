@@ -3,6 +3,7 @@
 CellError
 ├── ConfigError       1xx   errors.config       configuration, files, arguments
 ├── LinkError         2xx   errors.link         connections to devices
+│   └── CameraError   22x   errors.camera       cameras behind the library of their maker
 ├── RobotError        3xx   errors.robot        controllers and motion
 ├── GripperError      34x   errors.gripper      grippers
 ├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
@@ -20,6 +21,7 @@ CellError
 
 from cellctl.errors import (
     calibration,
+    camera,
     config,
     connector,
     digital_io,
@@ -41,6 +43,7 @@ __all__ = [
     "CellError",
     "Reaction",
     "calibration",
+    "camera",
     "catalogue",
     "config",
     "connector",

@@ -2,12 +2,18 @@
 
 import asyncio
 from collections.abc import AsyncIterator
+from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerCamera
+from drivers.camera.gige.config import GigeCameraConfig, Selection
+from drivers.camera.gige.driver import GigeCamera
+from drivers.camera.gige.pixels import decoded
+from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Format, expected_image
 from fakes.wire.cameras.image_server import ImageServer
 from tests.contracts.camera import CameraContract, SingleCameraBench
 from tests.contracts.inprocess.camera import InProcessCamera
@@ -78,3 +84,56 @@ class TestFrameServerCamera(CameraContract):
         if bench.server._client is not None:  # let it notice that its client has gone
             await asyncio.wait({bench.server._client}, timeout=2.0)
         await bench.server.stop()
+
+
+class GigeBench(SingleCameraBench):
+    def __init__(self, producer: Path, folder: Path, pixel_format: Format) -> None:
+        self.fakes = FakeCameras(
+            folder / "cameras", [FakeCamera("G1", width=64, height=48, pixel_format=pixel_format)]
+        )
+        self._pixel_format = pixel_format
+        settings = GigeCameraConfig(
+            camera=Selection(serial_number="G1"),
+            producers=(producer,),
+            exposure_s=0.001,
+            image_timeout_s=0.3,
+        )
+        self.camera: Camera = GigeCamera("eye", settings)
+
+    def truth(self) -> CameraImage:
+        drawn = expected_image(self.exposures(), 64, 48, self._pixel_format)
+        data = np.ascontiguousarray(drawn).view(np.uint8).ravel()
+        return CameraImage(*decoded(data, self._pixel_format, 64, 48), 0.0, self.exposures())
+
+    def exposures(self) -> int:
+        return self.fakes.exposures("G1")
+
+    def silence(self) -> None:
+        self.fakes.inject("G1", "drop")
+
+    def cut(self) -> None:
+        self.fakes.inject("G1", "crash")
+
+
+@pytest.mark.long
+class TestGigeCamera(CameraContract):
+    """Through harvesters, genicam and a producer in C, each of them the real thing.
+
+    Each test starts a process that loads them. A standard run tries the contract with heads.
+    """
+
+    driver = GigeCamera
+
+    @pytest.fixture(params=["Mono8", "Mono12", "BayerRG8"])
+    async def bench(
+        self,
+        request: pytest.FixtureRequest,
+        producer: Path,
+        tmp_path: Path,
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> AsyncIterator[SingleCameraBench]:
+        bench = GigeBench(producer, tmp_path, request.param)
+        monkeypatch.setenv(ENVIRONMENT, str(bench.fakes.path))
+        yield bench
+        await bench.camera.disconnect()
+        bench.fakes.close()

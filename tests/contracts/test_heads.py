@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +12,11 @@ from cellctl.interfaces.stereo_camera import StereoCamera
 from cellctl.interfaces.target_tracker import TargetTracker
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
+from drivers.camera.gige.config import GigeHeadConfig, Selection
+from drivers.camera.gige.driver import GigeHead
 from drivers.camera.target_server.config import TargetServerConfig
 from drivers.camera.target_server.driver import TargetServerTracker
+from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
 from fakes.wire.cameras.frame_server import FrameServer
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.world.targets import SeenTarget
@@ -64,6 +68,30 @@ class FrameServerBench(CameraBench):
 
     def cut(self) -> None:
         self.server.faults.inject("hang_up", replies=1)
+
+
+class GigeHeadBench(CameraBench):
+    def __init__(self, producer: Path, folder: Path) -> None:
+        cameras = [FakeCamera(serial, width=64, height=48) for serial in ("GL", "GR")]
+        self.fakes = FakeCameras(folder / "cameras", cameras)
+        settings = GigeHeadConfig(
+            left=Selection(serial_number="GL"),
+            right=Selection(serial_number="GR"),
+            producers=(producer,),
+            exposure_s=0.001,
+            image_timeout_s=0.3,
+            max_difference_s=0.2,
+        )
+        self.camera: StereoCamera = GigeHead("head_1", settings)
+
+    def exposures(self) -> int:
+        return self.fakes.exposures("GL")
+
+    def silence(self) -> None:
+        self.fakes.inject("GR", "drop")
+
+    def cut(self) -> None:
+        self.fakes.inject("GL", "crash")
 
 
 class InProcessTrackerBench(TrackerBench):
@@ -149,3 +177,19 @@ class TestTargetServerTracker(TargetTrackerContract):
         yield bench
         await bench.tracker.disconnect()
         await bench.server.stop()
+
+
+class TestGigeHead(StereoCameraContract):
+    """Through harvesters, genicam and a producer in C, each of them the real thing."""
+
+    driver = GigeHead
+
+    @pytest.fixture
+    async def bench(
+        self, producer: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> AsyncIterator[CameraBench]:
+        bench = GigeHeadBench(producer, tmp_path)
+        monkeypatch.setenv(ENVIRONMENT, str(bench.fakes.path))
+        yield bench
+        await bench.camera.disconnect()
+        bench.fakes.close()

@@ -114,6 +114,7 @@ def stereo_head_from_json(data: Mapping[str, Any]) -> StereoHead:
     if width <= 0 or height <= 0:
         raise ValueError("image_size must be two positive numbers")
     rotation = _array(data, "rotation", (3, 3))
+    # Files that were typed or rounded to a few digits would bend every ray a little, unnoticed.
     if np.abs(rotation @ rotation.T - np.eye(3)).max() > _ROTATION_TOLERANCE:
         raise ValueError("rotation is not a rotation matrix")
     # A reflection passes the test of orthogonality; exchanged axes in a file produce one.

@@ -1,0 +1,1 @@
+"""How fast images come from cameras to the daemon."""

@@ -1,0 +1,92 @@
+"""The settings of a GenTL camera and of a head of two. Seconds, dB, bytes."""
+
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
+Feature = bool | int | float | str
+
+
+class Selection(BaseModel):
+    """Which of the cameras that the producers see. Exactly one key is given."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    serial_number: str = ""
+    user_name: str = ""
+    """What the maker's tool calls "user defined name" or "device user ID"."""
+    id: str = ""
+    """As the producer names it; for GigE Vision often the MAC or IP address."""
+
+    @model_validator(mode="after")
+    def _one_key(self) -> Self:
+        if len(self.asked()) != 1:
+            raise ValueError("name a camera by one of serial_number, user_name and id")
+        return self
+
+    def asked(self) -> dict[str, str]:
+        """The key that is given, with its value."""
+        return {name: text for name, text in self.model_dump().items() if text}
+
+
+class Region(BaseModel):
+    """The part of the sensor that is read out, px."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    width: Annotated[int, Field(gt=0)]
+    height: Annotated[int, Field(gt=0)]
+    offset_x: Annotated[int, Field(ge=0)] = 0
+    offset_y: Annotated[int, Field(ge=0)] = 0
+
+
+class Acquisition(BaseModel):
+    """How cameras are set up. What is left out stays as the camera has it."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    producers: tuple[Path, ...] = ()
+    """Files of GenTL producers (``.cti``); without any, those of GENICAM_GENTL64_PATH."""
+    trigger: Literal["software", "none"] = "software"
+    """``none`` for a camera that runs freely: the first image that was exposed wholly after the
+    request is taken."""
+    pixel_format: str = ""
+    exposure_s: Annotated[float, Field(gt=0.0, le=60.0)] | None = None
+    gain_db: float | None = None
+    packet_bytes: Annotated[int, Field(ge=220, le=16384)] | None = None
+    packet_delay_ticks: Annotated[int, Field(ge=0)] | None = None
+    region: Region | None = None
+    features: dict[str, Feature] = Field(default_factory=dict)
+    """Further features by their standard names (GenICam SFNC), written after those above."""
+    connect_timeout_s: Seconds = 20.0
+    """For loading the producers and opening the cameras."""
+    image_timeout_s: Seconds = 5.0
+    """From the trigger to the whole image, for each try."""
+    tries: Annotated[int, Field(ge=1, le=20)] = 3
+    """Exposures for one image: one that misses packets is taken again."""
+
+
+class GigeCameraConfig(Acquisition):
+    """One camera."""
+
+    camera: Selection
+
+
+class GigeHeadConfig(Acquisition):
+    """Two cameras that are triggered together."""
+
+    left: Selection
+    right: Selection
+    max_difference_s: Seconds = 0.005
+    """Between the exposures of both cameras: by the times of their triggers in this PC, and by what
+    their own clocks say from one pair to the next."""
+
+    @model_validator(mode="after")
+    def _two_cameras(self) -> Self:
+        if self.left == self.right:
+            raise ValueError("left and right are the same camera")
+        if self.trigger == "none":
+            raise ValueError("a head needs a trigger: cameras that run freely do not meet")
+        return self

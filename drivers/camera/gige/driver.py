@@ -1,0 +1,177 @@
+"""A single camera and a stereo head over GenTL."""
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import TypeVar
+
+import numpy as np
+
+from cellctl.errors.camera import CamerasNotTogether, ImagesDamaged
+from cellctl.errors.link import LinkLost, ProtocolViolation
+from cellctl.interfaces.camera import Camera, CameraImage
+from cellctl.interfaces.device import Device
+from cellctl.interfaces.stereo_camera import Image, StereoCamera, StereoPair
+from drivers.camera.gige.config import Acquisition, GigeCameraConfig, GigeHeadConfig, Selection
+from drivers.camera.gige.connection import Block, LibraryProcess
+from drivers.camera.gige.pixels import bits_of, decoded, grey
+from drivers.camera.gige.protocol import (
+    Answer,
+    Grabbed,
+    GrabRequest,
+    Opened,
+    OpenRequest,
+    Request,
+    SentImage,
+)
+
+_PATIENCE_S = 2.0
+"""What the process may take beyond the time-outs of its own before it counts as hung."""
+_CLOCK_DRIFT = 200e-6
+"""Of two quartz clocks against each other; makers state 50 to 100 ppm for each."""
+T = TypeVar("T")
+
+
+class GigeDevice(Device):
+    """What camera and head share: one process of the maker's library for all of its cameras."""
+
+    def __init__(self, name: str, settings: Acquisition, cameras: tuple[Selection, ...]) -> None:
+        self.name = name
+        self._settings = settings
+        self._cameras = cameras
+        self._library = LibraryProcess(name)
+        self._turn = asyncio.Lock()
+        self._serials: tuple[str, ...] = ()
+        self._frame = 0
+
+    async def connect(self) -> None:
+        """Load the producers, open and set up the cameras; exposes nothing. Idempotent."""
+        await self._in_turn(self._connected)
+
+    async def disconnect(self) -> None:
+        """Let the cameras go and end the process. Idempotent."""
+        await self._in_turn(self._ended)
+
+    async def serial_number(self) -> str:
+        """Serial numbers of the cameras, left and right with a plus between them."""
+        if not self._serials:
+            raise LinkLost(f"{self.name}: not connected")
+        return "+".join(self._serials)
+
+    async def _exposed(self) -> tuple[int, tuple[SentImage, ...], list[Block]]:
+        async def grab() -> tuple[int, tuple[SentImage, ...], list[Block]]:
+            if not self._serials:
+                raise LinkLost(f"{self.name}: not connected")
+            if not self._library.running:
+                await self._connected()
+            settings = self._settings
+            patience_s = settings.tries * settings.image_timeout_s * len(self._cameras)
+            answer, blocks = await self._ask(GrabRequest(self._frame + 1), patience_s + _PATIENCE_S)
+            if not isinstance(answer, Grabbed) or len(blocks) != len(self._cameras):
+                raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for images")
+            self._frame += 1
+            return self._frame, answer.images, blocks
+
+        return await self._in_turn(grab)
+
+    async def _connected(self) -> None:
+        if self._library.running:
+            return
+        await asyncio.to_thread(self._library.start)
+        try:
+            answer, _ = await self._ask(
+                OpenRequest(self._settings, self._cameras), self._settings.connect_timeout_s
+            )
+        except BaseException:
+            await asyncio.to_thread(self._library.end)
+            raise
+        if not isinstance(answer, Opened):
+            raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for open cameras")
+        self._serials = answer.serial_numbers
+
+    async def _ended(self) -> None:
+        self._serials = ()
+        await asyncio.to_thread(self._library.end)
+
+    async def _ask(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:
+        return await asyncio.to_thread(self._library.ask, request, timeout_s)
+
+    async def _in_turn(self, work: Callable[[], Awaitable[T]]) -> T:
+        """One after the other, and to its end even when the caller is cancelled.
+
+        A request that nobody waits for any more has its answer read and dropped all the same, so
+        that the next caller does not get it for his own.
+        """
+
+        async def turn() -> T:
+            async with self._turn:
+                return await work()
+
+        return await asyncio.shield(asyncio.ensure_future(turn()))
+
+
+class GigeCamera(GigeDevice, Camera):
+    """One camera."""
+
+    Config = GigeCameraConfig
+
+    def __init__(self, name: str, config: GigeCameraConfig) -> None:
+        super().__init__(name, config, (config.camera,))
+
+    async def grab(self) -> CameraImage:
+        """Expose now; damaged images are taken again as often as the settings allow."""
+        frame, (image,), (data,) = await self._exposed()
+        try:
+            pixels, pixel_format = decoded(data, image.pixel_format, image.width, image.height)
+        except ValueError as error:
+            raise ImagesDamaged(f"{self.name}: {error}") from error
+        return CameraImage(pixels, pixel_format, image.time_s, frame)
+
+
+class GigeHead(GigeDevice, StereoCamera):
+    """Two cameras, triggered one right after the other."""
+
+    Config = GigeHeadConfig
+
+    def __init__(self, name: str, config: GigeHeadConfig) -> None:
+        super().__init__(name, config, (config.left, config.right))
+        self._max_difference_s = config.max_difference_s
+        self._ahead: tuple[float, float] | None = None
+        """At the last pair: monotonic time, and the clock of the left camera before the right."""
+
+    async def connect(self) -> None:
+        """As every camera; clocks may have been set meanwhile."""
+        self._ahead = None
+        await super().connect()
+
+    async def grab(self) -> StereoPair:
+        """Expose both cameras now."""
+        frame, images, blocks = await self._exposed()
+        self._require_together(images[0], images[1])
+        left, right = (
+            self._grey(image, block) for image, block in zip(images, blocks, strict=True)
+        )
+        return StereoPair(left, right, images[0].time_s, frame)
+
+    def _require_together(self, left: SentImage, right: SentImage) -> None:
+        """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""
+        apart_s = right.trigger_s - left.trigger_s
+        ahead_s = (left.device_time_ns - right.device_time_ns) * 1e-9
+        before, self._ahead = self._ahead, (left.time_s, ahead_s)
+        if before is not None and left.device_time_ns and right.device_time_ns:
+            # Each camera has a clock of its own, and only the change of their difference says
+            # something; clocks drift apart by themselves meanwhile.
+            change_s = abs(ahead_s - before[1])
+            apart_s = max(apart_s, change_s - _CLOCK_DRIFT * (left.time_s - before[0]))
+        if apart_s > self._max_difference_s:
+            self._ahead = None
+            raise CamerasNotTogether(
+                f"{self.name}: {apart_s * 1e3:.1f} ms apart, allowed "
+                f"{self._max_difference_s * 1e3:.1f} ms"
+            )
+
+    def _grey(self, image: SentImage, data: Block) -> Image:
+        try:
+            pixels, kind = decoded(data, image.pixel_format, image.width, image.height)
+            return np.asarray(grey(pixels, kind, bits_of(image.pixel_format)))
+        except ValueError as error:
+            raise ImagesDamaged(f"{self.name}: {error}") from error

@@ -1,0 +1,26 @@
+"""Translates what the process of the maker's library could not do to a numbered fault."""
+
+from cellctl.errors.camera import (
+    CameraAbsent,
+    CameraBusy,
+    CameraFeatureRefused,
+    ImagesDamaged,
+    ProducerUnusable,
+)
+from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout
+from drivers.camera.gige.protocol import Failed, Trouble
+
+_FAULTS: dict[Trouble, type[LinkError]] = {
+    Trouble.ABSENT: CameraAbsent,
+    Trouble.BUSY: CameraBusy,
+    Trouble.PRODUCER: ProducerUnusable,
+    Trouble.FEATURE: CameraFeatureRefused,
+    Trouble.LOST: LinkLost,
+    Trouble.SILENT: ReplyTimeout,
+    Trouble.DAMAGED: ImagesDamaged,
+}
+
+
+def of(name: str, failed: Failed) -> LinkError:
+    """The fault of a request that was not carried out; ``name`` is that of the device."""
+    return _FAULTS[failed.trouble](f"{name}: {failed.text}")

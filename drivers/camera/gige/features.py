@@ -1,0 +1,105 @@
+"""Features of a camera by their standard names (GenICam SFNC), written with clear refusals."""
+
+from typing import Any
+
+from genicam import gentl
+
+from drivers.camera.gige.config import Acquisition, Region
+from drivers.camera.gige.protocol import Trouble
+from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors, in_words
+
+_SHOWN = 40
+"""Names of features that a refusal lists."""
+
+
+class Features:
+    """The node map of one camera."""
+
+    def __init__(self, nodes: Any, label: str) -> None:
+        self._nodes = nodes
+        self._label = label
+
+    def has(self, name: str) -> bool:
+        """Whether the camera has a feature of this name."""
+        return hasattr(self._nodes, name)
+
+    def text(self, name: str) -> str:
+        """A feature as text; empty where the camera does not have it."""
+        with camera_errors(self._label):
+            return str(getattr(self._nodes, name).value) if self.has(name) else ""
+
+    def execute(self, name: str) -> None:
+        """Carry out a command feature."""
+        with camera_errors(self._label):
+            getattr(self._nodes, name).execute()
+
+    def write(self, name: str, value: object) -> None:
+        """Set a feature; raises ``TroubleError`` with what the camera allows."""
+        if not self.has(name):
+            known = ", ".join(sorted(n for n in dir(self._nodes) if n[:1].isupper())[:_SHOWN])
+            text = f"{self._label} has no feature {name}; it has {known}"
+            raise TroubleError(Trouble.FEATURE, text)
+        node = getattr(self._nodes, name)
+        try:
+            node.value = value
+        except gentl.IoException as error:
+            raise TroubleError(Trouble.LOST, f"{self._label}: {in_words(error)}") from error
+        except (*GENICAM_ERRORS, TypeError, ValueError) as error:
+            text = f"{self._label} refuses {name} = {value}{_allowed(node)}"
+            raise TroubleError(Trouble.FEATURE, text) from error
+
+    def set_up(self, settings: Acquisition) -> None:
+        """Write all settings; raises ``TroubleError``."""
+        if settings.pixel_format:
+            self.write("PixelFormat", settings.pixel_format)
+        if settings.region is not None:
+            self._set_region(settings.region)
+        if settings.exposure_s is not None:
+            self.write("ExposureTime", settings.exposure_s * 1e6)
+        if settings.gain_db is not None:
+            self.write("Gain", settings.gain_db)
+        if settings.packet_bytes is not None:
+            self.write("GevSCPSPacketSize", settings.packet_bytes)
+        if settings.packet_delay_ticks is not None:
+            self.write("GevSCPD", settings.packet_delay_ticks)
+        for name, value in settings.features.items():
+            self.write(name, value)
+        self._set_trigger(settings)
+
+    def _set_region(self, region: Region) -> None:
+        # Offsets first to zero: the new size may not fit beside the old ones.
+        for name, value in (
+            ("OffsetX", 0), ("OffsetY", 0), ("Width", region.width), ("Height", region.height),
+            ("OffsetX", region.offset_x), ("OffsetY", region.offset_y),
+        ):  # fmt: skip
+            self.write(name, value)
+
+    def _set_trigger(self, settings: Acquisition) -> None:
+        if settings.trigger == "none":
+            if self.has("TriggerMode"):
+                self.write("TriggerMode", "Off")
+            return
+        # The selector first: the other two belong to what it selects.
+        if self.has("TriggerSelector"):
+            self.write("TriggerSelector", "FrameStart")
+        self.write("TriggerMode", "On")
+        self.write("TriggerSource", "Software")
+        if self.has("AcquisitionMode"):
+            self.write("AcquisitionMode", "Continuous")
+
+
+def _allowed(node: Any) -> str:
+    """What a feature takes, in words; empty where it does not say."""
+
+    def said(name: str) -> Any:
+        try:
+            return getattr(node, name)
+        except (*GENICAM_ERRORS, AttributeError):
+            return None
+
+    if (names := said("symbolics")) is not None:
+        return f"; allowed: {', '.join(names)}"
+    low, high, step = said("min"), said("max"), said("inc")
+    if low is None or high is None:
+        return ""
+    return f"; allowed: {low} to {high}" + (f" in steps of {step}" if step else "")

@@ -1,0 +1,117 @@
+"""What the driver and the process of the maker's library say to each other."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+from drivers.camera.gige.config import Acquisition, Selection
+
+
+class Trouble(Enum):
+    """Why the process could not do what it was asked."""
+
+    ABSENT = "absent"
+    """No producer sees such a camera."""
+    BUSY = "busy"
+    """Another program controls the camera."""
+    PRODUCER = "producer"
+    """A producer is missing, or cannot be loaded."""
+    FEATURE = "feature"
+    """The camera does not have a feature, or refuses its value."""
+    LOST = "lost"
+    """The camera was open and does not answer any more."""
+    SILENT = "silent"
+    """No image came in time."""
+    DAMAGED = "damaged"
+    """Images came, and none of them whole and new."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenRequest:
+    """Load the producers and open these cameras, in this order."""
+
+    acquisition: Acquisition
+    cameras: tuple[Selection, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class GrabRequest:
+    """Expose all cameras once."""
+
+    number: int
+    """Given back with the answer."""
+
+
+@dataclass(frozen=True, slots=True)
+class ListRequest:
+    """What the producers see."""
+
+    acquisition: Acquisition
+
+
+Request = OpenRequest | GrabRequest | ListRequest
+
+
+@dataclass(frozen=True, slots=True)
+class SeenCamera:
+    """A camera that a producer sees."""
+
+    producer: str
+    id: str
+    vendor: str
+    model: str
+    serial_number: str
+    user_name: str
+    busy: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """All cameras are open, set up and acquire."""
+
+    serial_numbers: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class SentImage:
+    """One image; its bytes follow as a descriptor of anonymous memory."""
+
+    pixel_format: str
+    width: int
+    height: int
+    size: int
+    """Bytes."""
+    device_time_ns: int
+    """By the camera's own clock."""
+    trigger_s: float
+    """Monotonic, when its trigger had been sent; NaN for a camera that runs freely."""
+    time_s: float
+    """Monotonic, when it was whole in this PC."""
+
+
+@dataclass(frozen=True, slots=True)
+class Grabbed:
+    """One image of every camera."""
+
+    number: int
+    images: tuple[SentImage, ...]
+    damaged: int
+    """Images that were taken again since the cameras were opened."""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """The answer to ``ListRequest``."""
+
+    cameras: tuple[SeenCamera, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Failed:
+    """The request was not carried out."""
+
+    trouble: Trouble
+    text: str
+
+
+Answer = Opened | Grabbed | Seen | Failed

@@ -1,0 +1,124 @@
+"""The cameras that the fake GenTL producer shows, in a file that both have mapped.
+
+The layout is that of ``shared_state`` in ``producer/camera.h``. A camera draws images of its own,
+of which each pixel is known: see ``expected_image``.
+"""
+
+import mmap
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+ENVIRONMENT = "FAKE_GENTL_STATE"
+"""Names the file to the producer."""
+
+_MAGIC = 0x46474331
+_HEADER_BYTES = 256
+_CAMERAS = 8
+_TEXT_BYTES = 64
+_WORDS = (
+    "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
+    "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
+)  # fmt: skip
+_RESERVED_WORDS = 17
+_CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
+
+Format = Literal["Mono8", "Mono12", "BayerRG8"]
+Fault = Literal["drop", "lost", "incomplete", "stale", "slow_ms", "hang", "crash", "busy"]
+_FORMATS = {"Mono8": 0x01080001, "Mono12": 0x01100005, "BayerRG8": 0x01080009}
+
+
+@dataclass(frozen=True, slots=True)
+class FakeCamera:
+    """One camera on the fake network."""
+
+    serial: str
+    user_id: str = ""
+    width: int = 640
+    height: int = 480
+    pixel_format: Format = "Mono8"
+
+
+class FakeCameras:
+    """A file of cameras; a context that unmaps it."""
+
+    def __init__(self, path: Path, cameras: Sequence[FakeCamera]) -> None:
+        if not 0 < len(cameras) <= _CAMERAS:
+            raise ValueError(f"1 to {_CAMERAS} cameras, not {len(cameras)}")
+        self.path = path
+        self._index = {camera.serial: number for number, camera in enumerate(cameras)}
+        path.write_bytes(bytes(_HEADER_BYTES + _CAMERAS * _CAMERA_BYTES))
+        with path.open("r+b") as file:
+            self._memory = mmap.mmap(file.fileno(), 0)
+        struct.pack_into("<II", self._memory, 0, _MAGIC, len(cameras))
+        for camera in cameras:
+            self._put(camera.serial, "width", camera.width)
+            self._put(camera.serial, "height", camera.height)
+            self._put(camera.serial, "pixel_format", _FORMATS[camera.pixel_format])
+            texts = self._at(camera.serial) + _CAMERA_BYTES - 2 * _TEXT_BYTES
+            struct.pack_into(
+                f"{_TEXT_BYTES}s{_TEXT_BYTES}s",
+                self._memory,
+                texts,
+                camera.serial.encode(),
+                camera.user_id.encode(),
+            )
+            self._put(camera.serial, "present", 1)
+
+    def inject(self, serial: str, fault: Fault, amount: int = 1) -> None:
+        """Have something go wrong; 0 puts it right. See ``camera.h`` for what each amount means."""
+        self._put(serial, fault, amount)
+
+    def exposures(self, serial: str) -> int:
+        """Images that a camera has exposed since the file was made."""
+        return self._get(serial, "exposures")
+
+    def opened(self, serial: str) -> int:
+        """The process that controls a camera, 0 for none."""
+        return self._get(serial, "opened")
+
+    def buffers(self, serial: str) -> int:
+        """Buffers that are announced to the camera's stream."""
+        return self._get(serial, "buffers")
+
+    def close(self) -> None:
+        """Unmap the file."""
+        self._memory.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def _at(self, serial: str, word: str = "present") -> int:
+        return _HEADER_BYTES + self._index[serial] * _CAMERA_BYTES + 4 * _WORDS.index(word)
+
+    def _put(self, serial: str, word: str, value: int) -> None:
+        struct.pack_into("<I", self._memory, self._at(serial, word), value)
+
+    def _get(self, serial: str, word: str) -> int:
+        (value,) = struct.unpack_from("<I", self._memory, self._at(serial, word))
+        return int(value)
+
+
+def expected_image(
+    frame_id: int, width: int, height: int, pixel_format: Format, *, camera: int = 0
+) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    """What a camera, by its place in the file, draws into an image; shape (height, width)."""
+    y, x = np.mgrid[0:height, 0:width].astype(np.int64)
+    level = x + 3 * y + 37 * frame_id + 11 * camera
+    if pixel_format == "Mono12":
+        return np.asarray((16 * level + 5) & 0x0FFF, dtype=np.uint16)
+    return np.asarray(level & 0xFF, dtype=np.uint8)

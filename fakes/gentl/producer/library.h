@@ -1,0 +1,19 @@
+/* The one library of this process: which handle is which module. */
+#ifndef FAKE_LIBRARY_H
+#define FAKE_LIBRARY_H
+
+#include "answers.h"
+#include "camera.h"
+
+extern camera cameras[MAX_CAMERAS];
+/* Handles are addresses of these; their contents mean nothing. */
+extern char system_handle, interface_handle;
+extern char device_handles[MAX_CAMERAS], port_handles[MAX_CAMERAS], stream_handles[MAX_CAMERAS],
+    event_handles[MAX_CAMERAS];
+
+shared_state *shared(void);
+camera *of_handle(void *handle, char *handles); /* NULL for a handle of another kind */
+int index_of_id(const char *id);                /* -1 for none */
+GC_ERROR fail(GC_ERROR error, const char *what);
+
+#endif

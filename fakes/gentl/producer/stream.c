@@ -1,0 +1,147 @@
+/* The stream of a camera: a thread that exposes into queued buffers. */
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "camera.h"
+
+/* Any image tells its camera and its frame number, so that a test knows every pixel: see fakes/gentl/cameras.py. */
+static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
+    uint32_t width = camera_u32(self, REG_WIDTH), height = camera_u32(self, REG_HEIGHT);
+    uint32_t left = camera_u32(self, REG_OFFSET_X), top = camera_u32(self, REG_OFFSET_Y);
+    bool deep = camera_u32(self, REG_PIXEL_FORMAT) == PFNC_MONO12;
+    uint8_t *bytes = buffer->base;
+    for (uint32_t y = 0; y < height; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            uint32_t level = (x + left) + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
+            size_t at = (size_t)y * width + x;
+            if (deep) {
+                uint16_t value = (uint16_t)((16 * level + 5) & 0x0FFF);
+                memcpy(bytes + 2 * at, &value, sizeof value);
+            } else {
+                bytes[at] = (uint8_t)level;
+            }
+        }
+}
+
+static frame_buffer *first(camera *self, place where) {
+    frame_buffer *found = NULL;
+    for (int i = 0; i < MAX_BUFFERS; i++) {
+        frame_buffer *one = &self->buffers[i];
+        if (one->announced && one->where == where && (!found || one->order < found->order)) found = one;
+    }
+    return found;
+}
+
+static bool due(const camera *self) {
+    if (!self->acquiring || !self->stream_running) return false;
+    return camera_u32(self, REG_TRIGGER_MODE) ? self->triggers > 0 : true;
+}
+
+static void pause_us(camera *self, uint64_t microseconds) {
+    pthread_mutex_unlock(&self->mutex);
+    usleep((useconds_t)microseconds);
+    pthread_mutex_lock(&self->mutex);
+}
+
+static void take(camera *self) {
+    bool triggered = camera_u32(self, REG_TRIGGER_MODE) != 0;
+    if (triggered) self->triggers--;
+    double exposure_us;
+    memcpy(&exposure_us, self->registers + REG_EXPOSURE_US, sizeof exposure_us);
+    /* A free-running camera of 50 images a second. */
+    uint32_t starts = self->starts;
+    uint64_t took_us = triggered ? (uint64_t)exposure_us : 20000;
+    pause_us(self, took_us + 1000ull * self->state->slow_ms);
+    /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
+    if (!self->acquiring || self->starts != starts || self->state->lost || !self->state->present) return;
+    frame_buffer *buffer = first(self, INPUT);
+    bool again = self->state->stale > 0;
+    if (again)
+        self->state->stale--;
+    else {
+        self->frame_id++;
+        self->last_time_ns = now_ns();
+        self->state->exposures++;
+    }
+    if (!buffer || buffer->size < camera_payload(self)) return; /* nobody has given room: it is lost */
+    expose(self, buffer, self->frame_id);
+    buffer->filled = camera_payload(self);
+    buffer->incomplete = self->state->incomplete > 0;
+    if (buffer->incomplete) {
+        self->state->incomplete--;
+        memset(buffer->base + buffer->filled / 2, 0, buffer->filled - buffer->filled / 2);
+    }
+    buffer->width = camera_u32(self, REG_WIDTH);
+    buffer->height = camera_u32(self, REG_HEIGHT);
+    buffer->offset_x = camera_u32(self, REG_OFFSET_X);
+    buffer->offset_y = camera_u32(self, REG_OFFSET_Y);
+    buffer->pixel_format = camera_u32(self, REG_PIXEL_FORMAT);
+    buffer->frame_id = self->frame_id;
+    buffer->time_ns = self->last_time_ns;
+    buffer->new_data = true;
+    buffer->where = OUTPUT;
+    buffer->order = ++self->order;
+    self->delivered++;
+    pthread_cond_broadcast(&self->changed);
+}
+
+static void *run(void *argument) {
+    camera *self = argument;
+    pthread_mutex_lock(&self->mutex);
+    while (!self->ending) {
+        if (due(self))
+            take(self);
+        else
+            pthread_cond_wait(&self->changed, &self->mutex);
+    }
+    pthread_mutex_unlock(&self->mutex);
+    return NULL;
+}
+
+GC_ERROR stream_open(camera *self) {
+    if (self->stream_open) return GC_ERR_RESOURCE_IN_USE;
+    self->ending = self->event_killed = false;
+    self->stream_open = pthread_create(&self->thread, NULL, run, self) == 0;
+    return self->stream_open ? GC_ERR_SUCCESS : GC_ERR_ERROR;
+}
+
+void stream_close(camera *self) {
+    if (!self->stream_open) return;
+    pthread_mutex_lock(&self->mutex);
+    self->ending = true;
+    self->stream_running = self->acquiring = false;
+    pthread_cond_broadcast(&self->changed);
+    pthread_mutex_unlock(&self->mutex);
+    pthread_join(self->thread, NULL);
+    self->stream_open = false;
+}
+
+GC_ERROR stream_next(camera *self, uint64_t timeout_ms, frame_buffer **found) {
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    bool forever = timeout_ms > 86400000u;
+    if (!forever) {
+        uint64_t ns = (uint64_t)until.tv_nsec + (timeout_ms % 1000) * 1000000u;
+        until.tv_sec += (time_t)(timeout_ms / 1000 + ns / 1000000000u);
+        until.tv_nsec = (long)(ns % 1000000000u);
+    }
+    GC_ERROR error = GC_ERR_SUCCESS;
+    pthread_mutex_lock(&self->mutex);
+    while (!(*found = first(self, OUTPUT)) && !self->event_killed && !error) {
+        if (forever)
+            pthread_cond_wait(&self->changed, &self->mutex);
+        else if (pthread_cond_timedwait(&self->changed, &self->mutex, &until))
+            error = GC_ERR_TIMEOUT;
+    }
+    if (self->event_killed) {
+        self->event_killed = false;
+        *found = NULL;
+        error = GC_ERR_ABORT;
+    } else if (*found) {
+        error = GC_ERR_SUCCESS;
+        (*found)->where = OUT;
+    }
+    pthread_mutex_unlock(&self->mutex);
+    return error;
+}

@@ -1,0 +1,209 @@
+"""What can be wrong with cameras and producers, each by a fault of its own, and how it ends."""
+
+import asyncio
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from cellctl.errors.base import CellError
+from cellctl.errors.camera import (
+    CameraAbsent,
+    CameraBusy,
+    CameraFeatureRefused,
+    CamerasNotTogether,
+    ImagesDamaged,
+    ProducerUnusable,
+)
+from cellctl.errors.link import LinkLost, ReplyTimeout
+from drivers.camera.gige.config import GigeHeadConfig, Region, Selection
+from drivers.camera.gige.driver import GigeHead
+from fakes.gentl.cameras import FakeCameras
+from tests.wire.gige.conftest import LEFT, RIGHT, camera
+
+
+async def refused(producer: Path, fault: type[CellError], **settings: object) -> str:
+    eye = camera(producer, **settings)
+    with pytest.raises(fault) as caught:
+        await eye.connect()
+    await eye.disconnect()
+    return str(caught.value)
+
+
+async def test_an_absent_camera_is_named_with_those_that_are_there(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    said = await refused(producer, CameraAbsent, camera=Selection(serial_number="GL-7"))
+    assert "GL-7" in said
+    assert LEFT in said
+    assert RIGHT in said
+    assert fakes.opened(LEFT) == 0
+
+
+async def test_a_camera_is_found_by_its_user_name(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer, camera=Selection(user_name="right eye")) as eye:
+        assert await eye.serial_number() == RIGHT
+    assert fakes.opened(RIGHT) == 0
+
+
+async def test_a_camera_that_another_program_has(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer):
+        assert "another program" in await refused(producer, CameraBusy)
+    assert fakes.opened(LEFT) == 0
+    async with camera(producer) as eye:
+        await eye.grab()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [("none.cti", None, "no producer"), ("text.cti", b"no library", "cannot be loaded")],
+)
+async def test_a_producer_that_cannot_be_used(
+    tmp_path: Path, name: str, content: bytes | None, words: str
+) -> None:
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    assert words in await refused(path, ProducerUnusable)
+
+
+async def test_without_a_producer_the_variable_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("GENICAM_GENTL64_PATH", str(tmp_path))
+    said = await refused(tmp_path, ProducerUnusable, producers=())
+    assert "GENICAM_GENTL64_PATH" in said
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"pixel_format": "Mono14"}, "Mono8, Mono12, BayerRG8"),
+        ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
+        ({"region": Region(width=20, height=4000)}, "16 to 48"),
+        ({"features": {"Gain": 99.0}}, "0.0 to 24.0"),
+        ({"features": {"Binning": 2}}, "no feature Binning; it has"),
+    ],
+)
+async def test_a_refused_feature_says_what_is_allowed(
+    producer: Path, fakes: FakeCameras, settings: dict[str, object], words: str
+) -> None:
+    assert words in await refused(producer, CameraFeatureRefused, **settings)
+    assert fakes.opened(LEFT) == 0
+
+
+async def test_settings_reach_the_camera(producer: Path, fakes: FakeCameras) -> None:
+    region = Region(width=32, height=16, offset_x=8, offset_y=4)
+    async with camera(producer, region=region, pixel_format="Mono12", gain_db=3.0) as eye:
+        image = await eye.grab()
+    assert image.pixels.shape == (16, 32)
+    first = fakes.exposures(LEFT)
+    assert image.pixels[0, 0] == (16 * (8 + 3 * 4 + 37 * first) + 5) & 0x0FFF
+
+
+@pytest.mark.parametrize("fault", ["incomplete", "stale"])
+async def test_a_damaged_image_is_taken_again(
+    producer: Path, fakes: FakeCameras, fault: str
+) -> None:
+    async with camera(producer) as eye:
+        await eye.grab()
+        fakes.inject(LEFT, fault, 2)  # type: ignore[arg-type]
+        image = await eye.grab()
+        assert image.pixels[0, 0] == (37 * fakes.exposures(LEFT)) & 0xFF
+        assert image.pixels[-1, -1] != 0
+        fakes.inject(LEFT, fault, 3)  # type: ignore[arg-type]
+        with pytest.raises(ImagesDamaged):
+            await eye.grab()
+        await eye.grab()
+
+
+async def test_an_image_that_comes_late_is_nobodys(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer) as eye:
+        fakes.inject(LEFT, "slow_ms", 500)
+        with pytest.raises(ReplyTimeout):
+            await eye.grab()
+        fakes.inject(LEFT, "slow_ms", 0)
+        image = await eye.grab()
+        assert image.pixels[0, 0] == (37 * fakes.exposures(LEFT)) & 0xFF
+
+
+async def test_a_camera_that_is_unplugged_and_plugged_in_again(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer) as eye:
+        for _ in range(3):
+            await eye.grab()
+            fakes.inject(LEFT, "lost")
+            with pytest.raises((LinkLost, ReplyTimeout)):
+                await eye.grab()
+            fakes.inject(LEFT, "lost", 0)
+            await eye.disconnect()
+            await eye.connect()
+            await eye.grab()
+
+
+async def test_a_library_that_hangs_costs_a_fault_and_its_process(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer, tries=1) as eye:
+        await eye.grab()
+        fakes.inject(LEFT, "hang")
+        with pytest.raises(ReplyTimeout, match="hangs"):
+            await eye.grab()
+        fakes.inject(LEFT, "hang", 0)
+        await eye.connect()
+        await eye.grab()
+
+
+async def test_the_library_ends_with_its_daemon(producer: Path, fakes: FakeCameras) -> None:
+    """A camera that a dead daemon keeps would be busy for the next one."""
+    async with camera(producer) as eye:
+        child = fakes.opened(LEFT)
+        assert child not in {0, os.getpid()}
+        os.kill(child, signal.SIGKILL)
+        with pytest.raises(LinkLost):
+            await eye.grab()
+        await eye.grab()
+        assert fakes.opened(LEFT) not in {0, child}
+
+
+async def test_nothing_is_left_behind(producer: Path, fakes: FakeCameras) -> None:
+    before = len(os.listdir("/proc/self/fd"))
+    for _ in range(3):
+        async with camera(producer) as eye:
+            images = [await eye.grab() for _ in range(20)]
+            assert fakes.buffers(LEFT) == 4
+        del images
+    assert len(os.listdir("/proc/self/fd")) <= before + 1
+    assert (fakes.opened(LEFT), fakes.buffers(LEFT)) == (0, 0)
+
+
+async def test_a_head_whose_cameras_do_not_meet(producer: Path, fakes: FakeCameras) -> None:
+    settings = GigeHeadConfig(
+        left=Selection(serial_number=LEFT),
+        right=Selection(serial_number=RIGHT),
+        producers=(producer,),
+        exposure_s=0.001,
+        image_timeout_s=1.0,
+        max_difference_s=0.1,
+    )
+    async with GigeHead("head", settings) as head:
+        assert await head.serial_number() == f"{LEFT}+{RIGHT}"
+        await head.grab()
+        fakes.inject(RIGHT, "slow_ms", 300)
+        with pytest.raises(CamerasNotTogether):
+            await head.grab()
+
+
+async def test_a_caller_who_gives_up_does_not_disturb_the_next(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer) as eye:
+        grab = asyncio.create_task(eye.grab())
+        await asyncio.wait({grab}, timeout=0.001)
+        grab.cancel()
+        before = fakes.exposures(LEFT)
+        image = await eye.grab()
+        assert fakes.exposures(LEFT) > before or before == 0
+        assert image.pixels[0, 0] == (37 * fakes.exposures(LEFT)) & 0xFF
