@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.noted_robot import RobotNotes
 from cellctl.cell.zones.arbiter import ZoneArbiter
 from cellctl.cell.zones.zone import Share, Zone
 from cellctl.cell.zones.zoned_robot import ZonedRobot
@@ -17,6 +18,7 @@ from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
 from tests.contracts.robot import RobotBench, RobotContract
 from tests.contracts.streaming_robot import StreamingBench, StreamingRobotContract
+from tests.wire.job_rig import JobRig, job_rig
 from tests.wire.sjl_rig import Rig, sjl_rig
 
 
@@ -49,7 +51,7 @@ class SiasunBench(RobotBench):
     robot: SiasunRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
 
-    def __init__(self, rig: Rig) -> None:
+    def __init__(self, rig: Rig | JobRig) -> None:
         self.rig = rig
         self.robot = rig.robot
         self.max_speed_m_s = rig.settings.max_speed_mm_s / 1000
@@ -72,7 +74,7 @@ class SiasunBench(RobotBench):
         return self.rig.arm.encoder_pose(self.rig.controller._clock())
 
     def moving(self) -> bool:
-        return self.rig.controller.logic.moving(self.rig.controller._clock())
+        return self.rig.controller.moving()
 
     def freeze(self) -> None:
         self.rig.controller.faults.inject("frozen_stat")
@@ -144,12 +146,34 @@ class TestZonedRobot(RobotContract):
             await bench.robot.disconnect()
 
 
+class TestNotedRobot(RobotContract):
+    """So does what takes notes for the record of a run."""
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[RobotBench]:
+        memory = InProcessRobot("memory")
+        bench = InProcessBench(memory, RobotNotes().noted(memory))
+        yield bench
+        await bench.robot.disconnect()
+
+
 class TestSiasunRobot(RobotContract):
     driver = SiasunRobot
 
     @pytest.fixture
     async def bench(self) -> AsyncIterator[RobotBench]:
         async with sjl_rig() as rig:
+            yield SiasunBench(rig)
+
+
+class TestSiasunRobotOnItsJobs(RobotContract):
+    """The same driver, with the shipped job files at the other end."""
+
+    driver = SiasunRobot
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[RobotBench]:
+        async with job_rig() as rig:
             yield SiasunBench(rig)
 
 

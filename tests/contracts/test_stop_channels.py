@@ -11,6 +11,7 @@ from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from tests.contracts.inprocess.stop_channel import InProcessStopChannel
 from tests.contracts.loop_thread import LoopThread
 from tests.contracts.stop_channel import StopBench, StopChannelContract
+from tests.wire.job_rig import JobRig, job_rig
 from tests.wire.sjl_rig import READY_DEG, Rig, sjl_rig
 
 
@@ -30,7 +31,7 @@ class InProcessBench(StopBench):
 
 
 class SiasunBench(StopBench):
-    def __init__(self, thread: LoopThread, rig: Rig) -> None:
+    def __init__(self, thread: LoopThread, rig: Rig | JobRig) -> None:
         self._thread = thread
         self._rig = rig
         self.channel: StopChannel = SiasunStopChannel(rig.guard)
@@ -41,7 +42,7 @@ class SiasunBench(StopBench):
             target = np.radians([30.0, *READY_DEG[1:]])
             self._rig.arm.start_joint(self._rig.controller._clock(), target, 10.0)
 
-        self._thread.call(begin)
+        self._thread.call(self._rig.turn if isinstance(self._rig, JobRig) else begin)
 
     def moving(self) -> bool:
         return self._thread.call(lambda: self._rig.arm.moving(self._rig.controller._clock()))
@@ -66,6 +67,22 @@ class TestSiasunStopChannel(StopChannelContract):
         with LoopThread() as thread:
             stack = AsyncExitStack()
             rig = thread.run(stack.enter_async_context(sjl_rig(channels=("GRD",))))
+            bench = SiasunBench(thread, rig)
+            yield bench
+            bench.channel.close()
+            thread.run(stack.aclose())
+
+
+class TestSiasunStopChannelOnItsJobs(StopChannelContract):
+    """The same channel, with the shipped job files at the other end."""
+
+    driver = SiasunStopChannel
+
+    @pytest.fixture
+    def bench(self) -> Iterator[StopBench]:
+        with LoopThread() as thread:
+            stack = AsyncExitStack()
+            rig = thread.run(stack.enter_async_context(job_rig(channels=("GRD",))))
             bench = SiasunBench(thread, rig)
             yield bench
             bench.channel.close()

@@ -125,7 +125,7 @@ def test_other_records_to_the_robot() -> None:
             Aborted(3, "STOP", POSE),
         ),
         (b"DUP,3", Duplicate(3)),
-        (b"HELLO,SJL,2,whatever", Hello("2")),
+        (b"HELLO,SJL,9,whatever", Hello("9")),
     ],
 )
 def test_other_records_from_the_robot(body: bytes, record: Record) -> None:

@@ -3,7 +3,8 @@
 import asyncio
 import select
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from contextlib import AbstractAsyncContextManager
 
 import numpy as np
 import pytest
@@ -22,8 +23,9 @@ from cellctl.interfaces.stop_channel import FlangeState
 from drivers.robot.siasun.config import SiasunStopChannelConfig
 from drivers.robot.siasun.stop_channel import SiasunStopChannel, rotation_from_abc
 from tests.ports import free_ports
+from tests.wire.job_rig import JobRig, job_rig
 from tests.wire.siasun_peer import POSE, Peer
-from tests.wire.sjl_rig import sjl_rig
+from tests.wire.sjl_rig import Rig, sjl_rig
 
 
 def config(timeout_s: float = 2.0) -> SiasunStopChannelConfig:
@@ -200,8 +202,11 @@ def test_rotation(abc: tuple[float, float, float]) -> None:
     assert np.reshape(rotation_from_abc(*abc), (3, 3)) == pytest.approx(expected)
 
 
-async def test_the_guard_stops_the_fake_controller() -> None:
-    async with sjl_rig(channels=("CMD", "STA", "GRD")) as rig:
+@pytest.mark.parametrize("make", [sjl_rig, job_rig], ids=["records", "jobs"])
+async def test_the_guard_stops_the_fake_controller(
+    make: Callable[..., AbstractAsyncContextManager[Rig | JobRig]],
+) -> None:
+    async with make(channels=("CMD", "STA", "GRD")) as rig:
         channel = SiasunStopChannel(rig.guard)
         opening = asyncio.create_task(asyncio.to_thread(channel.open))
         await rig.connect()
@@ -224,8 +229,11 @@ async def test_the_guard_stops_the_fake_controller() -> None:
         channel.close()
 
 
-async def test_the_death_of_the_guard_stops_the_fake_controller() -> None:
-    async with sjl_rig(channels=("CMD", "STA", "GRD")) as rig:
+@pytest.mark.parametrize("make", [sjl_rig, job_rig], ids=["records", "jobs"])
+async def test_the_death_of_the_guard_stops_the_fake_controller(
+    make: Callable[..., AbstractAsyncContextManager[Rig | JobRig]],
+) -> None:
+    async with make(channels=("CMD", "STA", "GRD")) as rig:
         channel = SiasunStopChannel(rig.guard)
         opening = asyncio.create_task(asyncio.to_thread(channel.open))
         await rig.connect()

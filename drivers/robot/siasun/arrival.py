@@ -5,13 +5,13 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces.robot import RobotState
-from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.config import MotionLimits
 
 
 class Arrival:
     """Methods return how far off the robot is, as text, or None where it has arrived."""
 
-    def __init__(self, config: SiasunConfig) -> None:
+    def __init__(self, config: MotionLimits) -> None:
         self._tolerance_mm = config.arrival_tolerance_mm
         self._tolerance_deg = config.arrival_tolerance_deg
 

@@ -11,7 +11,7 @@ from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
-from drivers.robot.siasun.config import SiasunConfig
+from drivers.robot.siasun.config import MotionLimits
 from drivers.robot.siasun.kinematics import Kinematics
 from drivers.robot.siasun.records import StreamFigures, StreamOption
 
@@ -25,7 +25,7 @@ DH_FITS_DEG = 0.5
 class Bounds:
     """The bounds of one robot. Methods return the target in the controller's units."""
 
-    def __init__(self, name: str, config: SiasunConfig) -> None:
+    def __init__(self, name: str, config: MotionLimits) -> None:
         self._name = name
         self._config = config
         self._kinematics = Kinematics(config.dh) if config.dh is not None else None
@@ -55,15 +55,23 @@ class Bounds:
         kinematics = self._kinematics
         if kinematics is None:
             return
-        distance_m, angle_rad = state.distance_to(kinematics.base_T_flange(state.joints_rad))
+        self.table_fits(state)
+        for joints in joint_path(state.joints_rad, joints_rad):
+            self._flange_in_box(kinematics, joints, "on the way to", joints_rad)
+
+    def table_fits(self, state: RobotState) -> None:
+        """Refuse a robot that reports its flange elsewhere than the dh table puts it: a table of
+        another arm, or a pose that is read with other units or another order of angles."""
+        if self._kinematics is None:
+            return
+        base_T_flange = self._kinematics.base_T_flange(state.joints_rad)
+        distance_m, angle_rad = state.distance_to(base_T_flange)
         # Written so that a table that gives no number is refused.
         if not (distance_m / MM <= DH_FITS_MM and math.degrees(angle_rad) <= DH_FITS_DEG):
             self._refuse(
                 f"the dh table puts the flange {distance_m / MM:.2f} mm and "
                 f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it"
             )
-        for joints in joint_path(state.joints_rad, joints_rad):
-            self._flange_in_box(kinematics, joints, "on the way to", joints_rad)
 
     def joint_target(self, joints_rad: Array) -> None:
         """Refuse joints, shape (6,), at which an arm that stands there would be out of bounds.

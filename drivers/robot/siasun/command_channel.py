@@ -10,6 +10,7 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 from drivers.robot.siasun.records import Answer, Record, Six, Tick
 from drivers.robot.siasun.running_command import RunningCommand
+from drivers.robot.siasun.words import Words
 
 
 class CommandChannel:
@@ -31,6 +32,11 @@ class CommandChannel:
         self._reply_timeout_s = config.reply_timeout_s
         self._seq = 0
         self._running: RunningCommand | None = None
+
+    @property
+    def words(self) -> Words:
+        """What the job program understands."""
+        return self.channel.words
 
     @property
     def running(self) -> bool:

@@ -37,19 +37,11 @@ class _Section(BaseModel):
         return self
 
 
-class SiasunConfig(_Section):
-    """Motion and state channels of one robot, and the bounds of every target."""
+class MotionLimits(BaseModel):
+    """Bounds of every target of one arm, whatever its controller speaks."""
 
-    command_port: Port
-    state_port: Port
-    reply_timeout_s: Seconds = 1.0
-    """For the answer to a command, and for the state to show its effect."""
-    stop_timeout_s: Seconds = 3.0
-    move_timeout_s: Seconds = 120.0
-    stale_s: Seconds = 0.25
-    """No motion starts on a state older than this."""
-    silence_s: Seconds = 0.5
-    """A robot without a state report for this long counts as lost."""
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
     workspace_min_mm: Point
     workspace_max_mm: Point
     """Corners of the box, in the robot base, that the flange must stay in."""
@@ -87,9 +79,6 @@ class SiasunConfig(_Section):
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
-        # Each channel has a listener of its own; the second one would find its port in use.
-        if self.command_port == self.state_port:
-            raise ValueError("command_port and state_port must differ")
         pairs = {
             "workspace_min_mm": (self.workspace_min_mm, self.workspace_max_mm),
             "joints_min_deg": (self.joints_min_deg, self.joints_max_deg),
@@ -98,6 +87,28 @@ class SiasunConfig(_Section):
         for key, (lower, upper) in pairs.items():
             if not all(low < high for low, high in zip(lower, upper, strict=True)):
                 raise ValueError(f"{key} must lie below its maximum in every component")
+        return self
+
+
+class SiasunConfig(_Section, MotionLimits):
+    """Motion and state channels of one robot, and the bounds of every target."""
+
+    command_port: Port
+    state_port: Port
+    reply_timeout_s: Seconds = 1.0
+    """For the answer to a command, and for the state to show its effect."""
+    stop_timeout_s: Seconds = 3.0
+    move_timeout_s: Seconds = 120.0
+    stale_s: Seconds = 0.25
+    """No motion starts on a state older than this."""
+    silence_s: Seconds = 0.5
+    """A robot without a state report for this long counts as lost."""
+
+    @model_validator(mode="after")
+    def _two_ports(self) -> Self:
+        # Each channel has a listener of its own; the second one would find its port in use.
+        if self.command_port == self.state_port:
+            raise ValueError("command_port and state_port must differ")
         return self
 
 

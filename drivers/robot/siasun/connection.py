@@ -14,10 +14,11 @@ from cellctl.errors.link import (
     ProtocolViolation,
     VersionMismatch,
 )
-from drivers.robot.siasun import faults, protocol
+from drivers.robot.siasun import faults
 from drivers.robot.siasun.decoder import RecordReader
 from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
 from drivers.robot.siasun.records import Hello, Record
+from drivers.robot.siasun.words import Words, words_of
 
 _log = logging.getLogger(__name__)
 
@@ -64,6 +65,11 @@ class SjlChannel:
     def connected(self) -> bool:
         """An accepted session stands."""
         return self._accepted
+
+    @property
+    def words(self) -> Words:
+        """What to say to the job program that has greeted last."""
+        return words_of(self.hello)
 
     def __str__(self) -> str:
         return f"{self._robot} {self._channel}"
@@ -160,7 +166,7 @@ class SjlChannel:
         refused = refusal(hello, self._channel, self._robot, self._max_deadman_s)
         if refused is not None:
             word, facts = refused
-            self._client.send(protocol.refuse_hello(word))
+            self._client.send(words_of(hello).refuse_hello(word))
             self._client.close()
             self._ended(VersionMismatch(f"{self}: {facts}"))
             return
@@ -169,7 +175,7 @@ class SjlChannel:
         # told from one of the new.
         self.session = self.session % SESSIONS + 1
         # Before ``on_up``, which may send a heartbeat: the robot takes nothing before its OK.
-        self._client.send(protocol.accept_hello(self.session))
+        self._client.send(self.words.accept_hello(self.session))
         self._client.greeted()
         self._accepted = True
         _log.info("%s: connected, job program %s", self, hello.job_version)

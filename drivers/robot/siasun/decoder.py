@@ -4,8 +4,10 @@ import re
 from collections.abc import Callable, Sequence
 
 from cellctl.errors.link import ProtocolViolation
+from drivers.robot.siasun.compact.decoder import END, decode_compact
 from drivers.robot.siasun.protocol import VERSION
 from drivers.robot.siasun.records import (
+    COMPACT_VERSION,
     Aborted,
     Ack,
     Done,
@@ -22,6 +24,8 @@ from drivers.robot.siasun.records import (
 )
 
 MAX_RECORD_BYTES = 255
+_COMPACT_HELLO = b"HELLO,SJL,"
+_OTHER_FORM = {True: VERSION, False: COMPACT_VERSION}
 _HELLO_FIELDS = 9
 """Without options."""
 
@@ -30,12 +34,16 @@ class RecordReader:
     """Splits a byte stream into records.
 
     ``next`` raises ``ProtocolViolation`` for a bad line and has consumed it then, so the next call
-    continues with the line after it. A line that is too long is thrown away up to its LF.
+    continues with the line after it. A line that is too long is thrown away up to its LF. The
+    end of the hello that a connection begins with tells the form of all records behind it, so that
+    a version that is not known can be told from a robot that says nothing.
     """
 
     def __init__(self) -> None:
         self._buffer = bytearray()
         self._skipping = False
+        self._begun = False
+        self._compact = False
 
     def feed(self, data: bytes) -> None:
         """Take bytes as they arrived."""
@@ -43,7 +51,8 @@ class RecordReader:
 
     def next(self) -> Record | None:
         """The next record, or None when no complete line waits."""
-        while (end := self._buffer.find(b"\n")) >= 0:
+        self._begin()
+        while (end := self._buffer.find(END if self._compact else b"\n")) >= 0:
             line = bytes(self._buffer[:end])
             del self._buffer[: end + 1]
             if self._skipping:
@@ -51,7 +60,7 @@ class RecordReader:
                 continue
             if end >= MAX_RECORD_BYTES:
                 raise ProtocolViolation(f"record of {end + 1} bytes")
-            return decode(line)
+            return self._decode(line)
         if self._skipping:
             self._buffer.clear()
         elif len(self._buffer) >= MAX_RECORD_BYTES:
@@ -60,6 +69,22 @@ class RecordReader:
             raise ProtocolViolation(f"no end of record within {MAX_RECORD_BYTES} bytes")
         return None
 
+    def _begin(self) -> None:
+        """Learn the form from the first end of a record."""
+        ends = [place for end in (b"\n", END) if (place := self._buffer.find(end)) >= 0]
+        if not self._begun and ends:
+            self._begun = True
+            first = self._buffer[min(ends)]
+            self._compact = first == END[0] and self._buffer.startswith(_COMPACT_HELLO)
+
+    def _decode(self, line: bytes) -> Record:
+        if self._compact and not line.startswith(_COMPACT_HELLO):
+            return decode_compact(line)
+        record = _decode_fields(line) if self._compact else decode(line)
+        if isinstance(record, Hello) and record.version == _OTHER_FORM[self._compact]:
+            raise ProtocolViolation(f"hello of SJL/{record.version} in another form: {line!r}")
+        return record
+
 
 def decode(line: bytes) -> Record:
     """One line without its LF; ``ProtocolViolation`` when it is no valid record."""
@@ -67,13 +92,17 @@ def decode(line: bytes) -> Record:
     # The sum before the fields: a digit that changes on the way still parses (docs/decisions/0002).
     if not star or tail != b"%02X" % (sum(body) & 0xFF):
         raise ProtocolViolation(f"wrong sum: {line[:80]!r}")
+    return _decode_fields(body)
+
+
+def _decode_fields(body: bytes) -> Record:
     word, *fields = body.decode("ascii", "replace").split(",")
     if word not in _DECODERS:
-        raise ProtocolViolation(f"unknown word: {line[:80]!r}")
+        raise ProtocolViolation(f"unknown word: {body[:80]!r}")
     try:
         return _DECODERS[word](fields)
     except ValueError as error:
-        raise ProtocolViolation(f"{error}: {line[:160]!r}") from None
+        raise ProtocolViolation(f"{error}: {body[:160]!r}") from None
 
 
 _LENGTH = re.compile(r"-?\d{1,6}\.\d{4}", re.ASCII)
@@ -122,11 +151,12 @@ def _hello(fields: list[str]) -> Hello:
         raise ValueError("not a hello of SJL")
     # Nothing behind the version is read: another version may order its fields in another way, and
     # the handshake refuses it anyway.
-    if fields[1] != VERSION:
+    if fields[1] not in (VERSION, COMPACT_VERSION):
         return Hello(version=fields[1])
     _count(fields[:_HELLO_FIELDS], _HELLO_FIELDS)
     return Hello(
         version=fields[1],
+        acceleration_max_mm_s2=_acceleration(fields),
         channel=fields[2],
         robot=fields[3],
         job_version=fields[4],
@@ -136,6 +166,17 @@ def _hello(fields: list[str]) -> Hello:
         deadman_ms=_integer(_keyed(fields[8], "DEADMAN")),
         stream=_stream_option(fields[_HELLO_FIELDS:]),
     )
+
+
+def _acceleration(fields: list[str]) -> float:
+    """What 100 percent mean: needed where a job program takes percents, and not sent elsewhere."""
+    if fields[1] == VERSION:
+        return 0.0
+    _count(fields[_HELLO_FIELDS:], 1)
+    acceleration = float(_match(_LENGTH, _keyed(fields[_HELLO_FIELDS], "ACC")))
+    if acceleration <= 0.0:
+        raise ValueError("a hello without an acceleration")
+    return acceleration
 
 
 def _stream_option(options: list[str]) -> StreamOption | None:

@@ -15,7 +15,6 @@ from cellctl.errors.robot import (
     MotionAborted,
     MotionRejected,
     NotRearmed,
-    RobotNotReady,
     StopFailed,
     StreamNotOffered,
 )
@@ -27,7 +26,7 @@ from cellctl.interfaces.streaming_robot import (
     StreamLimits,
     StreamOffer,
 )
-from drivers.robot.siasun import protocol
+from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
@@ -126,8 +125,9 @@ class SiasunRobot(StreamingRobot):
         if self._bounds.knows_joint_ways:
             self._check_ready()
             self._bounds.joint_way(self.state(self._config.stale_s), joints_rad)
+        words = self._command.words
         return await self._move(
-            lambda session, seq: protocol.move_joint(session, seq, joints_deg.tolist(), percent),
+            lambda session, seq: words.move_joint(session, seq, joints_deg.tolist(), percent),
             lambda state: self._arrival.off_joints(state, joints_rad),
         )
 
@@ -138,8 +138,9 @@ class SiasunRobot(StreamingRobot):
         xyzabc = self._bounds.pose(base_T_flange).tolist()
         speed = self._bounds.speed_mm_s(speed_m_s)
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
+        words = self._command.words
         return await self._move(
-            lambda session, seq: protocol.move_linear(session, seq, xyzabc, speed, acceleration),
+            lambda session, seq: words.move_linear(session, seq, xyzabc, speed, acceleration),
             lambda state: self._arrival.off_pose(state, base_T_flange),
         )
 
@@ -150,7 +151,7 @@ class SiasunRobot(StreamingRobot):
         state = self.state(self._config.stale_s)
         self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
         return await self._move(
-            lambda session, seq: protocol.step(session, seq, xyzabc, speed),
+            lambda session, seq: self._command.words.step(session, seq, xyzabc, speed),
             lambda state: self._arrival.off_pose(state, base_T_flange),
         )
 
@@ -217,7 +218,7 @@ class SiasunRobot(StreamingRobot):
         self._check_link()
         # Remembered, so that a stop that comes during the release is not released with it.
         latch = self._latch
-        await self._command.run(protocol.rearm, self._config.reply_timeout_s)
+        await self._command.run(self._command.words.rearm, self._config.reply_timeout_s)
         await self._state.wait(lambda status: not status.latched, self._config.reply_timeout_s)
         if self._latch is not latch:
             raise NotRearmed(f"{self.name}: {self._latch}, while it was re-armed")
@@ -260,11 +261,7 @@ class SiasunRobot(StreamingRobot):
         if state.error_code:
             raise ControllerFault(f"{self.name}: controller error {state.error_code}")
         if not state.ready:
-            raise RobotNotReady(
-                f"{self.name}: mode {state.mode.value}, drives "
-                f"{'on' if state.drives_on else 'off'}, emergency stop "
-                f"{'active' if state.emergency_stop else 'released'}"
-            )
+            raise faults.not_ready(self.name, state)
 
     async def _stop_before_leaving(self) -> None:
         """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to
@@ -291,6 +288,9 @@ class SiasunRobot(StreamingRobot):
     def _on_command_lost(self, fault: LinkError) -> None:
         self._latch = fault
         self._command.fail(fault)
+        # The main job of this form is blind while it moves the arm; its background job is not.
+        if self._state.channel.hello.compact:
+            self._state.request_stop()
 
     def _on_state_lost(self, fault: LinkError) -> None:
         """Nobody sees the arm any more. The other channel goes too: the robot may have restarted

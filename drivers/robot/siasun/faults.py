@@ -1,6 +1,13 @@
-"""Turns the controller's words and the errors of sockets into numbered faults of the cell."""
+"""Turns the controller's words and the errors of sockets into numbered faults of the cell.
+
+The guard process imports this module for its stop channel, so it imports no arrays; they are named
+in annotations only.
+"""
+
+from __future__ import annotations
 
 import os
+from typing import TYPE_CHECKING
 
 from cellctl.errors.base import CellError
 from cellctl.errors.link import PortInUse
@@ -14,6 +21,9 @@ from cellctl.errors.robot import (
     StreamNotOffered,
     StreamStale,
 )
+
+if TYPE_CHECKING:
+    from cellctl.interfaces.robot import RobotState
 
 _REJECTIONS: dict[str, tuple[type[CellError], str]] = {
     "SESSION": (MotionRejected, "command of another session"),
@@ -62,6 +72,15 @@ def abortion(robot: str, reason: str) -> CellError:
     """Fault of ``ABRT,<seq>,<reason>,…``."""
     fault, words = _ABORTS.get(reason, (MotionAborted, "reason unknown to this driver"))
     return fault(f"{robot}: {words} ({reason})")
+
+
+def not_ready(robot: str, state: RobotState) -> CellError:
+    """Fault of a robot that may not move at all."""
+    drives = "on" if state.drives_on else "off"
+    button = "active" if state.emergency_stop else "released"
+    return RobotNotReady(
+        f"{robot}: mode {state.mode.value}, drives {drives}, emergency stop {button}"
+    )
 
 
 def cannot_listen(host: str, port: int, error: OSError) -> CellError:

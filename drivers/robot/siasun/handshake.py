@@ -3,7 +3,7 @@
 from ipaddress import IPv6Address, ip_address, ip_network
 
 from drivers.robot.siasun.protocol import VERSION
-from drivers.robot.siasun.records import Hello
+from drivers.robot.siasun.records import COMPACT_VERSION, Hello
 
 HELLO_TIMEOUT_S = 2.0
 SESSIONS = 999_999
@@ -22,10 +22,11 @@ def is_robot(caller: str, robot_address: str) -> bool:
 def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tuple[str, str] | None:
     """Why a hello cannot be accepted: the word for the robot and the facts; None when it can."""
     deadman_ok = 0 < hello.deadman_ms <= max_deadman_s * 1000.0
+    version_ok = hello.version in (VERSION, COMPACT_VERSION)
     # In the order in which they make sense: of another version the other fields mean nothing, and
     # on a wrong port the name may be right.
     checks = (
-        (hello.version == VERSION, "VERSION", f"job program speaks SJL/{hello.version}"),
+        (version_ok, "VERSION", f"job program speaks SJL/{hello.version}"),
         (hello.channel == channel, "CHANNEL", f"channel {hello.channel} on the port of {channel}"),
         (hello.robot == robot, "NAME", f"robot {hello.robot} on the port of {robot}"),
         (hello.euler == "ZYX", "CONVENTION", f"angles are EUL={hello.euler}, not ZYX"),

@@ -5,6 +5,8 @@ Poses stay in their written form here: X, Y, Z in mm, A, B, C in degrees, plain 
 
 from dataclasses import dataclass
 
+COMPACT_VERSION = "2"
+"""Of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -29,7 +31,7 @@ class StreamOption:
 
 @dataclass(frozen=True, slots=True)
 class Hello:
-    """Opens a channel. ``version`` other than 1 leaves the other fields empty."""
+    """Opens a channel. A version that is not known leaves the other fields empty."""
 
     version: str
     channel: str = ""
@@ -41,6 +43,13 @@ class Hello:
     deadman_ms: int = 0
     stream: StreamOption | None = None
     """None when the job program cannot stream."""
+    acceleration_max_mm_s2: float = 0.0
+    """What 100 percent of acceleration mean, of a job program that takes percents."""
+
+    @property
+    def compact(self) -> bool:
+        """The job program speaks the form for slow interpreters."""
+        return self.version == COMPACT_VERSION
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,6 @@ from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleDat
 from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.robot import RobotMode, RobotState
-from drivers.robot.siasun import protocol
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 from drivers.robot.siasun.records import Record, Status, StopDone
@@ -74,6 +73,12 @@ class StateChannel:
         finally:
             del self._waiters[future]
 
+    def request_stop(self) -> None:
+        """Send ABORT once, if a session stands; nobody waits for the standstill."""
+        if self.channel.connected:
+            self._abort_id += 1
+            self.channel.send(self.channel.words.abort(self.channel.session, self._abort_id))
+
     async def stop(self, timeout_s: float) -> None:
         """Send ABORT and wait for STOPD, repeating the request; ``StopFailed`` without it."""
         self._abort_id += 1
@@ -86,7 +91,7 @@ class StateChannel:
                 # overheard the first one stops at a later one, and one that has taken it is not
                 # confused.
                 while not future.done():
-                    self.channel.send(protocol.abort(self.channel.session, abort_id))
+                    self.channel.send(self.channel.words.abort(self.channel.session, abort_id))
                     await asyncio.wait({future}, timeout=REPEAT_STOP_S)
                 await future
         except TimeoutError:
@@ -126,6 +131,10 @@ class StateChannel:
         if last is not None and (status.count <= last.count or status.robot_ms == last.robot_ms):
             return
         self._status, self._time_s = status, now_s()
+        # A slow interpreter reads one record in each of its rounds. Unasked heartbeats would
+        # queue up before it, and a stop behind them.
+        if self.channel.hello.compact:
+            self._send_beat()
         for future, condition in self._waiters.items():
             if not future.done() and condition(status):
                 future.set_result(None)
@@ -157,10 +166,14 @@ class StateChannel:
         if silent_s > self._silence_s:
             self.channel.drop(LinkLost(f"{self.channel}: no report for {silent_s:.2f} s"))
             return
-        self._beats += 1
-        self.channel.send(protocol.beat(self.channel.session, self._beats))
+        if not self.channel.hello.compact:
+            self._send_beat()
         interval_s = self.channel.hello.deadman_ms / 1000.0 / BEATS_PER_DEADMAN
         self._timer = asyncio.get_running_loop().call_later(interval_s, self._beat)
+
+    def _send_beat(self) -> None:
+        self._beats += 1
+        self.channel.send(self.channel.words.beat(self.channel.session, self._beats))
 
     def _cancel_timer(self) -> None:
         if self._timer is not None:

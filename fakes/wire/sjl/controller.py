@@ -79,6 +79,10 @@ class SjlController:
         """Channels that the PC has accepted."""
         return sorted(self.logic.links)
 
+    def moving(self) -> bool:
+        """The arm moves, or follows a stream."""
+        return self.logic.moving(self._clock())
+
     # -- controller -----------------------------------------------------------------------------
     async def _run(self) -> None:
         while True:
@@ -124,7 +128,7 @@ class SjlController:
         hello = [
             "HELLO",
             "SJL",
-            "2" if wrong("wrong_version") else "1",
+            "9" if wrong("wrong_version") else "1",
             channel,
             "NOBODY" if wrong("wrong_name") else settings.name,
             JOB_VERSION,

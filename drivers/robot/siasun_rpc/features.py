@@ -1,0 +1,41 @@
+"""What a controller can do, by the version that it names.
+
+A server answers an unknown call with an exception of the service and passes over unknown arguments,
+so versions are told apart by asking, and never by trying a motion.
+"""
+
+import re
+from dataclasses import dataclass
+
+from cellctl.errors.link import VersionMismatch
+
+Version = tuple[int, int, int]
+OLDEST: Version = (3, 2, 0)
+"""Core version of the manual that this driver follows (API V2.9)."""
+SMOOTHED: Version = (3, 8, 4)
+"""Core version from which streamed motion takes the figures of its smoothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Features:
+    """Of one controller."""
+
+    version: str
+    """As it names itself, empty when it does not know the call."""
+    streams: bool
+    """Whether its streamed motion is the one that this driver knows."""
+
+
+def features(version: str | None) -> Features:
+    """Read a version text; None for a controller that does not know the call for it.
+
+    A controller without a readable version moves, but does not stream: how streamed motion behaves
+    depends on arguments that came with a version. One that is too old is a ``VersionMismatch``.
+    """
+    found = re.search(r"(\d{1,3})\.(\d{1,3})(?:\.(\d{1,5}))?", version or "")
+    if found is None:
+        return Features(version or "", streams=False)
+    major, minor, patch = (int(part or 0) for part in found.groups())
+    if (major, minor, patch) < OLDEST:
+        raise VersionMismatch(f"controller software {version}, at least 3.2.0 is needed")
+    return Features(version or "", streams=(major, minor, patch) >= SMOOTHED)

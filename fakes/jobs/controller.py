@@ -1,0 +1,149 @@
+"""A robot controller that runs the job files of the SJL/2 delivery on the fake arm."""
+
+import asyncio
+import logging
+from collections.abc import Callable
+from pathlib import Path
+
+from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.jobs.lexer import JobError
+from fakes.jobs.memory import Memory
+from fakes.jobs.motion import Motions
+from fakes.jobs.program import load_program
+from fakes.jobs.sockets import JobSocket
+from fakes.jobs.task import Shared, Task
+from fakes.sections import Channel
+from fakes.wire.sjl.panel import Panel
+from fakes.world.robot import RobotArm
+
+_log = logging.getLogger(__name__)
+
+MAIN = "SJLMAIN"
+_TICK_S = 0.004
+_JOB_PORTS: dict[int, Channel] = {5001: "CMD", 5002: "STA", 5003: "GRD"}
+"""Ports in the shipped job files."""
+_PERMIT, _GUARD_PERMIT, _PERMIT_LOOP = 9, 10, 9
+
+
+class JobController:
+    """``start`` begins the main job, which starts the others; ``stop`` ends them all.
+
+    Wiring as on the installation sheet: DO[9], DO[10] and the PC's own contact in series to DI[9].
+    """
+
+    def __init__(
+        self,
+        arm: RobotArm,
+        clock: Callable[[], float],
+        ports: dict[Channel, int],
+        folder: Path,
+        *,
+        host: str = "127.0.0.1",
+        faults: FaultBoard | None = None,
+        statement_s: float = 0.0005,
+    ) -> None:
+        """``folder`` holds the job files."""
+        self.faults = faults or FaultBoard("robot", ROBOT_FAULTS)
+        self.contact_closed = True
+        """The PC's digital output in the permit loop."""
+        self.alarm = ""
+        """What has ended a job; the main job starts again with ``acknowledge``."""
+        self._arm, self._clock, self._ports, self._host = arm, clock, ports, host
+        self._programs = {path.stem: load_program(path) for path in sorted(folder.glob("*.job"))}
+        self._statement_s = statement_s
+        self._jobs: dict[str, asyncio.Task[None]] = {}
+        self.tasks: dict[str, Task] = {}
+        self._power_on()
+
+    def _power_on(self) -> None:
+        self.memory = Memory(self._input)
+        self.motions = Motions(self._arm, self._clock, self._panel)
+        self._shared = Shared(
+            memory=self.memory,
+            motions=self.motions,
+            clock=self._clock,
+            route=lambda _, port: (self._host, self._ports.get(_JOB_PORTS[port], 1)),
+            socket=lambda: JobSocket(self.faults),
+            start=self._start_background,
+            frozen=lambda: self.faults.active("frozen_stat") is not None,
+            statement_s=self._statement_s,
+        )
+
+    def start(self) -> None:
+        """Switch on and start the main job."""
+        self._jobs["supervision"] = asyncio.create_task(self._supervise())
+        self._begin(MAIN, background=False)
+
+    async def stop(self) -> None:
+        """End all jobs and drop their connections. Idempotent."""
+        jobs, self._jobs = self._jobs, {}
+        for job in jobs.values():
+            job.cancel()
+        await asyncio.gather(*jobs.values(), return_exceptions=True)
+
+    async def reboot(self) -> None:
+        """Switch off and on: variables are kept by no job, joints stay."""
+        self._arm.stop(self._clock(), latency_s=0.0)
+        await self.stop()
+        self._power_on()
+        self.start()
+
+    def acknowledge(self) -> None:
+        """Somebody at the pendant resets the alarm and starts the main job again."""
+        self.alarm = ""
+        self._begin(MAIN, background=False)
+
+    def moving(self) -> bool:
+        """The arm moves."""
+        return self.motions.moving()
+
+    def _panel(self) -> Panel:
+        return Panel(self.faults, self._arm.by_hand)
+
+    def _start_background(self, name: str) -> None:
+        if name not in self._jobs or self._jobs[name].done():
+            self._begin(name, background=True)
+
+    def _begin(self, name: str, *, background: bool) -> None:
+        task = self.tasks[name] = Task(self._programs[name], self._shared, background)
+        self._jobs[name] = asyncio.create_task(self._run(task))
+
+    async def _run(self, task: Task) -> None:
+        try:
+            await task.run()
+        except JobError as error:
+            _log.warning("%s", error)
+            self.alarm = str(error)
+
+    async def _supervise(self) -> None:
+        while True:
+            if self.faults.active("cut"):
+                for task in self.tasks.values():
+                    for connection in task.sockets.values():
+                        connection.cut()
+            self.motions.supervise()
+            await asyncio.sleep(_TICK_S)
+
+    def _input(self, family: str, index: int) -> int:
+        panel = self._panel()
+        signals = {
+            ("DI", 1): panel.emergency_stop,
+            ("DI", 2): panel.drives,
+            ("DI", 3): panel.mode == "REM",
+            ("DI", 4): panel.mode == "AUT",
+            ("DI", 5): self.motions.moving(),
+            ("DI", _PERMIT_LOOP): self._permit(),
+            ("GIH", 1): 4100 if self.alarm else panel.error_code,
+            ("GIB", 2): 0 if self.faults.active("override_zero") else 100,
+        }
+        if (family, index) == ("GIB", 1):
+            bits = (int(signals["DI", place]) << (place - 1) for place in range(1, 6))
+            return sum(bits)
+        if (family, index) not in signals:
+            raise JobError(f"nothing is wired to {family}[{index}]")
+        return int(signals[family, index])
+
+    def _permit(self) -> bool:
+        outputs = self.memory.outputs
+        contacts = outputs["DO", _PERMIT], outputs["DO", _GUARD_PERMIT]
+        return self.contact_closed and all(contacts)

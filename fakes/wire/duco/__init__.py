@@ -1,0 +1,1 @@
+"""Wire fakes of the controllers of SIASUN's collaborative arms."""

@@ -1,0 +1,112 @@
+"""The contracts of robot, stream and stop channel on the driver of collaborative arms."""
+
+from collections.abc import AsyncIterator, Iterator
+from contextlib import AsyncExitStack
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.interfaces.stop_channel import StopChannel
+from drivers.robot.siasun_rpc.driver import SiasunRpcRobot
+from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
+from tests.contracts.loop_thread import LoopThread
+from tests.contracts.robot import RobotBench, RobotContract
+from tests.contracts.stop_channel import StopBench, StopChannelContract
+from tests.contracts.streaming_robot import StreamingBench, StreamingRobotContract
+from tests.wire.duco_rig import READY_DEG, DucoRig, duco_rig
+
+
+class RpcBench(RobotBench):
+    robot: SiasunRpcRobot
+    outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
+
+    def __init__(self, rig: DucoRig) -> None:
+        self.rig = rig
+        self.robot = rig.robot
+        self.max_speed_m_s = rig.settings.max_speed_mm_s / 1000
+
+    def commands(self) -> int:
+        return self.rig.logic.motions
+
+    def flange(self) -> RigidTransform:
+        return self.rig.arm.encoder_pose(self.rig.logic.clock())
+
+    def moving(self) -> bool:
+        return self.rig.logic.moving()
+
+    def freeze(self) -> None:
+        self.rig.logic.faults.inject("silent")
+
+    def cut(self) -> None:
+        self.rig.reset()
+
+
+class RpcStreamingBench(RpcBench, StreamingBench):
+    robot: SiasunRpcRobot
+
+    def lose_setpoints(self, count: int) -> None:
+        if count:
+            self.rig.logic.faults.inject("servo_lost", count=count)
+        else:
+            self.rig.logic.faults.clear("servo_lost")
+
+    def repeat_setpoint(self) -> None:
+        # A call over TCP does not arrive twice. What is left of it is that a tick has no answer in
+        # time, which is the same as a setpoint that comes late.
+        self.delay_setpoint()
+
+    def delay_setpoint(self) -> None:
+        self.rig.logic.faults.inject("servo_late", count=1, delay_s=0.03)
+
+    def silence_ticks(self) -> None:
+        self.rig.logic.faults.inject("motion_silent")
+
+
+class TestSiasunRpcRobot(RobotContract):
+    driver = SiasunRpcRobot
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[RobotBench]:
+        async with duco_rig() as rig:
+            yield RpcBench(rig)
+
+
+class TestSiasunRpcStream(StreamingRobotContract):
+    driver = SiasunRpcRobot
+
+    @pytest.fixture
+    async def bench(self) -> AsyncIterator[StreamingBench]:
+        async with duco_rig() as rig:
+            yield RpcStreamingBench(rig)
+
+
+class RpcStopBench(StopBench):
+    def __init__(self, thread: LoopThread, rig: DucoRig) -> None:
+        self._thread = thread
+        self._rig = rig
+        self.channel: StopChannel = SiasunRpcStopChannel(rig.guard)
+
+    def start_motion(self) -> None:
+        target_rad = np.radians([30.0, *READY_DEG[1:]]).tolist()
+        self._thread.call(lambda: self._rig.logic.move_joint(target_rad, 10.0))
+
+    def moving(self) -> bool:
+        return self._thread.call(self._rig.logic.moving)
+
+    def cut(self) -> None:
+        self._thread.call(self._rig.reset)
+
+
+class TestSiasunRpcStopChannel(StopChannelContract):
+    driver = SiasunRpcStopChannel
+
+    @pytest.fixture
+    def bench(self) -> Iterator[StopBench]:
+        with LoopThread() as thread:
+            stack = AsyncExitStack()
+            rig = thread.run(stack.enter_async_context(duco_rig()))
+            bench = RpcStopBench(thread, rig)
+            yield bench
+            bench.channel.close()
+            thread.run(stack.aclose())
