@@ -96,7 +96,7 @@ def numbers(values: Any, shape: tuple[int | None, ...], what: str) -> Array:
     """
     try:
         array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(what) from error
     # The shape is tested here and not left to the solver, whose error would name no key of the
     # file.

@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 
+_ROUNDING = 1e-3
 _NOT_A_POSE = "a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C"
 _WRITTEN_UNITS = np.array([MM] * 3 + [np.pi / 180] * 3)
 
@@ -49,17 +50,29 @@ def matrix_mm_to_pose(values: Any) -> RigidTransform:
     """A 4x4 matrix in mm, or X, Y, Z, A, B, C in mm and degrees; raises ``ValueError``."""
     try:
         array = np.asarray(values, dtype=float)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(_NOT_A_POSE) from error
     if array.shape == (6,):
         return pose_from_xyzabc(array)
     if array.shape != (4, 4) or not np.isfinite(array).all():
         raise ValueError(_NOT_A_POSE)
     rotation = array[:3, :3]
-    # Files from other programs have few decimals, so the tolerance is wide; ``RigidTransform``
-    # makes the matrix orthogonal. A reflection would pass the first test.
-    if np.abs(rotation @ rotation.T - np.eye(3)).max() > 1e-3 or np.linalg.det(rotation) < 0:
+    if not _is_rotation(rotation):
         raise ValueError("the rotation part of a pose is not a rotation")
     matrix = array.copy()
     matrix[:3, 3] *= MM
     return RigidTransform.from_matrix(matrix)
+
+
+def _is_rotation(matrix: Array) -> bool:
+    """Whether a 3x3 matrix is near a rotation.
+
+    Files from other programs have few decimals, so the tolerance is wide; ``RigidTransform`` makes
+    the matrix orthogonal.
+    """
+    # First of all no element is so large that its square overflows; at last no reflection.
+    return bool(
+        np.abs(matrix).max() < 1.0 + _ROUNDING
+        and np.abs(matrix @ matrix.T - np.eye(3)).max() <= _ROUNDING
+        and np.linalg.det(matrix) > 0
+    )

@@ -7,7 +7,8 @@ PluggingError
 ├── PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce,
 │   PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
 ├── ModuleMissing, ModuleMisplaced, WrongModuleMass, ModuleInGripper     580–583  the module
-└── PlugNotHeld, MovedOnRelease                                          584–585  after the seat
+├── PlugNotHeld, MovedOnRelease                                          584–585  after the seat
+└── GrippedOffTwice                                                      586      the grip
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -212,3 +213,12 @@ class MovedOnRelease(PluggingError):
     text = "Module moved when it was released"
     cause = "Strain between gripper and socket, a finger that clings, or a plug that came out."
     remedy = "Put the module into quarantine; check the jaws; teach the plug again."
+
+
+class GrippedOffTwice(PluggingError):
+    """The plug is beyond the range of the grip, also after it was put back and gripped again."""
+
+    number = 586
+    text = "Module was gripped off its place twice"
+    cause = "A connector off on its housing, worn or dirty jaws, or a moved camera I."
+    remedy = "Take the module out by hand and put it into quarantine; check jaws and tray."

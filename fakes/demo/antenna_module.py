@@ -36,6 +36,7 @@ class AntennaModuleDemo(Demo):
         20: "find module",
         30: "pick",
         40: "inspect plug",
+        45: "grip again",
         50: "locate socket",
         60: "plan",
         70: "stand-off",

@@ -50,6 +50,7 @@ def test_a_module_is_plugged(antenna: OwnCell) -> None:
         ("world:empty_tray", "F580", "absent"),
         ("world:turned", "F581", "tray"),
         ("world:bent_pin", "F473", "gripper"),
+        ("world:grip_off", "F586", "gripper"),
     ],
 )
 def test_a_module_that_cannot_be_plugged(
@@ -77,3 +78,17 @@ def test_marks_that_have_moved_are_named_before_anything_is_picked(antenna: OwnC
     assert [entry["number"] for entry in daemon.log if entry.get("event") == "fault"] == [647]
     (lost,) = (e for e in daemon.log if e.get("event") == "calibrations invalidated")
     assert lost["items"] == ["reference", "plug_correction_1"]
+
+
+def test_a_module_that_was_gripped_badly_is_gripped_again_and_plugged(antenna: OwnCell) -> None:
+    antenna.fake(seed=2).ready()
+    daemon = antenna.daemon()
+    daemon.ready()
+    with antenna.control() as control:
+        control.request("inject", device="world", name="grip_off", count=1, x_mm=2.5)
+    plc = antenna.plc("--recipe", "1", "--serial", "MOD-0002")
+    assert plc.end(300) == 0, plc.stdout
+    assert '"step_number": 45' in plc.stdout
+    with antenna.control() as control:
+        assert control.request("truth")["truth"]["module"] == "socket"
+    assert [entry for entry in daemon.log if entry.get("event") == "fault"] == []

@@ -51,7 +51,7 @@ def test_the_daemon_is_there_before_its_devices(own: OwnCell) -> None:
         pytest.param(
             "force", "silent", ("F205", "force sensor", "no frame"), marks=pytest.mark.long
         ),
-        ("main", "wrong_version", ("F204", "SR500A", "SJL/2")),
+        ("main", "wrong_version", ("F204", "SR500A", "SJL/9")),
         pytest.param("tracker", "silent", ("F205", "tracker"), marks=pytest.mark.long),
     ],
 )

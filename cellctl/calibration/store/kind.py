@@ -80,7 +80,7 @@ class CalibrationKind(Generic[T]):
         """The parsed record; raises ``CalibrationRecordInvalid`` when it cannot be parsed."""
         try:
             return self.parse(record)
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, ValueError, OverflowError) as error:
             raise CalibrationRecordInvalid(f"{self.name}: {error!r}") from error
 
 

@@ -30,7 +30,7 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
     PlugCell,
 )
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.taught import MadeWith, PlugCorrection
 from cellctl.processes.antenna_module.chain.taught_reference import (
     ReferenceMadeWith,
     TaughtReference,
@@ -75,7 +75,8 @@ async def read_facts(
     """Read and check everything; ``kinds`` are the calibrations that count in the run.
 
     ``teaching``: correction and reference are not needed, one of them is about to be made. Raises
-    the faults of calibrations and drawings, and ``SpeedOverridden``.
+    the faults of calibrations and drawings, ``CalibrationsDoNotBelongTogether``, and
+    ``SpeedOverridden``.
     """
     require_full_speed(cell.arm.robot)
     kinds = [kind.for_recipe(recipe.id) for kind in kinds]
@@ -87,10 +88,13 @@ async def read_facts(
     correction = snapshot.find(kind) if scheme.taught else None
     if scheme.taught and correction is None and not teaching:
         raise CalibrationMissing(f"{kind.name}: the scheme {scheme.name} needs taught plugs")
-    plug_cell = plug_cell_of(snapshot, cell.settings, recipe)
-    plate = cell.settings.reference
     drawings = read_drawings(recipe, cell.cell.folder)
-    gripper = drawings.gripper.name
+    plug_cell = plug_cell_of(snapshot, cell.settings, recipe, drawings)
+    plate = cell.settings.reference
+    if correction is not None and not teaching:
+        # Now and not only when it is planned: by then a module hangs in the gripper.
+        plug, socket = drawings.plug.name, drawings.socket.name
+        correction.require_made_with(MadeWith.of(scheme.name, plug_cell, plug, socket))
     return PluggingFacts(
         cell=cell,
         recipe=recipe,
@@ -102,21 +106,24 @@ async def read_facts(
         correction=correction,
         drawings=drawings,
         plate=None if plate is None else read_plate(plate, cell.cell.folder),
-        reference=None if plate is None or teaching else _reference(snapshot, plug_cell, gripper),
+        reference=None if plate is None or teaching else _reference(snapshot, plug_cell),
     )
 
 
-def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell, gripper: str) -> TaughtReference:
+def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell) -> TaughtReference:
     """Raises ``CalibrationMissing`` or ``CalibrationsDoNotBelongTogether``."""
     reference = snapshot.find(REFERENCE)
     if reference is None:
         raise CalibrationMissing(f"{REFERENCE.name}: none that is valid, procedure 205 teaches it")
-    reference.require_made_with(ReferenceMadeWith.of(plug_cell, gripper))
+    reference.require_made_with(ReferenceMadeWith.of(plug_cell))
     return reference
 
 
 def plug_cell_of(
-    snapshot: CalibrationSnapshot, settings: AntennaSettings, recipe: AntennaRecipe
+    snapshot: CalibrationSnapshot,
+    settings: AntennaSettings,
+    recipe: AntennaRecipe,
+    drawings: Drawings,
 ) -> PlugCell:
     """What the chain works with; raises ``CalibrationsDoNotBelongTogether``."""
     arm, cameras = settings.arm, settings.cameras
@@ -134,7 +141,7 @@ def plug_cell_of(
             cameras.drift_mm * MM,
             float(np.radians(cameras.drift_deg)),
         ),
-        gripper=recipe.gripper_marks,
+        gripper=drawings.gripper.name,
         flange_T_marks=pose_from_xyzabc(recipe.flange_T_marks),
     )
 

@@ -8,6 +8,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.errors.plugging import (
+    GrippedOffTwice,
     MovedOnRelease,
     PlugBentPin,
     PlugEarlyContact,
@@ -53,6 +54,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
             PlugBentPin,
             PlugNotHeld,
             MovedOnRelease,
+            GrippedOffTwice,
         }
     )
 

@@ -27,8 +27,8 @@ class ModuleFound(GripperEmpty):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Picked(GripperEmpty):
-    """The module hangs in the gripper, clear of the tray."""
+class ModuleHeld(GripperEmpty):
+    """The module hangs in the gripper, clear of everything."""
 
     module_kg: float
     hanging_n: Array
@@ -36,7 +36,15 @@ class Picked(GripperEmpty):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlugInspected(Picked):
+class Picked(ModuleHeld):
+    """The module was taken off its tray, and could be put back."""
+
+    base_T_grip: RigidTransform
+    """Where the flange was when the gripper closed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlugInspected(ModuleHeld):
     """Camera II has seen plug and marks in one picture."""
 
     plug: PlugLook

@@ -1,13 +1,15 @@
 """Where the module is: on its tray, in the fingers, in the socket, left, or not there."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from fakes.faults import FaultBoard
 from fakes.scenes.antenna_bench.scenario import BenchGripper
-from fakes.world.frames import MM, Array, distance, from_written, stream
+from fakes.world.frames import MM, Array, displacement, distance, from_written, stream
 from fakes.world.gripper import ON_PART, OPEN_END, PneumaticJaws
 from fakes.world.truth import drawn_spread
 
@@ -28,7 +30,13 @@ class ModulePlace:
     """Where it is while nothing holds it."""
     flange_T_plug: RigidTransform
     """Where it is in the fingers while they hold it."""
+    faults: FaultBoard
     grips: int = 0
+    _cell_T_pocket: RigidTransform = field(init=False)
+    """Where the tray's pocket holds it."""
+
+    def __post_init__(self) -> None:
+        self._cell_T_pocket = self.cell_T_plug
 
     def follow(
         self,
@@ -48,8 +56,7 @@ class ModulePlace:
             return
         held = self.place == "gripper"
         if held and jaws.last_position < ON_PART - _FREE:
-            self.cell_T_plug = rests_at(RigidTransform.from_matrix(flange))
-            self.place = "socket" if in_socket else "left"
+            self._let_go(rests_at(RigidTransform.from_matrix(flange)), in_socket=in_socket)
         elif not held:
             cell_T_flange = RigidTransform.from_matrix(flange)
             between = self._between(cell_T_flange)
@@ -73,6 +80,17 @@ class ModulePlace:
             return cell_T_flange * self.flange_T_plug
         return self.cell_T_plug
 
+    def _let_go(self, cell_T_plug: RigidTransform, *, in_socket: bool) -> None:
+        """It stays in the socket, slides into the pocket of the tray, or hangs where it was left.
+
+        The pocket has chamfers as wide as the jaws open, so that it takes what they can take.
+        """
+        self.cell_T_plug, self.place = cell_T_plug, "left"
+        if in_socket:
+            self.place = "socket"
+        elif distance(cell_T_plug, self._cell_T_pocket)[0] < self.settings.grip_range_mm * MM:
+            self.cell_T_plug, self.place = self._cell_T_pocket, "tray"
+
     def _between(self, cell_T_flange: RigidTransform) -> bool:
         nominal = cell_T_flange * from_written(self.settings.flange_T_plug_mm_deg)
         away_m, _ = distance(nominal, self.cell_T_plug)
@@ -82,5 +100,9 @@ class ModulePlace:
         """The fingers take the module as it lies, and it settles in their play."""
         self.grips += 1
         play = drawn_spread(stream(self.seed, "grip", self.grips), self.settings.play)
+        fault = self.faults.use("grip_off")
+        if fault is not None:
+            off_m = np.array([fault.number("x_mm", 2.5), fault.number("y_mm", 0.0), 0.0]) * MM
+            play *= displacement(off_m, [0.0, 0.0, np.deg2rad(fault.number("yaw_deg", 0.0))])
         self.flange_T_plug = cell_T_flange.inv() * self.cell_T_plug * play
         self.place = "gripper"

@@ -25,6 +25,7 @@ FAULTS: Mapping[str, str] = {
     "upside_down": "the next modules lie on their tops",
     "turned": "the next modules lie half a turn round",
     "empty_tray": "no module comes with the next panels",
+    "grip_off": "the module settles in the fingers off its place by `x_mm`, `y_mm`, `yaw_deg`",
     **SHIFT_FAULTS,
 }
 _TOP_THICKNESS_M = 6e-3

@@ -76,7 +76,7 @@ class AntennaBench(World[BenchScenario]):
         place: Place = "absent" if self.faults.active("empty_tray") else "tray"
         self.module = ModulePlace(
             gripper, self.seed + self.loads, place, self.parts.cell_T_tray_plug,
-            from_written(gripper.flange_T_plug_mm_deg),
+            from_written(gripper.flange_T_plug_mm_deg), self.faults,
         )  # fmt: skip
         self.mating = PlugAtSocket(self.parts.pair, self.mount)
         return {"load": self.loads}

@@ -14,7 +14,11 @@ from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult, Setup
 from cellctl.cli.offline.calibrate import app
-from cellctl.errors.calibration import CalibrationCamerasSwapped, WrongBoard
+from cellctl.errors.calibration import (
+    CalibrationCamerasSwapped,
+    RobotCameraMismatch,
+    WrongBoard,
+)
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.vision.camera.lens import project
@@ -97,6 +101,26 @@ def test_setup_option_overrides_the_file(tmp_path: Path) -> None:
     result = call("hand-eye", "--in", hand_eye_file(tmp_path), "--setup", "eye-to-hand")
     assert result.exit_code == 1
     assert "the data fit eye-in-hand" in str(result.exception)
+
+
+@pytest.mark.parametrize("missing", [0, 5, 10])
+@pytest.mark.parametrize("setup", list(Setup))
+def test_images_paired_with_the_poses_of_their_neighbours(
+    tmp_path: Path, setup: Setup, missing: int
+) -> None:
+    """A board that was not found in one image, and all later ones written one line too early."""
+    poses = hand_eye_case.make_poses(1, setup)
+    seen = [pose.camera_T_board.pose for pose in poses]
+    del seen[missing]
+    entries = [
+        {"base_T_flange": written(pose.base_T_flange), "camera_T_board": written(board)}
+        for pose, board in zip(poses[:-1], seen, strict=True)
+    ]
+    out = tmp_path / "he.json"
+    data = {"setup": setup.value, "poses": entries}
+    result = call("hand-eye", "--in", save(tmp_path / "in.json", data), "--out", out)
+    assert isinstance(result.exception, RobotCameraMismatch)
+    assert not out.exists()
 
 
 def stops(axis: list[AxisStop]) -> list[dict[str, Any]]:

@@ -70,6 +70,6 @@ class PlugCell:
     arm: ArmFigures
     cameras: CameraFigures
     gripper: str
-    """Name of the gripper's drawing."""
+    """Name in the drawing of the gripper's marks, wherever its file lies."""
     flange_T_marks: RigidTransform = field(default_factory=RigidTransform.identity)
     """Of the gripper's marks by its drawing; what it is wrong by is taught."""

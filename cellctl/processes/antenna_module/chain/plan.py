@@ -108,6 +108,7 @@ def plan_plug(
     tolerance = tolerance or PlugTolerance()
     require_fresh(looks, now_s, tolerance.max_age_s)
     plan = compose_plan(looks, cell, scheme, contacts, correction)
+    # Written so that a prediction that is not a number is refused too.
     if not plan.worst.p99_m <= tolerance.worst_contact_m:
         largest = max(plan.terms_m, key=lambda term: plan.terms_m[term])
         raise PlugUncertain(

@@ -1,7 +1,7 @@
 """The correction from taught plugs: one pose per slot that turns constant errors into nothing."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -68,6 +68,9 @@ class TaughtSlot:
     """Standard deviation of single plugs, per axis in the plane."""
     scatter_rad: float
     """The same of their yaw."""
+    from_mean: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    """x and y (m) and yaw (rad) of the single plugs from their mean, shape (n, 3); for the picture,
+    not in the record."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,6 +94,8 @@ class PlugCorrection:
 
     def slot_for(self, base_T_socket: RigidTransform) -> tuple[TaughtSlot, float]:
         """The nearest slot and its distance in m; raises ``OutOfTaughtRange``."""
+        # Errors of cameras and hand-eye cancel at the place of the teaching, and less and less away
+        # from it: hence the nearest slot, and a range.
         distances = [_distance(slot.base_T_socket, base_T_socket) for slot in self.slots]
         nearest = int(np.argmin(distances))
         if distances[nearest] > self.range_m:

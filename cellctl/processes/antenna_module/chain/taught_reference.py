@@ -26,9 +26,9 @@ class ReferenceMadeWith:
     """Name of the drawing of its marks, wherever its file lies."""
 
     @classmethod
-    def of(cls, cell: PlugCell, gripper: str) -> "ReferenceMadeWith":
-        """What a check uses, with the name of the gripper's drawing."""
-        return cls(cell.cam1.id, cell.cam2.id, gripper)
+    def of(cls, cell: PlugCell) -> "ReferenceMadeWith":
+        """What a check uses."""
+        return cls(cell.cam1.id, cell.cam2.id, cell.gripper)
 
     def to_record(self) -> dict[str, str]:
         """Plain data."""

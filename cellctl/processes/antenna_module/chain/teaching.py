@@ -102,7 +102,9 @@ def _slot(
     spare = len(each) - 1
     scatter_m = float(np.sqrt((deltas[:, :2] ** 2).sum() / (2 * spare)))
     scatter_rad = float(np.sqrt((deltas[:, 5] ** 2).sum() / spare))
-    return TaughtSlot(name, _mean(sockets), mean, len(each), scatter_m, scatter_rad)
+    return TaughtSlot(
+        name, _mean(sockets), mean, len(each), scatter_m, scatter_rad, deltas[:, [0, 1, 5]]
+    )
 
 
 def _deltas(mean: UncertainPose, each: Sequence[UncertainPose]) -> Array:

@@ -13,6 +13,7 @@ import typer
 
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.input_file import read_input
+from cellctl.calibration.output_file import write_file
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.plugging import InsertionCurveInvalid
@@ -116,7 +117,11 @@ def judge_insertion_from_file(
         raise typer.Exit(NOT_GOOD)
 
 
-def calibrate_plug(file: InFile, out: OutFile = None) -> None:
+def calibrate_plug(
+    file: InFile,
+    out: OutFile = None,
+    picture: Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")] = None,
+) -> None:
     """The correction from taught plugs: what all constant errors of a cell come to at a slot."""
     data = read_cell_file(file, TeachFile)
     correction = teach_plug(
@@ -130,6 +135,11 @@ def calibrate_plug(file: InFile, out: OutFile = None) -> None:
         _say(f"slot {slot.name}: {x:.4f}, {y:.4f}, {z:.4f} mm from {slot.plugs} plugs")
     _show_checks(correction.checks)
     _write(out, correction.to_record())
+    if picture is not None:
+        # Here, because every command of `cellctl` loads this module and few of them draw.
+        from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
+
+        write_file(picture, taught_picture(correction))
 
 
 def calibrate_turn(file: InFile, out: OutFile = None) -> None:
@@ -154,7 +164,7 @@ def _correction(file: Path, record: Mapping[str, Any] | None) -> PlugCorrection 
         return None
     try:
         return PlugCorrection.from_record(record)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise CalibrationRecordInvalid(f"{file}: plug correction: {error!r}") from error
 
 

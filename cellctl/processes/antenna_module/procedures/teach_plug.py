@@ -16,11 +16,13 @@ from cellctl.errors.plugging import ModuleMissing
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
+from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.facts import read_facts
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.start import move_to_start
 from cellctl.processes.antenna_module.state import GripperEmpty, SocketLocated
@@ -63,12 +65,14 @@ async def teach_plug_on_cell(
         run = PluggingRun.of(facts, services, opened, prefix=f"plug-{count}/", keep_images=False)
         plugs.append(await _one_plug(run, count))
     correction = teach_plug({SLOT: plugs}, facts.plug_cell, facts.scheme)
+    picture = await cell.workers.run(taught_picture, correction)
+    await recorder.artefact(keys.TAUGHT_PICTURE, picture, "image/png")
     return ProcedureOutcome(
         kind=PLUG_CORRECTION.for_recipe(recipe.id),
         record=correction.to_record(),
         passed=correction.passed,
         warnings=(),
-        picture_png=None,
+        picture_png=picture,
         serial_number="",
     )
 

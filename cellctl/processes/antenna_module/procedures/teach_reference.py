@@ -50,7 +50,7 @@ async def teach_reference_on_cell(
     await Mover(cell).to_taught(HOME)
     arm = facts.plug_cell.arm
     taught = TaughtReference(
-        ReferenceMadeWith.of(facts.plug_cell, facts.drawings.gripper.name),
+        ReferenceMadeWith.of(facts.plug_cell),
         looks.reading(arm),
         looks.checks(arm),
     )

@@ -33,9 +33,9 @@ _PICTURE_WIDTH, _PICTURE_HEIGHT = 900, 340
 
 
 def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
-    """Headline figures, both connectors, the plan, the insertion."""
+    """Headline figures, both connectors, the plan, the insertion; of a teaching its scatter."""
     sections = (
-        ReportSection("Connectors", tuple(_pictures(record, read))),
+        ReportSection("Connectors", (*_grips(record), *_pictures(record, read))),
         ReportSection("Plan", tuple(_plan(record.document(keys.PLAN)))),
         ReportSection("Insertion", tuple(_insertion(record, read))),
     )
@@ -65,10 +65,18 @@ def _bound(found: Figure, factor: float, unit: str) -> str:
     return "" if lower is None else f"at least {lower} {unit}"
 
 
+def _grips(record: RunRecord) -> Iterator[ReportBlock]:
+    regrip = record.document(keys.REGRIP)
+    if regrip:
+        yield Heading("Put back and gripped again", warning=True)
+        yield FactList((("the plug after the first grip", str(regrip["first_grip"])),))
+
+
 def _pictures(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
     captions = {
         keys.PLUG_PICTURE: "Camera II: the plug and the marks on the gripper.",
         keys.SOCKET_PICTURE: "Camera I: the socket.",
+        keys.TAUGHT_PICTURE: "Taught plugs beside their mean, and what they may scatter by.",
     }
     for artefact in record.artefacts:
         if artefact.name in captions:

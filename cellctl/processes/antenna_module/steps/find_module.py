@@ -28,15 +28,19 @@ async def find_module(ready: GripperEmpty) -> ModuleFound:
 
     Raises ``ModuleMissing`` or ``ModuleMisplaced``.
     """
-    run = ready.run
+    return await find_on_tray(ready.run, "tray")
+
+
+async def find_on_tray(run: PluggingRun, images: str) -> ModuleFound:
+    """The step itself; the names of its raw images begin with ``images``."""
     await run.mover.to_taught(TRAY_LOOK)
-    first = await _look(run, "tray-1")
+    first = await _look(run, f"{images}-1")
     drawn = nominal(run.recipe.base_T_tray_plug)
     # Seen in the middle of the image, errors of lens and height count least.
     x_m, y_m, _ = (first.translation - drawn.translation).tolist()
     here = run.cell.arm.robot.state().base_T_flange
     await run.mover.to(shifted(here, x_m, y_m))
-    base_T_connector = await _look(run, "tray-2")
+    base_T_connector = await _look(run, f"{images}-2")
     await run.recorder.pose(keys.TRAY, keys.MEASURED, "base", "plug", base_T_connector)
     return ModuleFound(run, base_T_connector)
 

@@ -5,6 +5,8 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.errors.connector import ConnectorMisplaced
+from cellctl.errors.plugging import GrippedOffTwice
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import PlugLook
@@ -16,6 +18,7 @@ from cellctl.processes.antenna_module.record.pictures import record_picture
 from cellctl.processes.antenna_module.roles import INSPECT_PLUG
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Picked, PlugInspected
+from cellctl.processes.antenna_module.steps.grip_again import grip_again
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
     ConnectorMeasurement,
@@ -26,14 +29,19 @@ from cellctl.records.figures import Limit
 
 
 async def inspect_plug(picked: Picked) -> PlugInspected:
-    """Show the plug to camera II and measure it.
+    """Show the plug to camera II and measure it; what is gripped off its place is gripped again.
 
-    Raises ``ContactMissing``, ``ContactBent``, ``ContactHidden``, ``ConnectorMisplaced`` for a bad
-    grip, and the other faults of ``measure_connector``.
+    Raises ``GrippedOffTwice``, ``ContactMissing``, ``ContactBent``, ``ContactHidden``, and the
+    other faults of ``measure_connector``.
     """
     run = picked.run
-    await run.mover.to_taught(INSPECT_PLUG)
-    seen = await _look(run)
+    try:
+        seen, regrips = await _look(run, "plug"), 0
+    except ConnectorMisplaced as first:
+        # Nothing else asks for a second grip: a force fault says that the module has met something.
+        picked = await grip_again(picked, first)
+        seen, regrips = await _look_again(run, first), 1
+    await run.recorder.figure(keys.REGRIPS, regrips, "")
     for frame in seen.frames:
         require_sound(frame)
     plug = combined(tuple(frame.camera_T_connector for frame in seen.frames))
@@ -54,7 +62,15 @@ async def inspect_plug(picked: Picked) -> PlugInspected:
     )
 
 
-async def _look(run: PluggingRun) -> Seen[ConnectorMeasurement]:
+async def _look_again(run: PluggingRun, first: ConnectorMisplaced) -> Seen[ConnectorMeasurement]:
+    try:
+        return await _look(run, "plug-again")
+    except ConnectorMisplaced as second:
+        raise GrippedOffTwice(f"first {first.detail}; then {second.detail}") from second
+
+
+async def _look(run: PluggingRun, images: str) -> Seen[ConnectorMeasurement]:
+    await run.mover.to_taught(INSPECT_PLUG)
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     place = Place(
         pose=run.recipe.flange_T_plug,
@@ -71,7 +87,7 @@ async def _look(run: PluggingRun) -> Seen[ConnectorMeasurement]:
         connector=run.drawings.plug,
         marks=run.drawings.gripper,
     )
-    seen = await run.eyes.look("plug", run.cell.camera_2, measure)
+    seen = await run.eyes.look(images, run.cell.camera_2, measure)
     await record_picture(run, keys.PLUG_PICTURE, seen)
     return seen
 

@@ -36,7 +36,7 @@ async def pick(found: ModuleFound) -> Picked:
     hanging_n = await _force_n(run)
     module_kg = float(np.linalg.norm(hanging_n - empty_n)) / _G_M_S2
     await _require_mass(run, module_kg)
-    return Picked(run, module_kg, hanging_n)
+    return Picked(run, module_kg, hanging_n, base_T_grip=grip)
 
 
 async def _force_n(run: PluggingRun) -> Array:

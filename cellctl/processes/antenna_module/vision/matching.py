@@ -74,6 +74,8 @@ def _starts(drawing: Array, spots: Array, reach: float) -> list[tuple[float, Arr
             starts.append((yaw, shift))
             counts.append(_count(drawing @ rotation(yaw).T + shift, spots, reach))
     order = np.argsort(-np.array(counts), kind="stable")
+    # Dirt makes many spots, and their pairs grow with the square. The true start is among the
+    # first by its count, since dirt agrees with a drawing in few places.
     return [starts[index] for index in order[:200]]
 
 
@@ -127,6 +129,7 @@ def _assign(placed: Array, spots: Array, reach: float) -> NDArray[np.intp]:
     spot[nearest > reach] = -1
     for k in np.unique(spot[spot >= 0]):
         rivals = np.flatnonzero(spot == k)
+        # The loser stays without a spot for this round: it gets its own once the fit has moved.
         spot[rivals[nearest[rivals] > nearest[rivals].min()]] = -1
     return spot
 

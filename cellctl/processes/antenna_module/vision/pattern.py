@@ -132,6 +132,8 @@ def fit_pattern(
     radii = [c.radius_m for c in coarse if c is not None and c.support > _SUPPORT]
     if len(radii) < 3:
         return None
+    # All contacts are made on one machine and lit by one ring. The radius that they show here is a
+    # better guess for each of them than the drawing, which knows neither light nor blur.
     alike_m = float(np.median(radii))
     fine = [
         _circle(
@@ -173,6 +175,7 @@ def surplus(
     places = (candidates.spots_m - best.shift_m) @ turn
     inside = np.all(np.abs(places) < np.array(outline_m) / 2.0, axis=1)
     inside[best.spot[best.spot >= 0]] = False
+    # Scratches and reflections are weaker than contacts; a contact too many is as strong.
     matched = candidates.spots.contrast[best.spot[best.spot >= 0]]
     inside &= candidates.spots.contrast > 0.5 * float(np.median(matched))
     count = 0
@@ -198,6 +201,8 @@ def _circle(
     """The rim near a start, its edges searched anew round the centre that was found."""
     px_m = plane.m_per_px(start)
     circle: Circle | None = None
+    # The search looks along rays from the centre: with a start that is off, it meets the rim
+    # aslant and weights its near side. A second round, from the centre found, is free of that.
     for _ in range(2):
         edges = rim_edges(image, plane, start, radius_m, share=share, bright=bright)
         if edges is None:

@@ -12,7 +12,7 @@ from fakes.scenes.antenna_bench.scene import AntennaBench
 from fakes.world.arm import inverse
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.connector.scene import SceneConnector, SceneMarks
-from fakes.world.frames import from_written
+from fakes.world.frames import distance, from_written
 from fakes.world.scene import ScenePlate
 from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at
 
@@ -102,6 +102,26 @@ def test_the_module_hangs_and_is_weighed(scenario: BenchScenario) -> None:
     assert hands.world.truth_report()["module"] == "gripper"
     # The sensor's z points down with the flange.
     assert hands.force_z() - empty_n == pytest.approx(scenario.module.mass_kg * G_M_S2, abs=0.1)
+
+
+def test_a_module_that_was_gripped_off_its_place_slides_back_into_its_pocket(
+    scenario: BenchScenario,
+) -> None:
+    world = bench_at(scenario, "above_tray", 3)
+    hands, pocket = Hands(world), world.parts.cell_T_tray_plug
+    nominal = from_written(scenario.gripper.flange_T_plug_mm_deg)
+    world.faults.inject("grip_off", count=1, x_mm=2.0, yaw_deg=1.0)
+    hands.true_flange_to(hands.over_module())
+    hands.jaws(close=True)
+    assert world.truth_report()["module"] == "gripper"
+    away_m, _ = distance(nominal, world.module.flange_T_plug)
+    assert away_m == pytest.approx(2.0e-3, abs=0.1e-3)
+    hands.jaws(close=False)
+    assert world.truth_report()["module"] == "tray"
+    assert distance(world.module.cell_T_plug, pocket) == pytest.approx((0.0, 0.0), abs=1e-12)
+    hands.jaws(close=True)
+    away_m, _ = distance(nominal, world.module.flange_T_plug)
+    assert away_m < 0.3e-3
 
 
 def test_jaws_close_beyond_nothing(scenario: BenchScenario) -> None:

@@ -19,9 +19,7 @@ from tests.unit.processes.antenna_module.chain.reference_draws import ARM, drawn
 @pytest.fixture
 def taught() -> TaughtReference:
     looks = drawn_looks(12, np.random.default_rng(3))
-    return TaughtReference(
-        ReferenceMadeWith.of(cell(), "gripper"), looks.reading(ARM), looks.checks(ARM)
-    )
+    return TaughtReference(ReferenceMadeWith.of(cell()), looks.reading(ARM), looks.checks(ARM))
 
 
 def test_the_record_is_read_back(taught: TaughtReference) -> None:
@@ -47,7 +45,7 @@ def test_a_damaged_record_is_refused(taught: TaughtReference, damage: dict[str, 
 
 
 def test_it_does_not_compare_with_other_calibrations(taught: TaughtReference) -> None:
-    now = ReferenceMadeWith.of(cell(), "gripper")
+    now = ReferenceMadeWith.of(cell())
     taught.require_made_with(now)
     with pytest.raises(CalibrationsDoNotBelongTogether, match="cam1 hand-eye 1, now hand-eye 9"):
         taught.require_made_with(replace(now, cam1="hand-eye 9"))

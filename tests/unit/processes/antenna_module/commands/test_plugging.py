@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from cellctl.calibration.pose_record import pose_to_record
 from cellctl.errors import CellError
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.plug_calibration import TooFewTeachings, TurnInvalid
+from cellctl.errors.plug_calibration import TeachScatter, TooFewTeachings, TurnInvalid
 from cellctl.errors.plugging import (
     CalibrationsDoNotBelongTogether,
     InsertionCurveInvalid,
@@ -111,8 +111,13 @@ def teach_content() -> Json:
 def correction(tmp_path_factory: pytest.TempPathFactory) -> Json:
     folder = tmp_path_factory.mktemp("teach")
     out = folder / "correction.json"
-    result = run("plug", "--in", written(folder, teach_content()), "--out", str(out))
+    picture = folder / "correction.png"
+    result = run(
+        "plug", "--in", written(folder, teach_content()), "--out", str(out),
+        "--picture", str(picture),
+    )  # fmt: skip
     assert result.exit_code == 0, result.exception
+    assert picture.read_bytes().startswith(b"\x89PNG")
     content: Json = json.loads(out.read_text())
     return content
 
@@ -196,6 +201,10 @@ def wrong_connector(content: Json) -> None:
     content["looks"][0]["measurement"]["connector"] = "da-15"
 
 
+def wrong_socket(content: Json) -> None:
+    content["looks"][1]["measurement"]["connector"] = "da-15"
+
+
 def no_such_file(content: Json) -> None:
     content["correction"] = "nowhere.json"
 
@@ -215,6 +224,7 @@ def no_such_file(content: Json) -> None:
         (five_joints, FileInvalid),
         (unknown_scheme, FileInvalid),
         (wrong_connector, FileInvalid),
+        (wrong_socket, CalibrationsDoNotBelongTogether),
         (no_such_file, FileInvalid),
     ],
 )
@@ -225,6 +235,47 @@ def test_a_mistake_in_a_trial_is_refused_by_name(
     spoil(content)
     result = run("plan-plug", "--in", written(tmp_path, content), "--connector", DRAWING)
     assert isinstance(result.exception, fault), result.exception
+
+
+def exchanged_while_teaching(content: Json) -> None:
+    content["plugs"][2]["looks"][1]["measurement"]["camera_id"] = "camera 1, newer"
+
+
+def hand_eye_with_others(content: Json) -> None:
+    content["base_T_cam2"]["camera_id"] = "camera 2, newer"
+
+
+def two_connectors(content: Json) -> None:
+    content["plugs"][1]["looks"][0]["measurement"]["connector"] = "da-15"
+
+
+def looks_of_the_next_plug(content: Json) -> None:
+    """As if the poses of the plugged flange were one line off: grips differ from plug to plug."""
+    plugs = content["plugs"]
+    poses = [plug["plugged_base_T_flange"] for plug in plugs]
+    for plug, pose in zip(plugs, [*poses[1:], poses[0]], strict=True):
+        plug["plugged_base_T_flange"] = pose
+
+
+@pytest.mark.parametrize(
+    ("spoil", "fault", "words"),
+    [
+        (exchanged_while_teaching, CalibrationsDoNotBelongTogether, "camera I: measured with"),
+        (hand_eye_with_others, CalibrationsDoNotBelongTogether, "hand-eye made with camera 2, n"),
+        (two_connectors, CalibrationsDoNotBelongTogether, "different connectors"),
+        (looks_of_the_next_plug, TeachScatter, "farthest from the mean: plug"),
+    ],
+)
+def test_a_mistake_in_a_teaching_is_refused_by_name(
+    tmp_path: Path, spoil: Callable[[Json], None], fault: type[CellError], words: str
+) -> None:
+    content = json.loads(json.dumps(teach_content()))
+    spoil(content)
+    out = tmp_path / "correction.json"
+    result = run("plug", "--in", written(tmp_path, content), "--out", str(out))
+    assert isinstance(result.exception, fault), result.exception
+    assert words in str(result.exception)
+    assert not out.exists()
 
 
 def test_a_trial_without_a_drawing_is_refused(tmp_path: Path, correction: Json) -> None:

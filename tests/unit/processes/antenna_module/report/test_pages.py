@@ -69,6 +69,24 @@ def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:
     assert report.read_text(encoding="utf-8").count("data:image/png;base64") == 2
 
 
+def test_a_second_grip_is_told_with_what_was_wrong_with_the_first(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store)
+    store.add(run, Document(keys.REGRIP, {"first_grip": "2.51 mm from where it should be"}))
+    text = text_of(export_run(store, run, tmp_path, pages=pages))
+    assert "Put back and gripped again" in text
+    assert "2.51 mm from where it should be" in text
+
+
+def test_a_teaching_shows_its_scatter(store: RunStore, tmp_path: Path) -> None:
+    run = start(store)
+    store.add_artefact(run, keys.TAUGHT_PICTURE, png(), "image/png")
+    report = export_run(store, run, tmp_path, pages=pages)
+    assert "Taught plugs beside their mean" in text_of(report)
+    assert report.read_text(encoding="utf-8").count("data:image/png;base64") == 1
+
+
 def test_a_run_that_ended_before_its_plan(store: RunStore, tmp_path: Path) -> None:
     run = start(store)
     text = text_of(export_run(store, run, tmp_path, pages=pages)).lower()

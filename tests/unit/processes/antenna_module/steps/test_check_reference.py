@@ -61,7 +61,7 @@ class Rig:
         looks = drawn_looks(12, np.random.default_rng(1))
         plug_cell = cell()
         taught = TaughtReference(
-            ReferenceMadeWith.of(plug_cell, "gripper"),
+            ReferenceMadeWith.of(plug_cell),
             looks.reading(plug_cell.arm),
             looks.checks(plug_cell.arm),
         )

@@ -1,0 +1,92 @@
+"""`cellctl calibrate camera` from images, as a user would call it."""
+
+import json
+import shutil
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial.transform import RigidTransform, Rotation
+from typer.testing import CliRunner, Result
+
+from cellctl.cli.offline.calibrate import app
+from cellctl.errors.calibration import MixedImageSizes, PoorCoverage, TooFewViews, WrongBoard
+from cellctl.errors.config import FileInvalid
+from cellctl.errors.vision import ImageFileInvalid
+from cellctl.vision.camera.single_camera import read_single_camera
+from fakes.render import api
+from fakes.world.scene import CameraScene, LensTruth, MonoTruth, SceneChessboard
+
+SIZE, FOCAL_PX, DISTANCE_M = (640, 480), (1500.0, 1503.0), 0.25
+LENS = LensTruth(FOCAL_PX, (322.0, 238.0), (-0.08, 0.05, 2e-4, -1e-4, 0.0), 0.8, 1.0)
+SQUARE_MM = 8
+COUNT = 8
+
+
+def picture_of(number: int) -> NDArray[np.uint8]:
+    """The board anywhere before the camera, tilted to all sides."""
+    rng = np.random.default_rng(number)
+    shift_m = rng.uniform(-1, 1, 3) * (8e-3, 7e-3, 25e-3) + np.array([0.0, 0.0, DISTANCE_M])
+    tilt = 0.5 * np.array([np.cos(2.4 * number), np.sin(2.4 * number), rng.uniform(-0.6, 0.6)])
+    turn = Rotation.from_euler("x", np.pi) * Rotation.from_rotvec(tilt)
+    pose = RigidTransform.from_components(shift_m, turn)
+    size_m = (9 * SQUARE_MM * 1e-3, 6.5 * SQUARE_MM * 1e-3)
+    board = SceneChessboard(pose, (7, 4), SQUARE_MM * 1e-3, size_m, (1e-5, -2e-5), 1)
+    optics = MonoTruth(SIZE, LENS, colour=False)
+    (image,) = api.render_scene(CameraScene("cam", 0.0, optics, (board,), 1, number))
+    return image
+
+
+@pytest.fixture(scope="module")
+def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("camera")
+    for number in range(COUNT):
+        cv2.imwrite(str(folder / f"c-{number:02d}.png"), picture_of(number))
+    cv2.imwrite(str(folder / "c-empty.png"), np.full((SIZE[1], SIZE[0]), 90, np.uint8))
+    return folder
+
+
+def calibrate(images: str, out: Path, *more: object, board: str = "7x4") -> Result:
+    arguments = ("camera", "--images", images, "--board", board, "--square-mm", SQUARE_MM,
+                 "--out", out, *more)  # fmt: skip
+    return CliRunner().invoke(app, [str(one) for one in arguments])
+
+
+def test_a_camera_from_images(images: Path, tmp_path: Path) -> None:
+    out, picture = tmp_path / "cam.json", tmp_path / "cam.png"
+    result = calibrate(f"{images}/c-*.png", out, "--picture", picture)
+    assert result.exit_code == 0, result.output
+    assert "left out: c-empty" in result.output
+    camera = read_single_camera(out)
+    assert camera.image_size == SIZE
+    assert camera.model.camera_matrix[0, 0] == pytest.approx(FOCAL_PX[0], rel=4e-3)
+    record = json.loads(out.read_text())
+    assert record["id"] == camera.id
+    assert camera.id in result.output
+    assert (record["verdict"], len(record["views"])) == ("pass", COUNT)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_wrong_inputs_are_named_and_nothing_is_written(images: Path, tmp_path: Path) -> None:
+    out = tmp_path / "cam.json"
+    for number in range(8):
+        shutil.copy(images / "c-03.png", tmp_path / f"same-{number}.png")
+    (tmp_path / "text.png").write_text("no image")
+    # Small, because all sizes of boards are looked for in it.
+    small = cv2.resize(picture_of(0), (200, 150), interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(tmp_path / "same-8.png"), small)
+    cases: tuple[tuple[str, str, type[Exception], str], ...] = (
+        (f"{images}/none-*.png", "7x4", FileInvalid, "no file matches"),
+        (f"{tmp_path}/text.png", "7x4", ImageFileInvalid, "text.png"),
+        (f"{images}/c-0[0-2].png", "7x4", TooFewViews, "3 usable views"),
+        (f"{tmp_path}/same-8.png", "8x5", WrongBoard, "8 x 5"),
+        (f"{tmp_path}/same-[0-7].png", "7x4", PoorCoverage, "image cells"),
+        (f"{tmp_path}/same-[78].png", "7x4", MixedImageSizes, "same-8"),
+    )
+    for pattern, board, fault, words in cases:
+        result = calibrate(pattern, out, board=board)
+        assert isinstance(result.exception, fault), (pattern, result.exception)
+        assert words in str(result.exception)
+    assert not out.exists()
