@@ -21,7 +21,7 @@ ROBOT_FAULTS = {
     "clock_jump": "robot_ms jumps by `jump_ms`",
     "ignore_stop": "a stop request is overheard",
     "stop_latency": "stops take `latency_s`",
-    "wrong_version": "HELLO names version 2",
+    "wrong_version": "HELLO names version 9",
     "wrong_euler": "HELLO names EUL=XYZ",
     "wrong_unit": "HELLO names UNIT=MRAD",
     "wrong_name": "HELLO names another controller",

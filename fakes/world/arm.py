@@ -20,8 +20,20 @@ from fakes.world.frames import MM, Array
 
 _FIRST, _SECOND = np.array([[0, 2, 2, 1, 2, 1], [1, 0, 0, 2, 0, 2]])
 """The two coordinates that each joint mixes: z, y, y, x, y, x are the axes."""
-_EACH = np.arange(6)
-_TURNS = np.tile(np.eye(4), (6, 1, 1))
+
+
+def _turns() -> tuple[Array, Array, Array]:
+    """The turn of each joint is the first, plus its cosine times the second, plus its sine times
+    the third; each of shape (6, 4, 4)."""
+    each, fixed = np.arange(6), np.tile(np.eye(4), (6, 1, 1))
+    cosine, sine = np.zeros((2, 6, 4, 4))
+    fixed[each, _FIRST, _FIRST] = fixed[each, _SECOND, _SECOND] = 0.0
+    cosine[each, _FIRST, _FIRST] = cosine[each, _SECOND, _SECOND] = 1.0
+    sine[each, _SECOND, _FIRST], sine[each, _FIRST, _SECOND] = 1.0, -1.0
+    return fixed, cosine, sine
+
+
+_TURN_FIXED, _TURN_COSINE, _TURN_SINE = _turns()
 _FLANGE = Rotation.from_euler("y", 90, degrees=True)
 _SINGULAR_RAD = np.deg2rad(0.5)
 
@@ -66,12 +78,8 @@ def perturbed_links(
 
 def forward_matrix(links: Links, joints_rad: Array) -> Array:
     """base_T_flange as a 4x4 matrix."""
-    angles = joints_rad + links.joint_offsets_rad
-    turns = _TURNS.copy()
-    cosines, sines = np.cos(angles), np.sin(angles)
-    turns[_EACH, _FIRST, _FIRST] = turns[_EACH, _SECOND, _SECOND] = cosines
-    turns[_EACH, _SECOND, _FIRST] = sines
-    turns[_EACH, _FIRST, _SECOND] = -sines
+    angles = (joints_rad + links.joint_offsets_rad)[:, np.newaxis, np.newaxis]
+    turns = _TURN_FIXED + np.cos(angles) * _TURN_COSINE + np.sin(angles) * _TURN_SINE
     result: Array = links.matrices[0]
     for step in turns @ links.matrices[1:]:
         result = result @ step

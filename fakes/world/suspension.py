@@ -64,11 +64,6 @@ class Suspension:
         return self.state[6:]
 
     @property
-    def resting(self) -> bool:
-        """True when nothing moves any more, to well below a nanometre."""
-        return bool(np.abs(self.state[6:]).max() < 1e-9 and np.abs(self.state[:6]).max() < 1e-9)
-
-    @property
     def spring_wrench(self) -> Array:
         """Force and torque of the payload on the sensor without gravity, about the CoM."""
         return np.asarray(self.stiffness * self.state[:6] + self.damping * self.state[6:])

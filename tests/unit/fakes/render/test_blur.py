@@ -19,6 +19,7 @@ CELLS = 32
 SIZE_PX = (44, 40)
 LIMIT = 3e-3
 """Of the contrast. Convolving whole pixels would be off by up to 0.03."""
+BLURS_PX = [0.7, pytest.param(1.0, marks=pytest.mark.long), 1.5]
 
 
 def brute_force(
@@ -60,8 +61,8 @@ def scene_view(seed: int, blur_px: float) -> tuple[np.random.Generator, View, Ri
     return rng, view, pose_at(rng, view, 20)
 
 
-@pytest.mark.parametrize("blur_px", [0.7, 1.0, 1.5])
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("blur_px", BLURS_PX)
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.long)])
 def test_hole(seed: int, blur_px: float) -> None:
     _, view, pose = scene_view(seed, blur_px)
     hole = SceneHole("H", "pin", (0.0, 0.0), 3e-3, None, 15e-3, through=True)
@@ -86,8 +87,8 @@ def test_disc() -> None:
     assert np.abs(share - expected).max() < LIMIT
 
 
-@pytest.mark.parametrize("blur_px", [0.7, 1.0, 1.5])
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("blur_px", BLURS_PX)
+@pytest.mark.parametrize("seed", [0, *(pytest.param(n, marks=pytest.mark.long) for n in (1, 2))])
 def test_chessboard_corner(seed: int, blur_px: float) -> None:
     _, view, pose = scene_view(seed, blur_px)
     board = SceneChessboard(pose, (9, 7), 8e-3, (0.12, 0.1), (0.0, 0.0), 1)

@@ -13,13 +13,13 @@ from fakes.world.world import World
 SETTLE_S = 1.5
 
 
-def to_taught(world: World[Any], robot: str, name: str) -> None:
+def to_taught(world: World[Any], robot: str, name: str, settle_s: float = SETTLE_S) -> None:
     arm = world.arms[robot]
     cell_T_base = from_written(arm.settings.base_mm_deg)
     pose = cell_T_base.inv() * from_written(world.scenario.taught[robot][name])
     joints = inverse(arm.settings.chain_mm, pose, arm.joints(world.time_s))
     arm.start_joint(world.time_s, joints, 100)
-    world.advance(arm.standstill_s + SETTLE_S)
+    world.advance(arm.standstill_s + settle_s)
 
 
 def deck_to(
@@ -56,9 +56,10 @@ def undeflected_gap_m(world: DeckOnFrame) -> float:
 
 
 def hovering(world: DeckOnFrame, gap_m: float = 2e-3) -> DeckOnFrame:
-    to_taught(world, "main", "deck_measure")
-    for _ in range(2):
-        deck_to(world, above(world, gap_m))
+    to_taught(world, "main", "deck_measure", settle_s=0.0)
+    # What swings on the way there has no part in where the flange goes next.
+    deck_to(world, above(world, gap_m), settle_s=0.0)
+    deck_to(world, above(world, gap_m))
     return world
 
 
