@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot bench-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -76,6 +76,13 @@ bench-looks: venv
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard.latency
 
+bench-robot: venv
+	$(BIN)/python -m benchmarks.robot.rpc
+	$(BIN)/python -m benchmarks.robot.slow_jobs
+
+bench-cameras: venv
+	$(BIN)/python -m benchmarks.cameras.throughput
+
 bench-antenna-vision: venv
 	$(BIN)/python -m benchmarks.antenna.vision
 
@@ -103,6 +110,10 @@ test: check
 # other, and waiting costs them a third of the processors' time.
 test-parallel test-version test-cell test-long coverage: export OPENBLAS_NUM_THREADS = 1
 
+# Many containers forbid Python to keep compiled modules. Here each of the programs that the tests
+# start would compile all of cellctl anew, and each worker all tests.
+test-parallel test-version test-cell test-long coverage: export PYTHONDONTWRITEBYTECODE =
+
 # Three workers fill two processors, since some tests wait. Not more where there are more processors:
 # time limits within tests are those of two.
 test-parallel: venv
@@ -116,11 +127,11 @@ test-version: venv
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
-	$(BIN)/pytest -m "cell and not long" --durations 25
+	$(BIN)/pytest tests/cell -m "not long" --durations 25
 
 test-long: venv
 	$(BIN)/pytest -n 2 -m "long and not cell" --durations 0
-	$(BIN)/pytest -m "long and cell" --durations 0
+	$(BIN)/pytest tests/cell -m long --durations 0
 	rm -rf runs/faults-tenth
 	$(BIN)/python -m benchmarks.faults.campaign --tenth $(SEED) --out runs/faults-tenth
 
@@ -129,7 +140,7 @@ test-long: venv
 coverage: venv
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest -q -n 2 --timeout 900 -m "not cell and not long"
-	$(BIN)/coverage run -m pytest -q --timeout 900 -m "cell and not long"
+	$(BIN)/coverage run -m pytest tests/cell -q --timeout 900 -m "not long"
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 

@@ -10,6 +10,7 @@ from typing import Any
 from cellctl import log, plugins
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.noted_robot import RobotNotes
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
@@ -39,7 +40,10 @@ class Cell:
         """``folder`` holds the cell file."""
         self.config = config
         self.folder = folder
-        self.robots = zoned_robots(config, _built(config, "robots"))
+        self.robot_notes = RobotNotes()
+        # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
+        noted = map(self.robot_notes.noted, _built(config, "robots").values())
+        self.robots = zoned_robots(config, {robot.name: robot for robot in noted})
         self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
         self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
         self.cameras: Mapping[str, Camera] = _built(config, "cameras")

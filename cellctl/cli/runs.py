@@ -1,6 +1,6 @@
 """`cellctl runs`: look into the run store; enter what a person measured."""
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated
@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.cli.process_pages import pages_of
-from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.report.export import export_run
@@ -42,10 +42,17 @@ def list_runs(
     """The newest runs."""
     with _store(data_dir) as store:
         runs = store.runs(limit, serial)
+        # A plug gauge may have turned a good part into a bad one since the run was closed.
+        spoilt = {
+            head.number
+            for head in runs
+            if head.result == RunResult.GOOD
+            and part_verdict(store.run(head.number)) != RunResult.GOOD
+        }
     if not runs:
         typer.echo("no runs")
         return
-    Console().print(_table(runs))
+    Console().print(_table(runs, spoilt))
 
 
 @app.command()
@@ -156,19 +163,20 @@ def _gauge_line(record: RunRecord, entry: Gauge) -> str:
     )
 
 
-def _table(runs: Sequence[RunHead]) -> Table:
+def _table(runs: Sequence[RunHead], spoilt: Set[int] = frozenset()) -> Table:
+    """One line a run; ``spoilt``: runs with a good result and a gauge beyond its limit."""
     table = Table(box=None)
     names = ("run", "serial", "process", "recipe", "mode", "started (UTC)", "duration", "result")
     for name in names:
         table.add_column(name, no_wrap=name in {"run", "mode", "duration", "result"})
     for head in runs:
-        table.add_row(*_row(head))
+        table.add_row(*_row(head, spoilt=head.number in spoilt))
     return table
 
 
-def _row(head: RunHead) -> tuple[str, ...]:
-    result = head.result or "open"
-    colour = _COLOURS.get(head.result, "red")
+def _row(head: RunHead, *, spoilt: bool) -> tuple[str, ...]:
+    result = "good, bad by gauge" if spoilt else head.result or "open"
+    colour = "red" if spoilt else _COLOURS.get(head.result, "red")
     mark = " (sim)" if head.simulated else ""
     return (
         str(head.number),

@@ -84,7 +84,9 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         await local.start()
         stack.push_async_callback(cell.disconnect)
         stack.push_async_exit(partial(_end, unit))
-        await until_told(stop, _work(cell, unit, plc, publisher))
+        await until_told(
+            stop, _work(cell, unit, supervise(cell, unit, plc, publisher, archive), plc)
+        )
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")
@@ -140,11 +142,11 @@ async def _end(
 
 
 async def _work(
-    cell: Cell, unit: UnitController, plc: PlcInterface, publisher: StatusPublisher
+    cell: Cell, unit: UnitController, supervision: Coroutine[Any, Any, None], plc: PlcInterface
 ) -> None:
     """Everything that goes on until the end, with the devices or without."""
     async with asyncio.TaskGroup() as tasks:
-        tasks.create_task(supervise(cell, unit, plc, publisher))
+        tasks.create_task(supervision)
         await unit.come_up()
         notify("READY=1")
         if not unit.live:

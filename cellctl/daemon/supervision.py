@@ -1,4 +1,4 @@
-"""What the daemon watches all the time: the machine's own life, links, guard, line, systemd."""
+"""What the daemon watches all the time: its own life, links, guard, line, disk, systemd."""
 
 import asyncio
 from functools import partial
@@ -7,19 +7,26 @@ from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
 from cellctl.daemon.device_poller import DevicePoller
+from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.daemon.notify import Watchdog
 from cellctl.errors import CellError
 from cellctl.errors.force import GuardNotRealTime
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.records.async_store import AsyncRunStore
 from cellctl.runtime.unit import UnitController
 
 PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25
 ASK_PERIOD_S = 2.0
+DISK_PERIOD_S = 2.0
 
 
 async def supervise(
-    cell: Cell, unit: UnitController, plc: PlcInterface, publisher: StatusPublisher
+    cell: Cell,
+    unit: UnitController,
+    plc: PlcInterface,
+    publisher: StatusPublisher,
+    archive: AsyncRunStore,
 ) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
     beat = partial(_beat, plc, Watchdog())
@@ -29,6 +36,7 @@ async def supervise(
         tasks.create_task(_publish(publisher))
         tasks.create_task(_watch_links(cell, unit))
         tasks.create_task(_poll_devices(cell, unit))
+        tasks.create_task(_watch_disk(DiskWatch(archive, unit)))
 
 
 def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:
@@ -55,6 +63,12 @@ async def _poll_devices(cell: Cell, unit: UnitController) -> None:
     while True:
         await poller.ask()
         await asyncio.sleep(ASK_PERIOD_S)
+
+
+async def _watch_disk(watch: DiskWatch) -> None:
+    while True:
+        await watch.look()
+        await asyncio.sleep(DISK_PERIOD_S)
 
 
 class LinkMonitor:

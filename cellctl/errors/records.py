@@ -151,10 +151,10 @@ class DiskNearlyFull(RecordsError):
 
 
 class RecordSilent(RecordsError):
-    """The disk did not open or close the record of a run in time."""
+    """The disk did not open, continue or close the record of a run in time."""
 
     number = 820
-    text = "The record of a run could not be opened or closed in time"
+    text = "The disk did not take the record of a run in time"
     cause = "Disk overloaded or failing, or a file system that hangs."
     remedy = "Check the disk. The record is completed when the disk answers; see cellctl runs show."
 

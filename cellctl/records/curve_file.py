@@ -7,26 +7,22 @@ let a damaged or shortened file be read up to the damage.
 
 import io
 import json
-import struct
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import IO, Self
 
 import numpy as np
-from mcap.exceptions import McapError
-from mcap.records import Message, Metadata
-from mcap.stream_reader import StreamReader
 from mcap.writer import CompressionType, Writer
-from zstandard import ZstdError
 
-from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
+from cellctl.records import motion_file
+from cellctl.records.entries import Artefact
+from cellctl.records.mcap_reading import MEDIA_TYPE, read_mcap
 
-MEDIA_TYPE = "application/x-mcap"
 _TOPIC = "/mating/force"
 _FACTS = "facts"
 _CHUNK_BYTES = 64 * 1024
@@ -37,7 +33,6 @@ _SCHEMA = {
     "type": "object",
     "properties": {name: {"type": "number"} for name in ("time_s", "travel_mm", *_FIELDS)},
 }
-_RECORD_LIMIT = 16 * 1024 * 1024
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +82,11 @@ class CurveWriter:
         self._writer.finish()
 
 
+def is_curve(artefact: Artefact) -> bool:
+    """Whether a file of a run is a force curve; the recording of the whole run is none."""
+    return artefact.media_type == MEDIA_TYPE and artefact.name != motion_file.NAME
+
+
 def encode_curve(curve: ForceCurve, started: datetime, facts: Mapping[str, str]) -> bytes:
     """A finished recording of a whole curve; its time starts at zero."""
     stream = io.BytesIO()
@@ -103,30 +103,9 @@ def encode_curve(curve: ForceCurve, started: datetime, facts: Mapping[str, str])
 def read_recording(source: bytes | Path) -> Recording:
     """Read a recording as far as it goes; raises ``RecordingUnreadable`` when that is nowhere."""
     data = source if isinstance(source, bytes) else source.read_bytes()
-    rows: list[list[float]] = []
-    facts: dict[str, str] = {}
-    complete = True
-    try:
-        for record in _records(data):
-            if isinstance(record, Message):
-                values = json.loads(record.data)
-                names = ("time_s", "travel_mm", *_FIELDS)
-                rows.append([values.get(name, np.nan) for name in names])
-            elif isinstance(record, Metadata):
-                facts = dict(record.metadata)
-    # Whatever a cut off or damaged file raises in its middle: the samples before that are good,
-    # each chunk has a checksum of its own.
-    except (McapError, ZstdError, ValueError, EOFError, struct.error) as error:
-        complete = False
-        if not rows:
-            raise RecordingUnreadable(str(error) or type(error).__name__) from error
+    content = read_mcap(data)
+    names = ("time_s", "travel_mm", *_FIELDS)
+    rows = [[one.values.get(name, np.nan) for name in names] for one in content.messages]
     table = np.array(rows, dtype=float).reshape(-1, 8)
     curve = ForceCurve(table[:, 0], table[:, 2:], table[:, 1] * MM)
-    return Recording(curve, facts, complete)
-
-
-def _records(data: bytes) -> Iterator[Any]:
-    stream = io.BytesIO(data)
-    # The limit keeps a damaged length from asking for all of the memory.
-    reader = StreamReader(stream, validate_crcs=True, record_size_limit=_RECORD_LIMIT)
-    yield from reader.records
+    return Recording(curve, content.facts, content.complete)

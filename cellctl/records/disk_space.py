@@ -1,13 +1,17 @@
-"""Room on the disk for a record, asked before anything moves."""
+"""Whether the disk takes a record: asked before anything moves, and while something does."""
 
+import os
 import shutil
 from pathlib import Path
 
-from cellctl.errors.records import DiskNearlyFull, StoreUnavailable
+from cellctl.errors.records import DiskNearlyFull, RecordNotWritten, StoreUnavailable
 
 LEAST_FREE_BYTES = 2 * 1024**3
 """A run with its raw images takes some 0.15 GB. The rest is for the log and for the next hours, in
 which somebody makes room."""
+
+PROBE = "probe"
+"""A file of the store's folder that belongs to no record."""
 
 
 def require_space(folder: Path) -> None:
@@ -20,3 +24,14 @@ def require_space(folder: Path) -> None:
         raise DiskNearlyFull(
             f"{free / 1e9:.1f} GB free on the disk of {folder}, needed {LEAST_FREE_BYTES / 1e9:.1f}"
         )
+
+
+def require_writable(folder: Path) -> None:
+    """Have a few bytes reach the disk; raises ``RecordNotWritten`` when they do not."""
+    try:
+        with (folder / PROBE).open("wb") as probe:
+            probe.write(b"cellctl\n")
+            probe.flush()
+            os.fsync(probe.fileno())
+    except OSError as error:
+        raise RecordNotWritten(f"{folder}: {error.strerror}") from error

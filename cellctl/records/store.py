@@ -114,6 +114,7 @@ class RunStore:
         )
         with self._database.write() as session:
             session.add(row)
+            # Sealed at once: a run that somebody deletes later leaves a gap.
             ledger.seal(session, sealed.OPENING, row, row.started)
         return row.number
 
@@ -137,6 +138,7 @@ class RunStore:
 
     def add_artefact(self, run: int, name: str, data: bytes, media_type: str) -> str:
         """A file of the run; its SHA-256. The bytes are on the disk before the row is."""
+        # In this order a power cut leaves a file without a row at worst, no row without its file.
         sha256 = self.artefacts.put(data)
         row = ArtefactRow(
             run=run,

@@ -13,6 +13,7 @@ from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.cell_status import NO_VALUE, CellStatus, ShownRefusal
 from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.jobs.job import Job
+from cellctl.runtime.jobs.runner import EarlierRun
 from cellctl.runtime.progress import ProgressBoard
 
 
@@ -36,7 +37,7 @@ class StatusView:
         self._calibrations = calibrations
         self._alarms = alarms
 
-    def snapshot(self, job: Job | None, result: Result, parts: int) -> CellStatus:
+    def snapshot(self, job: Job | EarlierRun | None, result: Result, parts: int) -> CellStatus:
         """The state of the cell at this moment; ``job`` is the present or the last one."""
         machine, progress, time_s = self._machine, self._board.current, now_s()
         faults = machine.faults

@@ -98,6 +98,8 @@ class UnitController:
             _log.warning("an earlier process left runs open", runs=self._interrupted)
         await self.alarms.open()
         heads = await self._store.do(RunStore.runs, limit=1_000_000)
+        if heads:
+            self._jobs.recall(heads[0])
         self.parts = sum(
             head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
         )

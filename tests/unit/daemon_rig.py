@@ -126,12 +126,12 @@ class DaemonRig:
         monkeypatch.setattr(beginning, "PartMeasurer", self._measurer)
         module = importlib.import_module("cellctl.processes.deck_to_frame.steps.mate_deck")
         monkeypatch.setattr(module, "mate_until_seated", self.contact)
-        self._store = store
+        self.store_folder = store
         self._seq = 0
 
     async def open(self) -> None:
         """As a daemon starts on this store."""
-        self.archive = AsyncRunStore(self._store)
+        self.archive = AsyncRunStore(self.store_folder)
         self.unit = UnitController(self.bench.as_cell, self.archive)
         self.port = PaperPort()
         self.arbitrate()

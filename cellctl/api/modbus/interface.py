@@ -158,6 +158,8 @@ class PlcInterface:
     async def _submit_commands(self) -> None:
         while True:
             submission = await self._queue.next()
+            # A PLC waits for the answer to each number that it has written, those of commands
+            # that a Stop has overtaken among them.
             for earlier in self._queue.overtaken():
                 self._supersede(earlier)
             seq = submission.seq

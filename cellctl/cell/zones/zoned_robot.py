@@ -5,20 +5,19 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.cell.zones.arbiter import REPORT_AGE_S, ZoneArbiter
 from cellctl.cell.zones.ways import Way, joint_way, linear_way, stream_way
 from cellctl.cell.zones.zone import zones_of
 from cellctl.config.cell import CellConfig
 from cellctl.config.robot_drivers import robot_driver
-from cellctl.errors.base import CellError
 from cellctl.errors.robot import NotRearmed
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, StreamLimits
 from cellctl.interfaces.robot import ForwardKinematics
-from cellctl.interfaces.streaming_robot import StreamOffer
 
 
-class ZonedRobot(Robot):
+class ZonedRobot(RobotLayer):
     """Stands before a driver. Everything but a move goes straight through, a stop above all.
 
     Moves raise ``ZoneTaken`` beside what the driver raises. A move that waits for a zone is given
@@ -28,35 +27,19 @@ class ZonedRobot(Robot):
     def __init__(
         self, robot: Robot, arbiter: ZoneArbiter, kinematics: ForwardKinematics | None
     ) -> None:
-        self.name = robot.name
-        self._robot, self._arbiter, self._kinematics = robot, arbiter, kinematics
+        super().__init__(robot)
+        self._arbiter, self._kinematics = arbiter, kinematics
         self._stops = 0
-
-    async def connect(self) -> None:
-        """As the driver does."""
-        await self._robot.connect()
 
     async def disconnect(self) -> None:
         """As the driver does; a move that waits is given up."""
         self._stops += 1
-        await self._robot.disconnect()
-
-    def incidents(self) -> tuple[CellError, ...]:
-        """Those of the driver."""
-        return self._robot.incidents()
-
-    def state(self, max_age_s: float = 0.25) -> RobotState:
-        """That of the driver."""
-        return self._robot.state(max_age_s)
+        await super().disconnect()
 
     async def stop(self) -> None:
         """As the driver does; a move that waits is given up."""
         self._stops += 1
-        await self._robot.stop()
-
-    async def rearm(self) -> None:
-        """As the driver does."""
-        await self._robot.rearm()
+        await super().stop()
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """With all zones on the way by forward kinematics, else by the taught poses."""
@@ -102,18 +85,13 @@ class ZonedRobot(Robot):
         return self._arbiter.passage(self.name, plan_unless_stopped)
 
 
-class ZonedStreamingRobot(ZonedRobot, StreamingRobot):
+class ZonedStreamingRobot(ZonedRobot, StreamingRobotLayer):
     """The same before a robot that follows a stream."""
 
     def __init__(
         self, robot: StreamingRobot, arbiter: ZoneArbiter, kinematics: ForwardKinematics | None
     ) -> None:
         super().__init__(robot, arbiter, kinematics)
-        self._streaming = robot
-
-    def stream_offer(self) -> StreamOffer:
-        """That of the driver."""
-        return self._streaming.stream_offer()
 
     @asynccontextmanager
     async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:

@@ -37,7 +37,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     MEASURED_FROM,
 )
 from cellctl.processes.deck_to_frame.record.sources import IMAGES_PER_FRAME, predicted_pose
-from cellctl.records.curve_file import MEDIA_TYPE, read_recording
+from cellctl.records.curve_file import is_curve, read_recording
 from cellctl.records.entries import Calibration, PoseOrigin, RecordedPose, RunRecord
 from cellctl.records.figures import split_document
 from cellctl.records.raw_images import decode
@@ -167,7 +167,7 @@ class Replay:
 
     def _forces(self) -> Iterator[Replayed]:
         """Peaks of the last contact, whose figures the record has."""
-        curves = [one for one in self.record.artefacts if one.media_type == MEDIA_TYPE]
+        curves = [one for one in self.record.artefacts if is_curve(one)]
         if not curves or self.record.value("peak_force") is None:
             return
         curve = read_recording(self.read(curves[-1])).curve

@@ -10,12 +10,15 @@ from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.cell.devices import Cell
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
-from cellctl.errors.records import RecordSilent
+from cellctl.errors.records import RecordsError, RecordSilent
 from cellctl.packml.unit_command import UnitCommand
+from cellctl.records import motion_file
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.disk_space import require_space
 from cellctl.records.entries import RunResult
+from cellctl.records.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.store import RunStore
+from cellctl.runtime.jobs.motion_recorder import MotionRecorder
 from cellctl.runtime.jobs.provenance import cell_artefact, provenance
 from cellctl.version import software
 
@@ -37,6 +40,7 @@ class JobRecord:
         self._cell = cell
         self._command = command
         self._opening: asyncio.Task[None] | None = None
+        self._motion: MotionRecorder | None = None
 
     async def open(
         self,
@@ -71,6 +75,8 @@ class JobRecord:
         except CellError:
             if not self.number:
                 return  # there is no record; this is the fault that has ended the run
+        if self._motion is not None:
+            await self._keep_motion(self._motion)
         # Images are written in the background and belong to the seal, which covers every file of
         # the run at its closing.
         await self.store.images_kept()
@@ -82,6 +88,16 @@ class JobRecord:
             fault=str(fault) if fault else None,
         )
         _log.info("run closed", run=self.number, result=outcome.value)
+
+    async def _keep_motion(self, motion: MotionRecorder) -> None:
+        data = await motion.finish()
+        try:
+            await self.store.do(
+                RunStore.add_artefact, self.number, motion_file.NAME, data, MCAP_MEDIA_TYPE
+            )
+        # It serves later questions, as raw images do. The run has to be closed without it too.
+        except RecordsError as error:
+            _log.error("motion not kept", run=self.number, fault=str(error))
 
     async def _opened(self, opening: "asyncio.Task[None]") -> int:
         # Waited for and not awaited: a time-out or a Stop must not cancel the task that is writing
@@ -143,6 +159,8 @@ class JobRecord:
             simulated=self._cell.config.simulated,
             **made_with,
         )
+        cell = self._cell
+        self._motion = MotionRecorder(cell.robots, cell.guards, cell.robot_notes).start()
 
 
 def _require_space(store: RunStore) -> None:

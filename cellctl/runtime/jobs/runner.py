@@ -3,13 +3,14 @@
 import asyncio
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from cellctl import log
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.records import RecordSilent
 from cellctl.packml.result import Result
-from cellctl.records.entries import RunResult
+from cellctl.records.entries import RunHead, RunResult
 from cellctl.runtime.jobs.job import Job
 
 _log = log.get(__name__)
@@ -24,7 +25,18 @@ _TO_THE_LINE = {
     RunResult.BAD: Result.BAD,
     RunResult.STOPPED: Result.STOPPED,
     RunResult.ABORTED: Result.ABORTED,
+    RunResult.INTERRUPTED: Result.ABORTED,
 }
+
+
+@dataclass(frozen=True, slots=True)
+class EarlierRun:
+    """What the line is shown of the last run before this start."""
+
+    number: int
+    """Recipe or procedure."""
+    serial: str
+    run_number: int
 
 
 class JobRunner:
@@ -32,7 +44,7 @@ class JobRunner:
 
     def __init__(self) -> None:
         self._job: Job | None = None
-        self._shown: Job | None = None
+        self._shown: Job | EarlierRun | None = None
         self._closing: asyncio.Task[None] | None = None
         self._resting = asyncio.Event()
         self._resting.set()
@@ -41,9 +53,17 @@ class JobRunner:
         """Of the run that is shown; NONE while it is open."""
 
     @property
-    def shown(self) -> Job | None:
-        """The present job, else the last one."""
+    def shown(self) -> Job | EarlierRun | None:
+        """The present job, else the last one, else the last run before this start."""
         return self._shown
+
+    def recall(self, head: RunHead) -> None:
+        """Show the last run before this start, until there is another one.
+
+        A PLC that was waiting for the end of a run when the daemon died reads it here.
+        """
+        self._shown = EarlierRun(head.recipe_id, head.serial, head.number)
+        self.result = Result.NONE if head.result is None else _TO_THE_LINE[RunResult(head.result)]
 
     @property
     def run_number(self) -> int | None:

@@ -12,6 +12,7 @@ from cellctl.calibration.payload import IdentifiedPayload
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
+from cellctl.cell.noted_robot import RobotNotes
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
@@ -133,6 +134,7 @@ class CellInMemory:
         self.guards = {"force": self.guard}
         self.main.watched_by = self.guard
         self.workers = InlineWorkers()
+        self.robot_notes = RobotNotes()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}
         self.unstopped: dict[str, BaseException] = {}

@@ -176,7 +176,8 @@ class Port(PaperPort):
 
 async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio.Task[None]]:
     port = Port()
-    work = supervise(rig.bench.as_cell, rig.unit, cast(PlcInterface, port), rig.publisher)
+    line = cast(PlcInterface, port)
+    work = supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive)
     task = asyncio.create_task(until_told(stop, work))
     await rig.until(lambda: port.beats > 0)
     return port, task

@@ -71,7 +71,7 @@ async def test_a_result_that_passed_is_kept(rig: ProcedureRig, procedure: list[o
     assert head.number == job.run_number
     record = await rig.archive.do(RunStore.run, head.number)
     assert record.document("calibration")["id"] == stored.id
-    assert [artefact.name for artefact in record.artefacts] == ["cell.json"]
+    assert [artefact.name for artefact in record.artefacts] == ["cell.json", "motion.mcap"]
     assert await rig.archive.do(RunStore.verify) == []
 
 

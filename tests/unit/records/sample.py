@@ -8,7 +8,7 @@ import numpy as np
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
-from cellctl.records.curve_file import MEDIA_TYPE, encode_curve
+from cellctl.records.curve_file import encode_curve
 from cellctl.records.entries import (
     Document,
     LoopPass,
@@ -17,6 +17,7 @@ from cellctl.records.entries import (
     RecordedPose,
 )
 from cellctl.records.figures import Limit, figure
+from cellctl.records.mcap_reading import MEDIA_TYPE
 
 PROCESS = "deck-to-frame"
 THRESHOLD = (0.05, 0.05, 0.05, 0.005, 0.005, 0.005)

@@ -41,6 +41,19 @@ def test_a_gauge_greater_than_its_hole_turns_the_verdict_too(store: RunStore, ru
     assert part_verdict(store.run(run)) == "bad"
 
 
+def test_the_list_of_runs_says_so(store: RunStore, run: int) -> None:
+    store.set_gauge(run, "P5", 5.70, "OP-7", "PG-3")
+    assert _listed(store, run).endswith("good, bad by gauge")
+    store.set_gauge(run, "P5", 5.90, "OP-7", "PG-3")
+    assert _listed(store, run).endswith("good")
+
+
+def _listed(store: RunStore, run: int) -> str:
+    listed = CliRunner().invoke(app, ["list", "--data-dir", str(store.path)])
+    (line,) = (line for line in listed.stdout.splitlines() if line.split()[0] == str(run))
+    return line.rstrip()
+
+
 def test_both_entries_are_shown_everywhere(store: RunStore, run: int, tmp_path: Path) -> None:
     store.set_gauge(run, "P5", 5.70, "OP-7", "PG-3")
     store.set_gauge(run, "P5", 5.99, "OP-8", "PG-4")

@@ -137,11 +137,14 @@ class PartMeasurer:
         taken: list[tuple[PairMeasurement, PairMeasurement]] = []
         shots: list[tuple[StereoPair, StereoPair]] = []
         while True:
+            # As many again as there are: the standard deviation falls with the root of their
+            # number, so that one frame more would change next to nothing.
             wanted = min(len(taken) or frames, max_frames - len(taken))
             for _ in range(wanted):
                 pairs, found = await self._one_frame(features, predictions)
                 taken.append(found)
                 shots.append(pairs)
+            # After the last picture, so that a move during any of them is noticed.
             self._check_standstill(base_T_flange)
             measurement = self._combine(features, taken, pairs, base_T_flange)
             if (measurement.sigma_mm_deg <= wanted_sigma_mm_deg).all():
@@ -156,6 +159,8 @@ class PartMeasurer:
         stations = self._cell.heads
         models = (self._geometry.head_1, self._geometry.head_2)
         holes = (features.seen_by(1), features.seen_by(2))
+        # Both heads at once: what sways in this moment sways in the pictures of both, and of the
+        # pose of the part in C1 only their difference is left.
         results = await gather_or_cancel(
             *(
                 self._grab_and_find(station, model, hole, prediction)

@@ -9,7 +9,7 @@ from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE, TARGET_FORCE
 from cellctl.processes.deck_to_frame.report.force_plot import force_by_time, force_by_travel
-from cellctl.records.curve_file import MEDIA_TYPE, Recording, read_recording
+from cellctl.records.curve_file import Recording, is_curve, read_recording
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import (
     Drawing,
@@ -26,7 +26,7 @@ def recordings(record: RunRecord, read: ReadArtefact) -> dict[str, Recording]:
     """The curves of a run by the names of their files, as far as they can be read."""
     found = {}
     for artefact in record.artefacts:
-        if artefact.media_type != MEDIA_TYPE:
+        if not is_curve(artefact):
             continue
         try:
             found[artefact.name] = read_recording(read(artefact))

@@ -21,7 +21,8 @@ from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.records import RunStore
-from cellctl.records.curve_file import MEDIA_TYPE, encode_curve
+from cellctl.records.curve_file import encode_curve
+from cellctl.records.mcap_reading import MEDIA_TYPE
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read, text_of

@@ -323,6 +323,20 @@ async def test_a_run_that_was_left_open_is_interrupted_at_the_next_start(
     assert [run.result for run in await rig.runs()] == ["interrupted"]
     assert rig.unit.machine.state is State.STOPPED
     assert rig.shown().alarms[0] == 803, "survives the restart"
+    assert (rig.shown().run_number, rig.shown().run_result) == (1, Result.ABORTED)
+
+
+async def test_the_line_reads_the_result_of_the_last_run_after_a_restart(rig: DaemonRig) -> None:
+    assert (rig.shown().run_number, rig.shown().run_result) == (0, Result.NONE)
+    await rig.started()
+    await rig.to(State.COMPLETED)
+    before = rig.shown()
+    await rig.restart()
+    after = rig.shown()
+    assert after.run_number == before.run_number == 1
+    assert after.run_result is before.run_result is Result.GOOD
+    assert (after.serial, after.recipe_active) == (before.serial, before.recipe_active)
+    assert after.serial
 
 
 async def test_no_record_no_motion(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch) -> None:

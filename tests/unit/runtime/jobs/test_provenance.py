@@ -69,7 +69,7 @@ async def test_cell_recipe_and_feature_files_are_in_the_record(
     finally:
         archive.close()
     assert set(files) == {
-        "cell.json", "recipe.json", "frame_features.toml", "deck_features.toml",
+        "cell.json", "motion.mcap", "recipe.json", "frame_features.toml", "deck_features.toml",
     }  # fmt: skip
     assert run.head.config_hash == sha256(files["cell.json"]).hexdigest()
     assert run.head.recipe_hash == sha256(files["recipe.json"]).hexdigest()

@@ -1,0 +1,63 @@
+"""Reads MCAP files of JSON messages as far as they are readable."""
+
+import io
+import json
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mcap.exceptions import McapError
+from mcap.records import Channel, Message, Metadata
+from mcap.stream_reader import StreamReader
+from zstandard import ZstdError
+
+from cellctl.errors.records import RecordingUnreadable
+
+MEDIA_TYPE = "application/x-mcap"
+_RECORD_LIMIT = 16 * 1024 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedMessage:
+    """One message of a recording."""
+
+    topic: str
+    values: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class McapContent:
+    """What could be read of a file."""
+
+    messages: tuple[RecordedMessage, ...]
+    facts: Mapping[str, str]
+    """Its newest metadata."""
+    complete: bool
+    """False when the file was cut off or is damaged; the messages then end early."""
+
+
+def read_mcap(data: bytes) -> McapContent:
+    """Everything up to the first damage; ``RecordingUnreadable`` when no message lies before it."""
+    topics: dict[int, str] = {}
+    messages: list[RecordedMessage] = []
+    facts: dict[str, str] = {}
+    complete = True
+    # The limit keeps a damaged length from asking for all of the memory.
+    reader = StreamReader(io.BytesIO(data), validate_crcs=True, record_size_limit=_RECORD_LIMIT)
+    try:
+        for record in reader.records:
+            if isinstance(record, Channel):
+                topics[record.id] = record.topic
+            elif isinstance(record, Message):
+                values = json.loads(record.data)
+                messages.append(RecordedMessage(topics[record.channel_id], values))
+            elif isinstance(record, Metadata):
+                facts = dict(record.metadata)
+    # Whatever a cut off or damaged file raises in its middle: the messages before that are good,
+    # each chunk has a checksum of its own.
+    except (McapError, ZstdError, ValueError, KeyError, EOFError, struct.error) as error:
+        complete = False
+        if not messages:
+            raise RecordingUnreadable(str(error) or type(error).__name__) from error
+    return McapContent(tuple(messages), facts, complete)
