@@ -49,7 +49,7 @@ class SmallCell:
         for old, new in folders.items():
             text = text.replace(f'"{old}"', f'"{new}"')
         # Nothing can be touched in this cell, and a busy machine must not decide about a part.
-        text = text.replace("stale_ms = 150.0", "stale_ms = 500.0")
+        text = text.replace("stale_ms = 300.0", "stale_ms = 500.0")
         text = text.replace("flange_age_ms = 300.0", "flange_age_ms = 1000.0")
         self.file.write_text(self._own(text) + "\n" + recipe)
 
