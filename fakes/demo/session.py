@@ -19,6 +19,10 @@ from fakes.demo.verdict import why_not_good
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
 
+SLOW_SHARE = 0.01
+"""Of its time, lost by the fake cell: from here on the computer is named as a cause. Two processors
+that are free lose a tenth of it."""
+
 
 @dataclass(frozen=True, slots=True)
 class Files:
@@ -29,6 +33,15 @@ class Files:
     out: Path
     imperfections: Mapping[str, float] = field(default_factory=dict)
     """Scales in place of those of the scenario file, by name."""
+
+
+def too_slow(lost_s: float, passed_s: float) -> str:
+    """What to tell a user whose computer could not run the fake cell in real time."""
+    return (
+        f"this computer was too slow: it gave the fake cell no processor for {lost_s:.1f} s of "
+        f"{passed_s:.0f} s, and devices that fall silent for tenths of a second are faults. End "
+        "other programs, or give the demonstration two processors of its own, and run it again"
+    )
 
 
 class Session:
@@ -160,6 +173,10 @@ class Session:
         self._complaint.print(f"not good: {why_not_good(result)}", style="bold", markup=False)
         for fault in faults:
             self._complaint.print(fault, markup=False)
+        lost_s = float(self._control.request("truth")["truth"]["lost_s"])
+        passed_s = time.monotonic() - self._begun_s
+        if lost_s > SLOW_SHARE * passed_s:
+            self._complaint.print(too_slow(lost_s, passed_s), markup=False)
         return NOT_GOOD
 
     def _spawn(self, name: str, command: list[str]) -> Child:

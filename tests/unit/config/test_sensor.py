@@ -1,5 +1,6 @@
 """Staleness and rate of the force sensor must fit together before anything runs."""
 
+import re
 from pathlib import Path
 
 from cellctl.config import load_cell, problems
@@ -12,7 +13,8 @@ def slowed(tmp_path: Path, rate_hz: int) -> Path:
     text = (CONFIG / "deck.toml").read_text()
     (tmp_path / "features").symlink_to(CONFIG / "features")
     path = tmp_path / "cell.toml"
-    path.write_text(text.replace("rate_hz = 1000", f"rate_hz = {rate_hz}"))
+    slow = text.replace("rate_hz = 1000", f"rate_hz = {rate_hz}")
+    path.write_text(re.sub(r"(?m)^stale_ms = \S+", "stale_ms = 150.0", slow))
     return path
 
 

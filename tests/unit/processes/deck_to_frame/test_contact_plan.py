@@ -144,7 +144,8 @@ async def test_a_run_is_not_prepared_for_a_robot_that_is_slowed_down(rig: RunRig
 
 
 def with_rate(sensor: ForceSensorConfig, rate_hz: float) -> ForceSensorConfig:
-    return sensor.model_copy(update={"settings": {**sensor.settings, "rate_hz": rate_hz}})
+    settings = {**sensor.settings, "rate_hz": rate_hz}
+    return sensor.model_copy(update={"settings": settings, "stale_ms": 150.0})
 
 
 @pytest.mark.parametrize(("rate_hz", "threshold_n"), [(500.0, 60.0), (200.0, 60.0), (4e3, 480.0)])
