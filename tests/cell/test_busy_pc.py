@@ -1,4 +1,4 @@
-"""A computer that has far more to do than it can: the demonstration ends good or names the cause."""
+"""On a computer that has too much to do, the demonstration ends good or names the cause."""
 
 import subprocess
 import sys
