@@ -3,7 +3,7 @@
 CalibrationError
 ├── BoardNotFound, WrongBoard, TooFewViews, MixedImageSizes          601–604  what the images show
 ├── CalibrationCamerasSwapped, CalibrationCameraUpsideDown,
-│   PairsInconsistent                                                605–607  how the pairs fit
+│   PairsInconsistent, CameraSeenTwice                               605–608  how the pairs fit
 ├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
@@ -86,6 +86,15 @@ class PairsInconsistent(CalibrationError):
     text = "Left and right images do not belong together"
     cause = "Pairs are mixed up, the board moved between two exposures, or a camera is loose."
     remedy = "Check that both groups of files have the same order; take the images again."
+
+
+class CameraSeenTwice(CalibrationError):
+    """The images of the right camera are those of the left one."""
+
+    number = 608
+    text = "Left and right images are the same"
+    cause = "The same folder or files were given for both cameras."
+    remedy = "Give the images of the left camera as left and those of the right camera as right."
 
 
 class PoorCoverage(CalibrationError):

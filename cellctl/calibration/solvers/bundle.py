@@ -17,8 +17,12 @@ from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skews
 
-_MAX_STEPS = 60
+_MAX_STEPS = 5000
+"""Far more than any adjustment needs. A view that fits nothing is moved for hundreds of steps."""
 _ROUNDS = 3
+ROUGH, FINE = 1e-3, 1e-9
+"""Relative gain of cost of one step at which an adjustment ends. A rough one serves where only the
+size of residuals counts. With corners that fit nothing the last digits cost hundreds of steps."""
 _HUBER = 4.0
 """Residual norm in sigmas per axis beyond which a corner loses weight."""
 
@@ -82,14 +86,14 @@ class _Normal:
     cost: float
 
 
-def adjust_bundle(problem: BundleProblem[S], start: S) -> BundleResult[S]:
+def adjust_bundle(problem: BundleProblem[S], start: S, tolerance: float = FINE) -> BundleResult[S]:
     """Adjust from a start near the solution; raises ``SolveFailed``."""
     state, sigma_px = start, 1.0
     # Robust weights need the noise, and the noise needs the residuals: some rounds settle both.
-    for _ in range(_ROUNDS):
-        sigma_px = _robust_sigma(_residuals(problem, state))
-        state = _minimise(problem, state, sigma_px)
-    residuals = _residuals(problem, state)
+    for number in range(_ROUNDS):
+        sigma_px = _robust_sigma(residuals_of(problem, state))
+        state = _minimise(problem, state, sigma_px, tolerance if number == _ROUNDS - 1 else ROUGH)
+    residuals = residuals_of(problem, state)
     squares = sum(float((r**2).sum()) for images in residuals for r in images)
     count = sum(r.size for images in residuals for r in images)
     freedom = count - len(problem.prior) - 6 * len(residuals)
@@ -98,6 +102,11 @@ def adjust_bundle(problem: BundleProblem[S], start: S) -> BundleResult[S]:
     normal = _normal_equations(problem, state, sigma_px)
     reduced, _ = _eliminate(normal, 0.0)
     return BundleResult(state, residuals, sigma_px, _inverse(reduced, problem.name))
+
+
+def place_board(problem: BundleProblem[S], start: S, sigma_px: float) -> S:
+    """The best pose of the board while everything that views share is held; for a single view."""
+    return _minimise(problem, start, sigma_px, ROUGH, poses_only=True)
 
 
 def by_board_pose(projection: Projection, turned_m: Array) -> Array:
@@ -109,22 +118,40 @@ def by_board_pose(projection: Projection, turned_m: Array) -> Array:
     return np.concatenate([projection.by_point, -projection.by_point @ skews(turned_m)], axis=2)
 
 
+def residuals_of(problem: BundleProblem[S], state: S) -> tuple[tuple[Array, ...], ...]:
+    """Per view and image, measured minus projected, px, shape (n, 2)."""
+    return tuple(
+        tuple(linear.residuals for linear in images) for images in problem.linearise(state)
+    )
+
+
 def residual_norms(residuals: Sequence[tuple[Array, ...]]) -> list[Array]:
     """Length of the residual of every corner, per view, image after image."""
     return [np.linalg.norm(np.concatenate(images), axis=1) for images in residuals]
 
 
-def _minimise(problem: BundleProblem[S], state: S, sigma_px: float) -> S:
+def _minimise(
+    problem: BundleProblem[S],
+    state: S,
+    sigma_px: float,
+    tolerance: float,
+    *,
+    poses_only: bool = False,
+) -> S:
     damping = 1e-4
     normal = _normal_equations(problem, state, sigma_px)
     for _ in range(_MAX_STEPS):
-        candidate = problem.moved(state, *_step(normal, damping, problem.name))
+        if poses_only:
+            shared, views = np.zeros(len(problem.prior)), _own_step(normal, damping)
+        else:
+            shared, views = _step(normal, damping, problem.name)
+        candidate = problem.moved(state, shared, views)
         trial = _normal_equations(problem, candidate, sigma_px)
         if trial.cost <= normal.cost:
             gain = normal.cost - trial.cost
             state, normal = candidate, trial
             damping = max(damping / 10, 1e-12)
-            if gain <= 1e-9 * normal.cost:
+            if gain <= tolerance * normal.cost:
                 return state
         else:
             damping *= 10
@@ -163,9 +190,17 @@ def _step(normal: _Normal, damping: float, name: str) -> tuple[Array, Array]:
     """Steps of the shared unknowns, shape (s,), and of the poses, shape (views, 6)."""
     reduced, gradient = _eliminate(normal, damping)
     delta: Array = cho_solve(_factor(reduced, name), gradient)
-    own = _damped(normal.own, damping)
     rest = normal.own_gradient - np.einsum("vsk,s->vk", normal.mixed, delta)
-    return delta, np.linalg.solve(own, rest[:, :, None])[:, :, 0]
+    return delta, _solved(_damped(normal.own, damping), rest)
+
+
+def _own_step(normal: _Normal, damping: float) -> Array:
+    """Steps of the poses alone, shape (views, 6)."""
+    return _solved(_damped(normal.own, damping), normal.own_gradient)
+
+
+def _solved(matrices: Array, sides: Array) -> Array:
+    return np.linalg.solve(matrices, sides[:, :, None])[:, :, 0]
 
 
 def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
@@ -213,9 +248,3 @@ def _robust_sigma(residuals: Sequence[tuple[Array, ...]]) -> float:
     """Standard deviation of a coordinate from the median; never below a thousandth of a pixel."""
     values = np.concatenate([np.abs(r).ravel() for images in residuals for r in images])
     return max(float(np.median(values)) / 0.6745, 1e-3)
-
-
-def _residuals(problem: BundleProblem[S], state: S) -> tuple[tuple[Array, ...], ...]:
-    return tuple(
-        tuple(linear.residuals for linear in images) for images in problem.linearise(state)
-    )

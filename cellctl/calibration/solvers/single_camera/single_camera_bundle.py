@@ -6,6 +6,7 @@ board's shape.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -13,11 +14,10 @@ from scipy.spatial.transform import Rotation
 from cellctl.calibration.boards.board import CameraView, Corners, ShapeModes
 from cellctl.calibration.boards.projection import project
 from cellctl.calibration.solvers.bundle import (
-    BundleResult,
     LinearImage,
-    adjust_bundle,
     by_board_pose,
 )
+from cellctl.calibration.solvers.view_rejection import Mask
 from cellctl.geometry.pose import Array
 
 CAMERA = 9
@@ -42,23 +42,54 @@ class CameraBundle:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _CameraProblem:
+class CameraProblem:
+    """Adjusts a ``CameraBundle``; see ``ProblemOfViews``.
+
+    The covariance has shape (9 + shape, 9 + shape).
+    """
+
     views: Sequence[CameraView]
     flat_m: Array
     modes: ShapeModes
     name: str = "camera"
 
+    def __len__(self) -> int:
+        return len(self.views)
+
+    def of_views(self, chosen: Mask) -> "CameraProblem":
+        """The adjustment of the chosen views alone."""
+        return replace(self, views=list(compress(self.views, chosen)))
+
+    def state_of_views(self, state: CameraBundle, chosen: Mask) -> CameraBundle:
+        """The unknowns of the chosen views alone."""
+        return replace(
+            state,
+            view_rotations=state.view_rotations[chosen],
+            view_translations_m=state.view_translations_m[chosen],
+        )
+
+    def joined(self, shared: CameraBundle, views: CameraBundle) -> CameraBundle:
+        """What the views share from one, the poses of the boards from the other."""
+        return replace(
+            shared,
+            view_rotations=views.view_rotations,
+            view_translations_m=views.view_translations_m,
+        )
+
     @property
     def prior(self) -> Array:
+        """Inverse prior variance of each shared unknown, 0 where it is free, shape (s,)."""
         camera = np.zeros(CAMERA)
         camera[_RADIAL] = 1 / _RADIAL_SIGMA**2
         return np.concatenate([camera, 1 / self.modes.sigma**2])
 
     def offsets(self, state: CameraBundle) -> Array:
+        """Shared unknowns less what the prior expects of them, shape (s,); 0 where free."""
         # A multiplication by the prior follows, which is 0 where the camera is free.
         return np.concatenate([state.camera, state.shape])
 
     def linearise(self, state: CameraBundle) -> list[tuple[LinearImage]]:
+        """Residuals and derivatives of each image of each view."""
         return [(self._image(view.corners, state, i),) for i, view in enumerate(self.views)]
 
     def _image(self, corners: Corners, state: CameraBundle, index: int) -> LinearImage:
@@ -73,6 +104,7 @@ class _CameraProblem:
         return LinearImage(corners.pixels - projection.pixels, by_shared, by_view)
 
     def moved(self, state: CameraBundle, shared: Array, views: Array) -> CameraBundle:
+        """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""
         turns = Rotation.from_rotvec(views[:, 3:]).as_matrix()
         return replace(
             state,
@@ -81,13 +113,3 @@ class _CameraProblem:
             view_rotations=turns @ state.view_rotations,
             view_translations_m=state.view_translations_m + views[:, :3],
         )
-
-
-def adjust_camera(
-    views: Sequence[CameraView], flat_m: Array, modes: ShapeModes, start: CameraBundle
-) -> BundleResult[CameraBundle]:
-    """Adjust from a start near the solution; raises ``SolveFailed``.
-
-    The covariance has shape (9 + shape, 9 + shape).
-    """
-    return adjust_bundle(_CameraProblem(views, flat_m, modes), start)

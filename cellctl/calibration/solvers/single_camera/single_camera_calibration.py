@@ -6,7 +6,8 @@ length of a 25 mm lens by half a percent and does not show in the residuals.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,19 +21,24 @@ from cellctl.calibration.boards.board import (
 from cellctl.calibration.boards.board_in_camera import board_in_camera
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
-from cellctl.calibration.solvers.bundle import BundleResult, residual_norms
-from cellctl.calibration.solvers.camera_start import start_of_camera
+from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
+from cellctl.calibration.solvers.camera_start import CameraStart, start_of_camera
 from cellctl.calibration.solvers.coverage import Coverage, CoverageLimits, coverage
 from cellctl.calibration.solvers.single_camera.single_camera_bundle import (
     CAMERA,
     CameraBundle,
-    adjust_camera,
+    CameraProblem,
 )
 from cellctl.calibration.solvers.single_camera.single_camera_result import (
     CameraViewResidual,
     SingleCameraResult,
 )
-from cellctl.calibration.solvers.view_rejection import MAX_REJECTED_RATIO, good_views
+from cellctl.calibration.solvers.view_rejection import (
+    MAX_REJECTED_RATIO,
+    adjust_good_views,
+    repeated,
+    why_left_out,
+)
 from cellctl.errors.calibration import PoorCoverage, TooFewViews, WrongBoard
 from cellctl.vision.camera.single_camera import SingleCamera
 
@@ -75,21 +81,21 @@ def calibrate_single_camera(
         raise WrongBoard(f"{board} looks the same turned by 180°; one side must be odd, one even")
     covered, coverage_checks = _covered(views, board, image_size, limits.coverage)
     flat_m, modes = board.corners_m, shape_modes(board, shape)
-    result = adjust_camera(views, flat_m, modes, _start(views, board, image_size, len(modes.sigma)))
-    rms = np.array([np.sqrt((norms**2).mean()) for norms in residual_norms(result.residuals)])
-    good = good_views(rms)
+    problem = CameraProblem(views, flat_m, modes)
+    start = start_of_camera([view.corners for view in views], board, image_size)
+    again = repeated([view.corners for view in views])
+    excluded = np.array([index in again for index in range(len(views))])
+    adjusted = adjust_good_views(problem, _start(start, len(modes.sigma)), start.fits, excluded)
+    good, result, state = adjusted.good, adjusted.result, adjusted.result.state
+    twice = {i: f"its picture is that of {views[earlier].name}" for i, earlier in again.items()}
+    rejected = why_left_out([view.name for view in views], adjusted, twice)
     residuals = tuple(
-        CameraViewResidual(view.name, float(rms[i]), len(view.corners.ids), bool(good[i]))
-        for i, view in enumerate(views)
+        CameraViewResidual(view.name, float(rms_px), len(view.corners.ids), bool(used))
+        for view, rms_px, used in zip(views, adjusted.view_rms_px, good, strict=True)
     )
     if good.sum() < limits.coverage.views:
-        raise TooFewViews(f"{good.sum()} views are left after rejecting {_rejected(residuals)}")
-    kept = [view for view, is_good in zip(views, good, strict=True) if is_good]
-    # Bad views have pulled the solution, so it is adjusted once more without them, from where it
-    # is.
-    if not good.all():
-        result = adjust_camera(kept, flat_m, modes, _of_views(result.state, good))
-    state = result.state
+        raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")
+    kept = list(compress(views, good))
     norms = np.concatenate(residual_norms(result.residuals))
     rms_px = float(np.sqrt((norms**2).mean()))
     held_out_px = _held_out_px(kept, board, shape, state)
@@ -113,7 +119,7 @@ def calibrate_single_camera(
             LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
             *_held_out_check(held_out_px, limits),
         ),
-        warnings=_warnings(len(kept), _rejected(residuals), held_out_px),
+        warnings=_warnings(len(kept), rejected, held_out_px),
         residuals=_field(kept, result),
     )
 
@@ -142,23 +148,12 @@ def _covered(
     return covered, checks
 
 
-def _start(
-    views: Sequence[CameraView], board: CalibrationBoard, image_size: tuple[int, int], modes: int
-) -> CameraBundle:
-    camera, poses = start_of_camera([view.corners for view in views], board, image_size)
+def _start(start: CameraStart, modes: int) -> CameraBundle:
     return CameraBundle(
-        camera,
+        start.camera,
         np.zeros(modes),
-        np.stack([pose[:3, :3] for pose in poses]),
-        np.stack([pose[:3, 3] for pose in poses]),
-    )
-
-
-def _of_views(state: CameraBundle, chosen: NDArray[np.bool_]) -> CameraBundle:
-    return replace(
-        state,
-        view_rotations=state.view_rotations[chosen],
-        view_translations_m=state.view_translations_m[chosen],
+        np.stack([pose[:3, :3] for pose in start.camera_T_board]),
+        np.stack([pose[:3, 3] for pose in start.camera_T_board]),
     )
 
 
@@ -169,12 +164,12 @@ def _held_out_px(
     if len(views) < 2 * _MIN_HALF:
         return None
     modes = shape_modes(board, shape)
+    problem = CameraProblem(views, board.corners_m, modes)
     # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     squares, count = 0.0, 0
     for own in (first, ~first):
-        seen = [view for view, is_own in zip(views, own, strict=True) if is_own]
-        half = adjust_camera(seen, board.corners_m, modes, _of_views(state, own)).state
+        half = adjust_bundle(problem.of_views(own), problem.state_of_views(state, own)).state
         camera, board_m = camera_model(half.camera), board.corners_m + modes.modes @ half.shape
         for view, is_own in zip(views, own, strict=True):
             if is_own:
@@ -194,19 +189,13 @@ def _held_out_check(
     return (LimitCheck("held-out rms", held_out_px, limits.held_out_px, "px"),)
 
 
-def _warnings(kept: int, rejected: str, held_out_px: float | None) -> tuple[str, ...]:
-    warnings = []
-    if rejected:
-        warnings.append(f"views rejected for their residuals: {rejected}")
+def _warnings(kept: int, rejected: Sequence[str], held_out_px: float | None) -> tuple[str, ...]:
+    warnings = [f"left out: {view}" for view in rejected]
     if kept < 20:
         warnings.append(f"{kept} views; 20 to 40 are advisable")
     if held_out_px is None:
         warnings.append(f"no cross-validation: it needs {2 * _MIN_HALF} views")
     return tuple(warnings)
-
-
-def _rejected(residuals: Sequence[CameraViewResidual]) -> str:
-    return ", ".join(view.name for view in residuals if not view.used)
 
 
 def _field(views: Sequence[CameraView], result: BundleResult[CameraBundle]) -> NDArray[np.float64]:

@@ -6,6 +6,7 @@ shape.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -13,11 +14,10 @@ from scipy.spatial.transform import Rotation
 from cellctl.calibration.boards.board import BoardView, Corners, ShapeModes
 from cellctl.calibration.boards.projection import project
 from cellctl.calibration.solvers.bundle import (
-    BundleResult,
     LinearImage,
-    adjust_bundle,
     by_board_pose,
 )
+from cellctl.calibration.solvers.view_rejection import Mask
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skews
 
@@ -43,20 +43,51 @@ class BundleState:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _StereoProblem:
+class StereoProblem:
+    """Adjusts a ``BundleState``; see ``ProblemOfViews``.
+
+    The covariance has shape (24 + shape, 24 + shape); residuals are pairs, left and right.
+    """
+
     views: Sequence[BoardView]
     flat_m: Array
     modes: ShapeModes
     name: str = "stereo"
 
+    def __len__(self) -> int:
+        return len(self.views)
+
+    def of_views(self, chosen: Mask) -> "StereoProblem":
+        """The adjustment of the chosen views alone."""
+        return replace(self, views=list(compress(self.views, chosen)))
+
+    def state_of_views(self, state: BundleState, chosen: Mask) -> BundleState:
+        """The unknowns of the chosen views alone."""
+        return replace(
+            state,
+            view_rotations=state.view_rotations[chosen],
+            view_translations_m=state.view_translations_m[chosen],
+        )
+
+    def joined(self, shared: BundleState, views: BundleState) -> BundleState:
+        """What the views share from one, the poses of the boards from the other."""
+        return replace(
+            shared,
+            view_rotations=views.view_rotations,
+            view_translations_m=views.view_translations_m,
+        )
+
     @property
     def prior(self) -> Array:
+        """Inverse prior variance of each shared unknown, 0 where it is free, shape (s,)."""
         return np.concatenate([np.zeros(_HEAD), 1 / self.modes.sigma**2])
 
     def offsets(self, state: BundleState) -> Array:
+        """Shared unknowns less what the prior expects of them, shape (s,); 0 where free."""
         return np.concatenate([np.zeros(_HEAD), state.shape])
 
     def linearise(self, state: BundleState) -> list[tuple[LinearImage, ...]]:
+        """Residuals and derivatives of each image of each view."""
         return [
             (
                 self._image(view.left, state, index, is_right=False),
@@ -89,6 +120,7 @@ class _StereoProblem:
         return LinearImage(corners.pixels - projection.pixels, by_shared, by_view)
 
     def moved(self, state: BundleState, shared: Array, views: Array) -> BundleState:
+        """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""
         turns = Rotation.from_rotvec(views[:, 3:]).as_matrix()
         return replace(
             state,
@@ -100,13 +132,3 @@ class _StereoProblem:
             view_rotations=turns @ state.view_rotations,
             view_translations_m=state.view_translations_m + views[:, :3],
         )
-
-
-def adjust(
-    views: Sequence[BoardView], flat_m: Array, modes: ShapeModes, start: BundleState
-) -> BundleResult[BundleState]:
-    """Adjust from a start near the solution; raises ``SolveFailed``.
-
-    The covariance has shape (24 + shape, 24 + shape); residuals are pairs, left and right.
-    """
-    return adjust_bundle(_StereoProblem(views, flat_m, modes), start)

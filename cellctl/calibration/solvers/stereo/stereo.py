@@ -6,27 +6,31 @@ millimetre (docs/calibration.md has the figures).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from itertools import compress
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, shape_modes
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
-from cellctl.calibration.solvers.bundle import BundleResult, residual_norms
+from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
 from cellctl.calibration.solvers.coverage import CoverageLimits
-from cellctl.calibration.solvers.stereo.bundle import BundleState, adjust
+from cellctl.calibration.solvers.stereo.bundle import BundleState, StereoProblem
 from cellctl.calibration.solvers.stereo.stereo_coverage import check_coverage
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult, ViewResidual
 from cellctl.calibration.solvers.stereo.stereo_start import start_values
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation, cross_validate
-from cellctl.calibration.solvers.view_rejection import MAX_REJECTED_RATIO, good_views
+from cellctl.calibration.solvers.view_rejection import (
+    MAX_REJECTED_RATIO,
+    Mask,
+    RobustAdjustment,
+    adjust_good_views,
+    why_left_out,
+)
 from cellctl.errors.calibration import TooFewViews
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
-
-Mask = NDArray[np.bool_]
 
 _MIN_HALF = 5
 """Views that a half calibration needs."""
@@ -63,23 +67,15 @@ def calibrate_stereo(
     left, right, coverage_checks = check_coverage(views, board, image_size, limits.coverage)
     modes = shape_modes(board, shape)
     flat_m = board.corners_m
-    ordered, start = start_values(views, board, image_size, len(modes.sigma))
-    result = adjust(ordered, flat_m, modes, start)
-    view_rms = np.array([np.sqrt((n**2).mean()) for n in residual_norms(result.residuals)])
-    good = good_views(view_rms)
+    start = start_values(views, board, image_size, len(modes.sigma))
+    problem = StereoProblem(start.views, flat_m, modes)
+    adjusted = adjust_good_views(problem, start.state, start.plausible, start.excluded)
+    good, result, state = adjusted.good, adjusted.result, adjusted.result.state
+    rejected = why_left_out([view.name for view in start.views], adjusted, start.doubts)
     # Judged a second time, because coverage was checked with the views that are now rejected.
     if good.sum() < limits.coverage.views:
-        raise TooFewViews(f"{good.sum()} views are left after rejecting {_names(ordered, ~good)}")
-    all_residuals = [
-        _view_residual(v, result, i, used=bool(good[i])) for i, v in enumerate(ordered)
-    ]
-    kept = [view for view, is_good in zip(ordered, good, strict=True) if is_good]
-    state = _of_views(result.state, good)
-    # Bad views have pulled the solution, so it is adjusted once more without them, from where it
-    # is.
-    if not good.all():
-        result = adjust(kept, flat_m, modes, state)
-        state = result.state
+        raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")
+    kept = list(compress(start.views, good))
     board_m = flat_m + modes.modes @ state.shape
     validation = _validate(kept, board, shape, state, board_m)
     norms = np.concatenate(residual_norms(result.residuals))
@@ -97,30 +93,28 @@ def calibrate_stereo(
         head=head,
         method=f"joint bundle adjustment, board shape {shape.value}",
         board=board,
-        views=tuple(all_residuals),
+        views=_view_residuals(start.views, adjusted),
         board_m=board_m,
         coverage=(left, right),
         validation=validation,
         checks=(*coverage_checks, *_result_checks(head, covariance, good, validation, limits)),
-        warnings=_warnings(len(kept), validation, _names(ordered, ~good)),
+        warnings=_warnings(len(kept), validation, rejected),
         sigma_px=result.sigma_px,
         left_residuals=_field([view.left.pixels for view in kept], result, 0),
         right_residuals=_field([view.right.pixels for view in kept], result, 1),
     )
 
 
-def _view_residual(
-    view: BoardView, result: BundleResult[BundleState], index: int, *, used: bool
-) -> ViewResidual:
-    left, right = (float(np.sqrt((r**2).sum(axis=1).mean())) for r in result.residuals[index])
-    return ViewResidual(view.name, left, right, len(view.left.ids), len(view.right.ids), used)
-
-
-def _of_views(state: BundleState, chosen: Mask) -> BundleState:
-    return replace(
-        state,
-        view_rotations=state.view_rotations[chosen],
-        view_translations_m=state.view_translations_m[chosen],
+def _view_residuals(
+    views: Sequence[BoardView], adjusted: RobustAdjustment[BundleState]
+) -> tuple[ViewResidual, ...]:
+    rms_px = [
+        tuple(float(np.sqrt((side**2).sum(axis=1).mean())) for side in pair)
+        for pair in adjusted.residuals
+    ]
+    return tuple(
+        ViewResidual(view.name, left, right, len(view.left.ids), len(view.right.ids), bool(used))
+        for view, (left, right), used in zip(views, rms_px, adjusted.good, strict=True)
     )
 
 
@@ -134,15 +128,15 @@ def _validate(
     """Two half calibrations, every other view each; None when there are too few views."""
     if len(views) < 2 * _MIN_HALF:
         return None
-    modes = shape_modes(board, shape)
+    problem = StereoProblem(views, board.corners_m, shape_modes(board, shape))
     # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     parts = (list(views[0::2]), list(views[1::2]))
     halves = tuple(
         # Each half starts at the full solution: the start saves time and has no influence on the
         # minimum.
-        adjust(part, board.corners_m, modes, _of_views(state, chosen)).state
-        for part, chosen in zip(parts, (first, ~first), strict=True)
+        adjust_bundle(problem.of_views(chosen), problem.state_of_views(state, chosen)).state
+        for chosen in (first, ~first)
     )
     return cross_validate((halves[0], halves[1]), parts, board_m)
 
@@ -175,19 +169,15 @@ def _result_checks(
     return tuple(checks)
 
 
-def _warnings(kept: int, validation: CrossValidation | None, rejected: str) -> tuple[str, ...]:
-    warnings = []
-    if rejected:
-        warnings.append(f"views rejected for their residuals: {rejected}")
+def _warnings(
+    kept: int, validation: CrossValidation | None, rejected: Sequence[str]
+) -> tuple[str, ...]:
+    warnings = [f"left out: {view}" for view in rejected]
     if kept < 20:
         warnings.append(f"{kept} views; 20 to 40 are advisable")
     if validation is None:
         warnings.append(f"no cross-validation: it needs {2 * _MIN_HALF} views")
     return tuple(warnings)
-
-
-def _names(views: Sequence[BoardView], chosen: Mask) -> str:
-    return ", ".join(view.name for view, is_chosen in zip(views, chosen, strict=True) if is_chosen)
 
 
 def _field(pixels: Sequence[Array], result: BundleResult[BundleState], side: int) -> Array:
