@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from cellctl.calibration.boards.projection import Projection
+from cellctl.calibration.solvers.view_weights import weigh_views
 from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skews
@@ -73,16 +74,30 @@ class BundleResult(Generic[S]):
     sigma_px: float
     """Standard deviation of a pixel coordinate from the residuals."""
     covariance: Array
-    """Covariance of the shared unknowns, shape (s, s)."""
+    """Covariance of the shared unknowns, shape (s, s), from how the views disagree
+    (``view_weights``)."""
+    shift_sigmas: Array
+    """By how much the shared unknowns move when a view is left out: root mean square in stated
+    standard deviations, shape (views,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Normal:
+    """Normal equations by view, so that the poses can be eliminated and views weighed."""
+
+    prior: Array
+    """Of the shared unknowns, shape (s,)."""
+    prior_gradient: Array
     shared: Array
+    """Shape (views, s, s)."""
     mixed: Array
+    """Shape (views, s, 6)."""
     own: Array
+    """Shape (views, 6, 6)."""
     shared_gradient: Array
+    """Shape (views, s)."""
     own_gradient: Array
+    """Shape (views, 6)."""
     cost: float
 
 
@@ -98,10 +113,10 @@ def adjust_bundle(problem: BundleProblem[S], start: S, tolerance: float = FINE) 
     count = sum(r.size for images in residuals for r in images)
     freedom = count - len(problem.prior) - 6 * len(residuals)
     sigma_px = float(np.sqrt(squares / max(freedom, 1)))
-    # Once more without damping and with the final noise: this matrix is the covariance's inverse.
-    normal = _normal_equations(problem, state, sigma_px)
-    reduced, _ = _eliminate(normal, 0.0)
-    return BundleResult(state, residuals, sigma_px, _inverse(reduced, problem.name))
+    # Once more without damping and with the final noise.
+    information, pulls = _by_view(_normal_equations(problem, state, sigma_px))
+    weighed = weigh_views(problem.prior, information, pulls, problem.name)
+    return BundleResult(state, residuals, sigma_px, weighed.covariance, weighed.shift_sigmas)
 
 
 def place_board(problem: BundleProblem[S], start: S, sigma_px: float) -> S:
@@ -164,9 +179,8 @@ def _minimise(
 def _normal_equations(problem: BundleProblem[S], state: S, sigma_px: float) -> _Normal:
     views = problem.linearise(state)
     prior, offsets = problem.prior, problem.offsets(state)
-    size = len(prior)
-    shared, gradient = np.diag(prior), -prior * offsets
-    cost = float((prior * offsets**2).sum())
+    size, cost = len(prior), float((prior * offsets**2).sum())
+    shared, gradient = np.zeros((len(views), size, size)), np.zeros((len(views), size))
     mixed = np.zeros((len(views), size, 6))
     own, own_gradient = np.zeros((len(views), 6, 6)), np.zeros((len(views), 6))
     for index, images in enumerate(views):
@@ -177,13 +191,13 @@ def _normal_equations(problem: BundleProblem[S], state: S, sigma_px: float) -> _
             by_shared = (linear.by_shared * scale).reshape(-1, size)
             by_view = (linear.by_view * scale).reshape(-1, 6)
             residuals = (linear.residuals * scale[:, :, 0]).ravel()
-            shared += by_shared.T @ by_shared
-            gradient += by_shared.T @ residuals
+            shared[index] += by_shared.T @ by_shared
+            gradient[index] += by_shared.T @ residuals
             mixed[index] += by_shared.T @ by_view
             own[index] += by_view.T @ by_view
             own_gradient[index] += by_view.T @ residuals
             cost += loss
-    return _Normal(shared, mixed, own, gradient, own_gradient, cost)
+    return _Normal(prior, -prior * offsets, shared, mixed, own, gradient, own_gradient, cost)
 
 
 def _step(normal: _Normal, damping: float, name: str) -> tuple[Array, Array]:
@@ -200,7 +214,7 @@ def _own_step(normal: _Normal, damping: float) -> Array:
 
 
 def _solved(matrices: Array, sides: Array) -> Array:
-    return np.linalg.solve(matrices, sides[:, :, None])[:, :, 0]
+    return np.asarray(np.linalg.solve(matrices, sides[:, :, None])[:, :, 0])
 
 
 def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
@@ -208,9 +222,18 @@ def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
     # The pose of a view occurs in its own images only, so each is eliminated by itself and the
     # cost grows linearly with the number of views.
     solved = np.linalg.solve(_damped(normal.own, damping), normal.mixed.transpose(0, 2, 1))
-    reduced = _damped(normal.shared, damping) - np.einsum("vsk,vkt->st", normal.mixed, solved)
-    gradient = normal.shared_gradient - np.einsum("vks,vk->s", solved, normal.own_gradient)
-    return reduced, gradient
+    shared = np.diag(normal.prior) + normal.shared.sum(axis=0)
+    reduced = _damped(shared, damping) - np.einsum("vsk,vkt->st", normal.mixed, solved)
+    gradient = normal.prior_gradient + normal.shared_gradient.sum(axis=0)
+    return reduced, gradient - np.einsum("vks,vk->s", solved, normal.own_gradient)
+
+
+def _by_view(normal: _Normal) -> tuple[Array, Array]:
+    """What each view says of the shared unknowns: information (v, s, s) and pull (v, s)."""
+    solved = np.linalg.solve(normal.own, normal.mixed.transpose(0, 2, 1))
+    information = normal.shared - np.einsum("vsk,vkt->vst", normal.mixed, solved)
+    pulls = normal.shared_gradient - np.einsum("vks,vk->vs", solved, normal.own_gradient)
+    return information, pulls
 
 
 def _damped(matrices: Array, damping: float) -> Array:
@@ -226,14 +249,6 @@ def _factor(matrix: Array, name: str) -> tuple[Array, bool]:
         return cho_factor(matrix)
     except np.linalg.LinAlgError as error:
         raise SolveFailed(f"the {name} adjustment is singular") from error
-
-
-def _inverse(matrix: Array, name: str) -> Array:
-    """Inverse of a positive definite matrix with badly scaled unknowns."""
-    scale = 1 / np.sqrt(np.diag(matrix))
-    factor = _factor(matrix * np.outer(scale, scale), name)
-    inverse: Array = cho_solve(factor, np.eye(len(matrix)))
-    return inverse * np.outer(scale, scale)
 
 
 def _huber(scaled: Array) -> tuple[Array, float]:

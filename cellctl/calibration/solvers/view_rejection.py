@@ -67,6 +67,12 @@ class RobustAdjustment(Generic[S]):
         """Of all views, both axes together, shape (views,)."""
         return _view_rms(self.residuals)
 
+    @property
+    def shift_sigmas(self) -> list[float | None]:
+        """By how much the solution moves without each view; None for those left out."""
+        shifts = iter(self.result.shift_sigmas)
+        return [float(next(shifts)) if used else None for used in self.good]
+
 
 def adjust_good_views(
     problem: ProblemOfViews[S], start: S, plausible: Mask, excluded: Mask
@@ -99,14 +105,14 @@ def why_left_out(
     """``NAME: reason`` of each view that was left out."""
     rms_px, good = adjusted.view_rms_px, adjusted.good
     typical_px = float(np.median(rms_px[good]))
+    misfits = [
+        f"its corners are off by {one:.2f} px, those of the others by {typical_px:.2f} px"
+        for one in rms_px
+    ]
     return [
-        f"{names[index]}: "
-        + doubts.get(
-            int(index),
-            f"its corners are off by {rms_px[index]:.2f} px, those of the others by "
-            f"{typical_px:.2f} px",
-        )
-        for index in np.flatnonzero(~good)
+        f"{name}: {doubts.get(index, misfits[index])}"
+        for index, (name, used) in enumerate(zip(names, good, strict=True))
+        if not used
     ]
 
 
@@ -137,7 +143,8 @@ def repeated(images: Sequence[Corners]) -> dict[int, int]:
 def _all_residuals(
     problem: ProblemOfViews[S], result: BundleResult[S], start: S
 ) -> tuple[tuple[Array, ...], ...]:
-    state, residuals = problem.joined(result.state, start), []
+    state = problem.joined(result.state, start)
+    residuals: list[tuple[Array, ...]] = []
     # One view at a time: a board that finds no place must not keep the others from theirs.
     for view in np.eye(len(problem), dtype=np.bool_):
         alone = problem.of_views(view)

@@ -103,12 +103,18 @@ def stereo(
     _say_left_out(console, found.not_found)
     result = calibrate_stereo(found.views, pattern, found.image_size, shape=board_shape)
     for view in result.views:
-        mark = "" if view.used else "  REJECTED"
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
-        console.print(f"  {view.name}: {rms}{mark}", markup=False)
+        console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", markup=False)
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
     _finish(result, result.warnings, out, picture, lambda: stereo_picture(result))
+
+
+def _weight(shift_sigmas: float | None) -> str:
+    """What a view counts in the result."""
+    if shift_sigmas is None:
+        return "  LEFT OUT"
+    return f", without it the result moves by {shift_sigmas:.2f} sigma"
 
 
 @app.command("camera")
@@ -129,8 +135,8 @@ def camera(
     _say_left_out(console, found.not_found)
     result = calibrate_single_camera(found.views, pattern, found.image_size, shape=board_shape)
     for view in result.views:
-        mark = "" if view.used else "  REJECTED"
-        console.print(f"  {view.name}: {view.rms_px:.3f} px{mark}", markup=False)
+        weight = _weight(view.shift_sigmas)
+        console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}", markup=False)
     matrix, sigma = result.camera.model.camera_matrix, result.sigma
     for name, value, one in (
         ("focal length", (matrix[0, 0], matrix[1, 1]), sigma[:2]),

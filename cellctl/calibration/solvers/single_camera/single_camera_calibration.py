@@ -90,8 +90,12 @@ def calibrate_single_camera(
     twice = {i: f"its picture is that of {views[earlier].name}" for i, earlier in again.items()}
     rejected = why_left_out([view.name for view in views], adjusted, twice)
     residuals = tuple(
-        CameraViewResidual(view.name, float(rms_px), len(view.corners.ids), bool(used))
-        for view, rms_px, used in zip(views, adjusted.view_rms_px, good, strict=True)
+        CameraViewResidual(
+            view.name, float(rms_px), len(view.corners.ids), shift is not None, shift
+        )
+        for view, rms_px, shift in zip(
+            views, adjusted.view_rms_px, adjusted.shift_sigmas, strict=True
+        )
     )
     if good.sum() < limits.coverage.views:
         raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")

@@ -35,7 +35,10 @@ class CameraViewResidual:
     rms_px: float
     corners: int
     used: bool
-    """False for a view that was rejected as bad; its residual is from before."""
+    """False for a view that was left out; its residual is that of its board at its best pose."""
+    shift_sigmas: float | None = None
+    """Without this view the unknowns of the camera move by so much: root mean square, in stated
+    standard deviations. None for a view that was left out, and in records of older versions."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

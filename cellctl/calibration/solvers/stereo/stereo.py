@@ -113,8 +113,16 @@ def _view_residuals(
         for pair in adjusted.residuals
     ]
     return tuple(
-        ViewResidual(view.name, left, right, len(view.left.ids), len(view.right.ids), bool(used))
-        for view, (left, right), used in zip(views, rms_px, adjusted.good, strict=True)
+        ViewResidual(
+            view.name,
+            left,
+            right,
+            len(view.left.ids),
+            len(view.right.ids),
+            shift is not None,
+            shift,
+        )
+        for view, (left, right), shift in zip(views, rms_px, adjusted.shift_sigmas, strict=True)
     )
 
 

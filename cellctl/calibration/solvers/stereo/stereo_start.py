@@ -66,15 +66,13 @@ def start_values(
     fits = left.fits & right.fits
     rotation, translation_m, doubts = _common_pose([view.name for view in views], relative, fits)
     for side, start in (("left", left), ("right", right)):
-        for index in np.flatnonzero(~start.fits):
-            doubts[int(index)] = f"the {side} camera cannot have taken it together with the others"
+        for misfit in np.flatnonzero(~start.fits):
+            doubts[int(misfit)] = f"the {side} camera cannot have taken it together with the others"
     excluded = np.zeros(len(views), dtype=np.bool_)
     for index, (earlier, sides) in _repeated_pairs(views).items():
         excluded[index] = len(sides) == 2
-        pictures = " and ".join(sides) + (
-            " pictures are those" if len(sides) == 2 else " picture is that"
-        )
-        doubts[index] = f"its {pictures} of {views[earlier].name}"
+        pictures = "pictures are those" if excluded[index] else "picture is that"
+        doubts[index] = f"its {' and '.join(sides)} {pictures} of {views[earlier].name}"
     plausible = np.array([index not in doubts for index in range(len(views))])
     state = BundleState(
         left.camera,
@@ -117,7 +115,7 @@ def _common_pose(
     # The median rotation: a wrongly paired view may be off by any angle and must not pull the
     # start.
     middle = rotations[int(asked[np.argmin(np.median(angles, axis=1))])]
-    off_rad = (rotations * middle.inv()).magnitude()
+    off_rad = np.atleast_1d((rotations * middle.inv()).magnitude())
     near = fits & (off_rad <= np.median(off_rad[fits]))
     translation_m = np.median(relative[near, :3, 3], axis=0)
     off_m = np.linalg.norm(relative[:, :3, 3] - translation_m, axis=1)

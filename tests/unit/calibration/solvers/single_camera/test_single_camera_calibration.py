@@ -103,6 +103,24 @@ def test_a_bad_view_is_named_and_left_out() -> None:
     assert abs(camera_vector(result.camera.model)[0] - CAMERA[0]) < 25
 
 
+def test_a_picture_that_was_stored_twice_counts_once() -> None:
+    views = camera_views(np.random.default_rng(1))
+    views.append(CameraView("again", views[3].corners))
+    result = calibrate_single_camera(views, BOARD, IMAGE_SIZE)
+    assert [view.name for view in result.views if not view.used] == ["again"]
+    assert f"left out: again: its picture is that of {views[3].name}" in result.warnings
+
+
+def test_corners_in_another_order_do_not_spoil_the_start() -> None:
+    views = camera_views(np.random.default_rng(1))
+    order = np.random.default_rng(2).permutation(88)
+    corners = views[7].corners
+    views[7] = CameraView("mixed", Corners(corners.ids, corners.pixels[order]))
+    result = calibrate_single_camera(views, BOARD, IMAGE_SIZE)
+    assert [view.name for view in result.views if not view.used] == ["mixed"]
+    assert abs(camera_vector(result.camera.model)[0] - CAMERA[0]) < 25
+
+
 def test_few_views() -> None:
     with pytest.raises(TooFewViews, match="5 usable views"):
         calibrate_single_camera(camera_views(np.random.default_rng(0), 5), BOARD, IMAGE_SIZE)

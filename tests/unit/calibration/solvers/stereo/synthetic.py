@@ -90,3 +90,20 @@ def volume_points() -> Array:
         np.linspace(-0.09, 0.09, 5), np.linspace(-0.08, 0.08, 5), np.linspace(0.47, 0.53, 3)
     )
     return np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+
+
+def hanging_together(
+    views: list[BoardView], rng: np.random.Generator, sigma_px: float
+) -> list[BoardView]:
+    """The same views with an error that is smooth in each image and other in each.
+
+    So are the errors of real views: a board that bends otherwise, an edge that is blurred one way.
+    """
+
+    def moved(corners: Corners) -> Corners:
+        x, y = ((corners.pixels - np.array(IMAGE_SIZE) / 2) / 1200).T
+        terms = np.stack([np.ones_like(x), x, y, x * y, x**2, y**2, x**3, y**3, x**2 * y, x * y**2])
+        size = (len(terms), 2)
+        return Corners(corners.ids, corners.pixels + terms.T @ rng.normal(0, sigma_px, size))
+
+    return [BoardView(view.name, moved(view.left), moved(view.right)) for view in views]

@@ -1,5 +1,5 @@
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache
 
@@ -16,6 +16,7 @@ from cellctl.calibration.solvers.stereo.stereo_validation import intersect_rays
 from cellctl.errors.calibration import (
     CalibrationCamerasSwapped,
     CalibrationCameraUpsideDown,
+    CameraSeenTwice,
     PairsInconsistent,
     PoorCoverage,
     TooFewViews,
@@ -26,6 +27,7 @@ from cellctl.vision.camera.stereo_head import StereoHead
 from tests.unit.calibration.solvers.stereo.synthetic import (
     BOARD,
     IMAGE_SIZE,
+    hanging_together,
     make_views,
     table_1_head,
     volume_points,
@@ -182,6 +184,93 @@ def test_bad_view_is_named_and_left_out() -> None:
     assert [view.name for view in result.views if not view.used] == ["view-07"]
     assert any("view-07" in warning for warning in result.warnings)
     assert result.sigma_px == pytest.approx(0.05, rel=0.1)
+
+
+def _moved(view: BoardView, du: float, dv: float, *, right: bool = False) -> BoardView:
+    side = view.right if right else view.left
+    corners = Corners(side.ids, side.pixels + np.array([du, dv]))
+    return replace(view, right=corners) if right else replace(view, left=corners)
+
+
+def _shuffled(corners: Corners) -> Corners:
+    order = np.random.default_rng(0).permutation(len(corners.ids))
+    return Corners(corners.ids, corners.pixels[order])
+
+
+SPOILS: dict[str, tuple[Callable[[list[BoardView]], BoardView], str]] = {
+    "the left picture of another pair": (
+        lambda views: replace(views[5], left=views[4].left),
+        "its left picture is that of view-04",
+    ),
+    "a pair stored twice": (
+        lambda views: replace(views[4], name="view-05"),
+        "its left and right pictures are those of view-04",
+    ),
+    "left and right exchanged": (
+        lambda views: BoardView("view-05", views[5].right, views[5].left),
+        "from where the others do",
+    ),
+    "the board moved between the exposures": (
+        lambda views: replace(views[5], right=views[9].right),
+        "from where the others do",
+    ),
+    "an image shifted by two pixels": (lambda views: _moved(views[5], 0, 2), "its corners are off"),
+    "an image shifted by twenty": (lambda views: _moved(views[5], 0, 20), "its corners are off"),
+    "an image cropped": (lambda views: _moved(views[5], 300, 0, right=True), "others"),
+    "corners in another order": (
+        lambda views: replace(views[5], right=_shuffled(views[5].right)),
+        "right camera cannot have taken it",
+    ),
+}
+
+
+@pytest.mark.parametrize("spoil", SPOILS)
+def test_one_bad_pair_is_named_with_its_reason_and_the_rest_is_solved(spoil: str) -> None:
+    views = make_views(np.random.default_rng(3), 14)
+    spoiled, reason = SPOILS[spoil]
+    result = calibrate_stereo([*views[:5], spoiled(views), *views[6:]], BOARD, IMAGE_SIZE)
+    assert [view.name for view in result.views if not view.used] == ["view-05"]
+    assert any("left out: view-05" in said and reason in said for said in result.warnings)
+    without = calibrate_stereo([*views[:5], *views[6:]], BOARD, IMAGE_SIZE)
+    np.testing.assert_allclose(
+        result.head.translation_m, without.head.translation_m, rtol=0, atol=2e-8
+    )
+
+
+def test_several_bad_pairs() -> None:
+    views = make_views(np.random.default_rng(3), 20)
+    others = make_views(np.random.default_rng(4), 20)
+    for index in (3, 9, 15):
+        views[index] = replace(views[index], right=others[index].right)
+    result = calibrate_stereo(views, BOARD, IMAGE_SIZE)
+    assert [view.name for view in result.views if not view.used] == [
+        "view-03",
+        "view-09",
+        "view-15",
+    ]
+
+
+def test_the_same_files_for_both_cameras() -> None:
+    views = make_views(np.random.default_rng(0), 12)
+    with pytest.raises(CameraSeenTwice, match="12 pairs"):
+        calibrate_stereo([replace(view, right=view.left) for view in views], BOARD, IMAGE_SIZE)
+
+
+def test_covariance_is_honest_where_errors_hang_together_within_a_view() -> None:
+    squares, moves = [], []
+    for seed in range(4):
+        rng = np.random.default_rng(seed)
+        views = hanging_together(make_views(rng, 20), rng, 0.05)
+        result = calibrate_stereo(views, BOARD, IMAGE_SIZE)
+        assert result.head.covariance is not None
+        error, sigma = parameter_errors(result.head), np.sqrt(np.diag(result.head.covariance))
+        scaled = result.head.covariance / np.outer(sigma, sigma)
+        squares.append(float((error / sigma) @ np.linalg.solve(scaled, error / sigma)) / 24)
+        moves += [view.shift_sigmas for view in result.views if view.shift_sigmas is not None]
+    # Each is a chi square of 24 over its freedom, with a covariance from 20 views.
+    assert 0.5 < np.mean(squares) < 2.5
+    # All views together tell as much as the sum of their moves.
+    assert 0.3 < float(np.sqrt(np.mean(np.square(moves)) * 20)) < 2.0
 
 
 def test_record_survives_json() -> None:
