@@ -165,6 +165,11 @@ def hand_eye(
         calibrate_hand_eye(data.stops(), chosen, noise=data.robot_noise()),
         camera_id=data.camera_id,
     )
+    console = _console()
+    for name, (distance_m, angle_rad) in result.residuals.items():
+        mark = "  LEFT OUT" if name in result.rejected else ""
+        residual = f"{distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°"
+        console.print(f"  {name}: {residual}{mark}", markup=False)
     in_hand = chosen is Setup.EYE_IN_HAND
     _show("flange_T_camera" if in_hand else "base_T_camera", result.camera)
     _show("base_T_board" if in_hand else "flange_T_board", result.board)

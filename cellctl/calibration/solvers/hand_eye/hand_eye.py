@@ -8,25 +8,33 @@ and against pure reprojection, this is best or near best whatever the robot's ac
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.calibration.solvers.adjustment import Adjustment, weighted_least_squares
+from cellctl.calibration.solvers.hand_eye.hand_eye_mistakes import explanation, odd_poses
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
     HandEyePose,
     HandEyeResult,
     RobotNoise,
     Setup,
 )
-from cellctl.calibration.solvers.hand_eye.hand_eye_start import MIN_POSES, closed_form
-from cellctl.errors.calibration import RobotCameraMismatch
+from cellctl.calibration.solvers.hand_eye.hand_eye_start import (
+    MIN_POSES,
+    closed_form,
+    turns_agree,
+)
+from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose, perturbed
 
 _OUTLIER_CHI2 = 40.0
 """Squared normalised residual (6 coordinates) of a pose with a gross error: p below 1e-6."""
+_LEAST_KEPT = 0.8
+"""Share of the poses. With more gross errors nobody knows which poses are the good ones."""
 _MAX_START_M = 0.02
 """The closed form puts the board this far off its place only with data of another setup."""
 
@@ -51,17 +59,15 @@ def calibrate_hand_eye(
 ) -> HandEyeResult:
     """Solve for camera and board. Raises ``PosesNotDiverse`` or ``RobotCameraMismatch``."""
     noise, limits = noise or RobotNoise(), limits or HandEyeLimits()
-    x, z, spread = _start(poses, setup)
-    used = list(poses)
-    rejected: list[str] = []
+    used, rejected = _turning_alike(poses, setup)
+    x, z, spread = _start(used, setup)
     while True:
         solution, x, z = _maximum_likelihood(used, setup, noise, x, z)
         squares = _pose_squares(used, setup, noise, x, z)
         worst = int(np.argmax(squares))
         # 5.35 is the median of a chi square with six degrees of freedom.
         typical = max(1.0, float(np.median(squares)) / 5.35)
-        # A fifth at most: with more gross errors nobody knows which poses are the good ones.
-        spare = len(used) > max(MIN_POSES, 0.8 * len(poses))
+        spare = len(used) > max(MIN_POSES, _LEAST_KEPT * len(poses))
         if squares[worst] <= _OUTLIER_CHI2 * typical or not spare:
             break
         rejected.append(used.pop(worst).name)
@@ -77,25 +83,42 @@ def calibrate_hand_eye(
         chi2_ratio=solution.chi2_ratio,
         spread_rad=(float(spread[0]), float(spread[1]), float(spread[2])),
         checks=_checks(camera, kept, limits),
-        warnings=_warnings(rejected, solution.chi2_ratio),
+        warnings=(
+            *_warnings(rejected, solution.chi2_ratio),
+            *odd_poses(poses, rejected, lambda pose: _predicted(pose, setup, x, z)),
+        ),
     )
+
+
+def _turning_alike(
+    poses: Sequence[HandEyePose], setup: Setup
+) -> tuple[list[HandEyePose], list[str]]:
+    """Poses without those that no closed form should see, and the names of these."""
+    turns = [_turn(pose.base_T_flange, setup) for pose in poses]
+    agree = turns_agree(turns, [pose.camera_T_board.pose for pose in poses])
+    if agree.sum() < max(MIN_POSES, _LEAST_KEPT * len(poses)):
+        return list(poses), []
+    return list(compress(poses, agree)), [pose.name for pose in compress(poses, ~agree)]
 
 
 def _start(
     poses: Sequence[HandEyePose], setup: Setup
 ) -> tuple[RigidTransform, RigidTransform, Array]:
-    """Closed form, and whether the data belong to the other setup."""
-    x, z, spread = _closed_form(poses, setup)
+    """Closed form; names the mistake, if one explains why the data do not fit."""
+    try:
+        x, z, spread = _closed_form(poses, setup)
+    except (RobotCameraMismatch, PosesNotDiverse) as fault:
+        hint = explanation(poses, setup) if len(poses) >= MIN_POSES else None
+        if hint is None:
+            raise
+        raise RobotCameraMismatch(f"{fault.detail}; {hint}") from fault
     # The closed form always yields something. The distance of the board tells whether the data fit
-    # the setup, and trying the other setup tells the user what is wrong.
-    if _typical_distance(poses, setup, x, z) > _MAX_START_M:
-        other_x, other_z, _ = _closed_form(poses, setup.other)
-        fits = _typical_distance(poses, setup.other, other_x, other_z) <= _MAX_START_M
-        hint = f"; the data fit {setup.other.value}" if fits else ""
-        raise RobotCameraMismatch(
-            f"the board is off by {_typical_distance(poses, setup, x, z) / MM:.0f} mm "
-            f"in the setup {setup.value}{hint}"
-        )
+    # the setup.
+    distance_m = _typical_distance(poses, setup, x, z)
+    if distance_m > _MAX_START_M:
+        hint = explanation(poses, setup)
+        said = f"the board is off by {distance_m / MM:.0f} mm in the setup {setup.value}"
+        raise RobotCameraMismatch(f"{said}; {hint}" if hint else said)
     return x, z, spread
 
 
@@ -187,6 +210,13 @@ def _pose_squares(
 
 def _turn(base_T_flange: RigidTransform, setup: Setup) -> RigidTransform:
     return base_T_flange if setup is Setup.EYE_IN_HAND else base_T_flange.inv()
+
+
+def _predicted(
+    pose: HandEyePose, setup: Setup, x: RigidTransform, z: RigidTransform
+) -> RigidTransform:
+    """camera_T_board."""
+    return x.inv() * _turn(pose.base_T_flange, setup).inv() * z
 
 
 def _distance(

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
@@ -60,6 +61,25 @@ def closed_form(
     # The median: a gross error among the poses must not pull the start.
     mean_translation = np.median([pose.translation for pose in z], axis=0)
     return x, RigidTransform.from_components(mean_translation, mean_rotation), spread
+
+
+def turns_agree(
+    turns: Sequence[RigidTransform], camera_T_board: Sequence[RigidTransform]
+) -> NDArray[np.bool_]:
+    """Poses at which robot and camera turn by the same angle, seen from most other poses.
+
+    A picture of another pose, or a board that was taken for turned, turns the camera otherwise.
+    Shape (poses,).
+    """
+    count = len(turns)
+    off = np.zeros((count, count))
+    for i, j in combinations(range(count), 2):
+        robot = (turns[j].inv() * turns[i]).rotation.magnitude()
+        camera = (camera_T_board[j] * camera_T_board[i].inv()).rotation.magnitude()
+        off[i, j] = off[j, i] = abs(robot - camera)
+    # Each is compared with itself, too, and agrees: with few poses that must not decide.
+    others = (off <= _MAX_ANGLE_DIFFERENCE_RAD).sum(axis=1) - 1
+    return np.asarray(others >= (count - 1) / 2)
 
 
 def _motions(

@@ -1,0 +1,138 @@
+"""Which mistake explains poses of robot and camera that do not fit each other.
+
+A closed form always yields something. When the board does not stay in its place, the same poses are
+tried as they would be without the usual mistakes; the one with which they fit is named. Nothing is
+mended by itself: the user's file is wrong, and other figures in it may be, too.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
+from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
+from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
+from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc, pose_to_xyzabc
+
+_FITS_M = 5e-3
+"""A board whose place scatters by less belongs to these poses, whatever the arm's accuracy."""
+_BETTER = 10.0
+"""So many times better than as given."""
+_TURNED_RAD = np.radians(2)
+
+Change = Callable[[RigidTransform], RigidTransform]
+
+
+@dataclass(frozen=True, slots=True)
+class _Mistake:
+    words: str
+    flange: Change = lambda pose: pose
+    board: Change = lambda pose: pose
+    other_setup: bool = False
+
+
+def _scaled(factor: float) -> Change:
+    return lambda pose: RigidTransform.from_components(pose.translation * factor, pose.rotation)
+
+
+def _from_radians(pose: RigidTransform) -> RigidTransform:
+    """The pose whose angles were written in radians and read as degrees."""
+    written = pose_to_xyzabc(pose)
+    return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])
+
+
+_MISTAKES = (
+    _Mistake(
+        "the data fit {other}, or the poses of the robot are inverted (flange_T_base)",
+        other_setup=True,
+    ),
+    _Mistake("the poses of the board are inverted (board_T_camera)", board=lambda p: p.inv()),
+    _Mistake("the robot's lengths are in metres", flange=_scaled(1e3)),
+    _Mistake("the board's lengths are in metres", board=_scaled(1e3)),
+    _Mistake("the robot's angles are in radians", flange=_from_radians),
+    _Mistake("the board's angles are in radians", board=_from_radians),
+)
+
+
+def explanation(poses: Sequence[HandEyePose], setup: Setup) -> str | None:
+    """The mistake without which the poses fit; None when no single one explains them."""
+    limit_m = min(_FITS_M, _spread_m(poses, setup) / _BETTER)
+    found = [
+        (spread_m, mistake)
+        for mistake in _MISTAKES
+        if (spread_m := _spread_m(*_without(mistake, poses, setup))) <= limit_m
+    ]
+    if not found:
+        return None
+    best = min(found, key=lambda one: one[0])[1]
+    return best.words.format(other=setup.other.value)
+
+
+def odd_poses(
+    poses: Sequence[HandEyePose],
+    rejected: Sequence[str],
+    predicted: Callable[[HandEyePose], RigidTransform],
+) -> list[str]:
+    """What may be wrong with poses that were left out.
+
+    ``predicted`` is camera_T_board as the calibration expects it.
+    """
+    out = [pose for pose in poses if pose.name in rejected]
+    said = []
+    for one, other in combinations(out, 2):
+        exchanged = (
+            replace(one, camera_T_board=other.camera_T_board),
+            replace(other, camera_T_board=one.camera_T_board),
+        )
+        if all(_off(pose, predicted)[0] < _FITS_M for pose in exchanged):
+            said.append(f"{one.name} and {other.name} fit with their pictures exchanged")
+    turned = RigidTransform.from_rotation(Rotation.from_euler("z", 180, degrees=True))
+    for pose in out:
+        seen = replace(pose.camera_T_board, pose=pose.camera_T_board.pose * turned)
+        if _off(replace(pose, camera_T_board=seen), predicted)[1] < _TURNED_RAD:
+            said.append(f"in {pose.name} the board was taken for turned by 180°")
+    return said
+
+
+def _off(
+    pose: HandEyePose, predicted: Callable[[HandEyePose], RigidTransform]
+) -> tuple[float, float]:
+    shift, turn = pose_error(predicted(pose), pose.camera_T_board.pose)
+    return float(np.linalg.norm(shift)), float(np.linalg.norm(turn))
+
+
+def _without(
+    mistake: _Mistake, poses: Sequence[HandEyePose], setup: Setup
+) -> tuple[list[HandEyePose], Setup]:
+    changed = [
+        replace(
+            pose,
+            base_T_flange=mistake.flange(pose.base_T_flange),
+            camera_T_board=replace(
+                pose.camera_T_board, pose=mistake.board(pose.camera_T_board.pose)
+            ),
+        )
+        for pose in poses
+    ]
+    return changed, setup.other if mistake.other_setup else setup
+
+
+def _spread_m(poses: Sequence[HandEyePose], setup: Setup) -> float:
+    """Median distance of the board from its place; infinite where there is no solution."""
+    seen = [pose.camera_T_board.pose for pose in poses]
+    # A board nearer than this no camera sees whole: lengths of both in metres fit each other.
+    if np.median([np.linalg.norm(pose.translation) for pose in seen]) < 5 * MM:
+        return float("inf")
+    turns = [
+        pose.base_T_flange if setup is Setup.EYE_IN_HAND else pose.base_T_flange.inv()
+        for pose in poses
+    ]
+    try:
+        x, z, _ = closed_form(turns, seen)
+    except (RobotCameraMismatch, PosesNotDiverse):
+        return float("inf")
+    places = [(turn * x * pose).translation for turn, pose in zip(turns, seen, strict=True)]
+    return float(np.median(np.linalg.norm(np.array(places) - z.translation, axis=1)))
