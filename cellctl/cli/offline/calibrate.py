@@ -36,6 +36,7 @@ from cellctl.calibration.solvers.single_camera.single_camera_calibration import 
 )
 from cellctl.calibration.solvers.single_camera.single_camera_picture import single_camera_picture
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
 from cellctl.calibration.solvers.tool.tool_input import ToolFile
@@ -63,6 +64,16 @@ OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to
 Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")]
 BoardSize = Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")]
 SquareSide = Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)]
+KnownBaseline = Annotated[
+    float | None, typer.Option(help="Distance of the cameras by the drawing, within 5 %.", min=1.0)
+]
+KnownDistance = Annotated[
+    float | None, typer.Option(help="Typical distance of the board, within 5 %.", min=1.0)
+]
+KnownFocal = Annotated[
+    float | None,
+    typer.Option(help="Focal length over size of a pixel, by the data sheets.", min=1.0),
+]
 Shape = Annotated[BoardShape, typer.Option(help="What may deviate from the drawing of the board.")]
 
 
@@ -94,20 +105,41 @@ def stereo(
     ] = None,
     marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
     board_shape: Shape = BoardShape.BENT,
+    baseline_mm: KnownBaseline = None,
+    distance_mm: KnownDistance = None,
+    focal_px: KnownFocal = None,
     picture: Picture = None,
 ) -> None:
-    """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board."""
+    """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board.
+
+    What is known of the head is compared with the result: the images alone cannot tell the size of
+    the squares.
+    """
     pattern = _board(board, square_mm, charuco, marker_mm)
     found = detect_views(_pairs(left, right), pattern)
     console = _console()
     _say_left_out(console, found.not_found)
-    result = calibrate_stereo(found.views, pattern, found.image_size, shape=board_shape)
+    known = KnownGeometry(_metres(baseline_mm), _metres(distance_mm), focal_px)
+    result = calibrate_stereo(
+        found.views,
+        pattern,
+        found.image_size,
+        shape=board_shape,
+        limits=StereoLimits(known=known),
+    )
     for view in result.views:
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
         console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", markup=False)
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
-    _finish(result, result.warnings, out, picture, lambda: stereo_picture(result))
+    unchecked = f"nothing tells whether squares of {square_mm:g} mm are right: give "
+    unchecked += "--baseline-mm or --distance-mm"
+    warnings = result.warnings if known.tells_scale else (*result.warnings, unchecked)
+    _finish(result, warnings, out, picture, lambda: stereo_picture(result))
+
+
+def _metres(length_mm: float | None) -> float | None:
+    return None if length_mm is None else length_mm * MM
 
 
 def _weight(shift_sigmas: float | None) -> str:

@@ -6,24 +6,20 @@ millimetre (docs/calibration.md has the figures).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from itertools import compress
 
 import numpy as np
 
 from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, shape_modes
 from cellctl.calibration.boards.projection import camera_model
-from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
-from cellctl.calibration.solvers.coverage import CoverageLimits
 from cellctl.calibration.solvers.stereo.bundle import BundleState, StereoProblem
 from cellctl.calibration.solvers.stereo.stereo_coverage import check_coverage
+from cellctl.calibration.solvers.stereo.stereo_limits import StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult, ViewResidual
 from cellctl.calibration.solvers.stereo.stereo_start import start_values
 from cellctl.calibration.solvers.stereo.stereo_validation import CrossValidation, cross_validate
 from cellctl.calibration.solvers.view_rejection import (
-    MAX_REJECTED_RATIO,
-    Mask,
     RobustAdjustment,
     adjust_good_views,
     why_left_out,
@@ -34,17 +30,6 @@ from cellctl.vision.camera.stereo_head import StereoHead
 
 _MIN_HALF = 5
 """Views that a half calibration needs."""
-
-
-@dataclass(frozen=True, slots=True)
-class StereoLimits:
-    """Limits of the result. Pixel figures count both axes of a corner, as OpenCV does."""
-
-    coverage: CoverageLimits = field(default_factory=CoverageLimits)
-    rms_px: float = 0.25
-    held_out_m: float = 5e-5
-    baseline_sigma_m: float = 5e-5
-    rejected_ratio: float = MAX_REJECTED_RATIO
 
 
 def calibrate_stereo(
@@ -97,7 +82,15 @@ def calibrate_stereo(
         board_m=board_m,
         coverage=(left, right),
         validation=validation,
-        checks=(*coverage_checks, *_result_checks(head, covariance, good, validation, limits)),
+        checks=(
+            *coverage_checks,
+            *limits.checks(
+                head,
+                np.linalg.norm(state.view_translations_m, axis=1),
+                float((~good).mean()),
+                None if validation is None else validation.held_out_m,
+            ),
+        ),
         warnings=_warnings(len(kept), validation, rejected),
         sigma_px=result.sigma_px,
         left_residuals=_field([view.left.pixels for view in kept], result, 0),
@@ -155,26 +148,6 @@ def _covariance(result: BundleResult[BundleState], pitch_relative_sigma: float) 
     scale_m = result.state.translation_m * pitch_relative_sigma
     covariance[21:, 21:] += np.outer(scale_m, scale_m)
     return covariance
-
-
-def _result_checks(
-    head: StereoHead,
-    covariance: Array,
-    good: Mask,
-    validation: CrossValidation | None,
-    limits: StereoLimits,
-) -> tuple[LimitCheck, ...]:
-    direction = head.translation_m / np.linalg.norm(head.translation_m)
-    sigma_m = float(np.sqrt(direction @ covariance[21:, 21:] @ direction))
-    checks = [
-        LimitCheck("reprojection rms", head.rms_px, limits.rms_px, "px"),
-        LimitCheck("baseline sigma", sigma_m * 1e3, limits.baseline_sigma_m * 1e3, "mm"),
-        LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
-    ]
-    if validation is not None:
-        held_out_mm = validation.held_out_m * 1e3
-        checks.append(LimitCheck("held-out error", held_out_mm, limits.held_out_m * 1e3, "mm"))
-    return tuple(checks)
 
 
 def _warnings(
