@@ -65,7 +65,10 @@ class StereoHead:
 
 
 def read_stereo_head(path: Path) -> StereoHead:
-    """Read a calibration file; raises ``CalibrationFileInvalid`` with the reason."""
+    """Read a calibration file; raises ``CalibrationFileInvalid`` with the reason.
+
+    Warns when the file says that the calibration did not pass its checks.
+    """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -73,10 +76,16 @@ def read_stereo_head(path: Path) -> StereoHead:
     except ValueError as error:
         raise CalibrationFileInvalid(f"{path} is not JSON: {error}") from error
     try:
-        return stereo_head_from_json(data)
-    except (KeyError, TypeError, ValueError) as error:
+        head = stereo_head_from_json(data)
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise CalibrationFileInvalid(f"{path}: {reason}") from error
+    if data.get("verdict") == "fail":
+        warnings.warn(
+            f"{path}: this calibration did not pass its checks; what it measures may be wrong",
+            stacklevel=2,
+        )
+    return head
 
 
 def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:

@@ -73,3 +73,10 @@ def test_files_that_are_no_files(tmp_path: Path) -> None:
     (tmp_path / "text.json").write_text("hello")
     with pytest.raises(CalibrationFileInvalid, match="not JSON"):
         read_stereo_head(tmp_path / "text.json")
+
+
+def test_a_calibration_that_did_not_pass_is_read_with_a_warning(tmp_path: Path) -> None:
+    path = tmp_path / "head.json"
+    write_stereo_head(path, table_1_head(), {"verdict": "fail"})
+    with pytest.warns(UserWarning, match="did not pass its checks"):
+        read_stereo_head(path)
