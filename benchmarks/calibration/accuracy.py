@@ -41,6 +41,20 @@ def stereo() -> None:
             )
 
 
+def hanging_together() -> None:
+    """Errors that are smooth within a view: is the covariance still honest?"""
+    print("| views | error of a term px | absolute µm | NEES / 24 |\n|---|---|---|---|")
+    for views in (16, 30, 50):
+        for hanging_px in (0.0, 0.05):
+            cases = [
+                stereo_case(seed, 0.0, BoardShape.BENT, views=views, hanging_px=hanging_px)
+                for seed in range(24)
+            ]
+            absolute = np.sqrt(np.mean([case.errors_m[0] ** 2 for case in cases])) * 1e6
+            nees = np.mean([case.nees for case in cases]) / 24
+            print(f"| {views} | {hanging_px} | {absolute:.0f} | {nees:.2f} |")
+
+
 def images() -> None:
     """From rendered images to the head, one calibration per seed."""
     print("| seed | views | rms px | absolute µm | without offset µm | board flat to µm (truth) |")
@@ -88,6 +102,7 @@ def _rms_mm_deg(errors: Array) -> str:
 
 STUDIES: dict[str, Callable[[], None]] = {
     "stereo": stereo,
+    "hanging-together": hanging_together,
     "images": images,
     "base-frame": base_frame,
     "hand-eye": hand_eye,

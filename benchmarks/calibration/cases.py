@@ -48,9 +48,15 @@ class ImageCase:
     true_flatness_m: float
 
 
-def stereo_case(seed: int, sag_m: float, shape: BoardShape) -> StereoCase:
-    views = synthetic.make_views(np.random.default_rng(seed), 30, sag_m=sag_m)
-    result = calibrate_stereo(views, synthetic.BOARD, synthetic.IMAGE_SIZE, shape=shape)
+def stereo_case(
+    seed: int, sag_m: float, shape: BoardShape, *, views: int = 30, hanging_px: float = 0.0
+) -> StereoCase:
+    """``hanging_px``: per term of an error that is smooth in each image and other in each."""
+    rng = np.random.default_rng(seed)
+    seen = synthetic.make_views(rng, views, sag_m=sag_m)
+    if hanging_px:
+        seen = synthetic.hanging_together(seen, rng, hanging_px)
+    result = calibrate_stereo(seen, synthetic.BOARD, synthetic.IMAGE_SIZE, shape=shape)
     truth, head = synthetic.table_1_head(), result.head
     assert result.validation is not None
     assert head.covariance is not None
