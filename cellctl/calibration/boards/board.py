@@ -10,6 +10,7 @@ from enum import Enum
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
+from scipy.linalg import null_space
 
 from cellctl.geometry.pose import Array
 
@@ -93,12 +94,16 @@ class BoardShape(Enum):
     """Flatness is released: a smooth surface up to fourth order."""
     FREE = "free"
     """Flatness, and the aspect ratio and squareness of the print."""
+    PRINTED = "printed"
+    """Flatness, and the place of every corner of the print by itself."""
 
 
 BEND_SIGMA_M = 2e-4
 """Prior of each mode of flatness: generous for anything that is called a board."""
 PRINT_SIGMA = 2e-4
 """Prior of aspect ratio and squareness, relative."""
+CORNER_SIGMA_M = 3e-5
+"""Prior of a coordinate of a printed corner: what feed and paper of a printer leave."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,8 +137,25 @@ def shape_modes(board: CalibrationBoard, shape: BoardShape) -> ShapeModes:
         columns.append(flat * [0.5, -0.5, 0.0])
         columns.append(flat[:, [1, 0, 2]] * [0.5, 0.5, 0.0])
         sigma += [PRINT_SIGMA, PRINT_SIGMA]
+    if shape is BoardShape.PRINTED:
+        columns += list(_print_modes(flat))
+        sigma += [CORNER_SIGMA_M] * (2 * len(flat) - 4)
     modes = np.stack(columns, axis=2) if columns else np.zeros((len(flat), 3, 0))
     return ShapeModes(modes, np.array(sigma))
+
+
+def _print_modes(flat: Array) -> Array:
+    """Displacements of the corners within the plane, orthonormal, shape (2 n - 4, n, 3)."""
+    x, y = flat[:, :2].T
+    one, zero = np.ones_like(x), np.zeros_like(x)
+    # A shift, a turn and a scale of the whole print are the board's pose and the drawing's scale.
+    held = np.stack(
+        [np.concatenate(field) for field in ((one, zero), (zero, one), (-y, x), (x, y))]
+    )
+    free = null_space(held).T.reshape(-1, 2, len(flat))
+    modes = np.zeros((len(free), len(flat), 3))
+    modes[:, :, :2] = free.transpose(0, 2, 1)
+    return modes
 
 
 def _orders(board: CalibrationBoard) -> list[tuple[int, int]]:

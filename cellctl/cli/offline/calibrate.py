@@ -31,13 +31,16 @@ from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
 from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
+from cellctl.calibration.solvers.shape_choice import with_chosen_shape
 from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
     calibrate_single_camera,
 )
 from cellctl.calibration.solvers.single_camera.single_camera_picture import single_camera_picture
+from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
 from cellctl.calibration.solvers.tool.tool_input import ToolFile
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
@@ -74,7 +77,10 @@ KnownFocal = Annotated[
     float | None,
     typer.Option(help="Focal length over size of a pixel, by the data sheets.", min=1.0),
 ]
-Shape = Annotated[BoardShape, typer.Option(help="What may deviate from the drawing of the board.")]
+Shape = Annotated[
+    BoardShape | None,
+    typer.Option(help="What may deviate from the drawing of the board; else the data decide."),
+]
 
 
 class CalibrationResult(Protocol):
@@ -104,7 +110,7 @@ def stereo(
         str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")
     ] = None,
     marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
-    board_shape: Shape = BoardShape.BENT,
+    board_shape: Shape = None,
     baseline_mm: KnownBaseline = None,
     distance_mm: KnownDistance = None,
     focal_px: KnownFocal = None,
@@ -120,13 +126,17 @@ def stereo(
     console = _console()
     _say_left_out(console, found.not_found)
     known = KnownGeometry(_metres(baseline_mm), _metres(distance_mm), focal_px)
-    result = calibrate_stereo(
-        found.views,
-        pattern,
-        found.image_size,
-        shape=board_shape,
-        limits=StereoLimits(known=known),
+    limits = StereoLimits(known=known)
+
+    def calibrated(shape: BoardShape) -> StereoResult:
+        return calibrate_stereo(found.views, pattern, found.image_size, shape=shape, limits=limits)
+
+    result = (
+        with_chosen_shape(calibrated, lambda one: one.held_out_m)
+        if board_shape is None
+        else calibrated(board_shape)
     )
+    console.print(result.method, markup=False)
     for view in result.views:
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
         console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", markup=False)
@@ -156,7 +166,7 @@ def camera(
     board: BoardSize,
     square_mm: SquareSide,
     out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
-    board_shape: Shape = BoardShape.BENT,
+    board_shape: Shape = None,
     picture: Picture = None,
 ) -> None:
     """Calibrate a single camera from images of a chessboard."""
@@ -165,7 +175,16 @@ def camera(
     found = detect_camera_views(named, pattern)
     console = _console()
     _say_left_out(console, found.not_found)
-    result = calibrate_single_camera(found.views, pattern, found.image_size, shape=board_shape)
+
+    def calibrated(shape: BoardShape) -> SingleCameraResult:
+        return calibrate_single_camera(found.views, pattern, found.image_size, shape=shape)
+
+    result = (
+        with_chosen_shape(calibrated, lambda one: one.held_out_px)
+        if board_shape is None
+        else calibrated(board_shape)
+    )
+    console.print(result.method, markup=False)
     for view in result.views:
         weight = _weight(view.shift_sigmas)
         console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}", markup=False)

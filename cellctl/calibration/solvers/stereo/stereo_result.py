@@ -75,6 +75,11 @@ class StereoResult:
         return all_passed(self.checks)
 
     @property
+    def held_out_m(self) -> float | None:
+        """Error of corners that the calibration has not seen; None with too few views."""
+        return None if self.validation is None else self.validation.held_out_m
+
+    @property
     def flatness_m(self) -> float:
         """Height of the board from its lowest to its highest corner."""
         return float(np.ptp(self.board_m[:, 2]))

@@ -43,6 +43,14 @@ def bow(board: CalibrationBoard, sag_m: float) -> Array:
     return corners
 
 
+def misprint(rng: np.random.Generator, corners: Array, sigma_m: float) -> Array:
+    """Displacements of corners in the plane that keep the scale of the print, shape (n, 3)."""
+    off = np.zeros_like(corners)
+    off[:, :2] = rng.normal(0, sigma_m, (len(corners), 2))
+    flat = corners * [1, 1, 0]
+    return np.asarray(off - flat * float((off * flat).sum() / (flat**2).sum()))
+
+
 def make_views(
     rng: np.random.Generator,
     count: int,
@@ -51,9 +59,12 @@ def make_views(
     sag_m: float = 0.0,
     board: CalibrationBoard = BOARD,
     head: StereoHead | None = None,
+    print_error_m: float = 0.0,
 ) -> list[BoardView]:
     head = head or table_1_head()
     corners = bow(board, sag_m)
+    if print_error_m:
+        corners += misprint(rng, corners, print_error_m)
     views: list[BoardView] = []
     while len(views) < count:
         view = _random_view(rng, f"view-{len(views):02d}", corners, head, noise_px)
