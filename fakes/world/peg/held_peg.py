@@ -15,6 +15,9 @@ _STEP_RAD: Final = 2e-3
 _NEAR_M: Final = 0.2e-3
 """A longer motion than this in one call is not cut into steps as long as nothing is touched."""
 
+_STILL: Final = 1e-12
+"""Change of pose (m, rad) in a call below which the peg stands."""
+
 
 class HeldPeg:
     """State of the contact from one call to the next; the same calls give the same forces."""
@@ -26,9 +29,10 @@ class HeldPeg:
         hole. ``grip_n``: axial force (N) at which the peg slips in the fingers."""
         self._slots = Slots(fit)
         self.robot_n_m = robot_n_m
-        self.grip_n = grip_n
+        self._grip_n = grip_n
         self.commanded = commanded
         self._now = free_at(commanded)
+        self._rests = False
         self.slip_m = 0.0
         """By how far the peg was pushed into the fingers."""
         self.failures = 0
@@ -58,10 +62,18 @@ class HeldPeg:
         """Another hole or another peg from now on."""
         self._slots = Slots(fit)
         self._now = replace(self._now, bristles={})
+        self._rests = False
+
+    def hold_with(self, grip_n: float) -> None:
+        """From now on the peg slips in the fingers at another axial force (N)."""
+        self._grip_n = grip_n
+        self._rests = False
 
     def follow(self, commanded: Pose6, dt_s: float) -> None:
         """Let a time pass in which the commanded tip goes to another pose."""
-        last = self.commanded
+        last, before = self.commanded, self.pose
+        if self._rests and commanded == last:
+            return
         steps = _count(last, commanded)
         if not self.touching and self._slots.free(self._slipped(commanded)):
             steps = 1 if steps * _STEP_M > _NEAR_M else steps
@@ -73,6 +85,8 @@ class HeldPeg:
                 dt_s / steps,
             )
         self.commanded = commanded
+        away = max(abs(a - b) for a, b in zip(self.pose, before, strict=True))
+        self._rests = commanded == last and away < _STILL and self._now.found
 
     def _step(self, commanded: Pose6, dt_s: float) -> None:
         wanted = self._slipped(commanded)
@@ -86,7 +100,7 @@ class HeldPeg:
     def _slip(self) -> None:
         ax, ay, az = axis_of(self.pose[3], self.pose[4])
         axial_n = self.wrench[0] * ax + self.wrench[1] * ay + self.wrench[2] * az
-        beyond_n = abs(axial_n) - self.grip_n
+        beyond_n = abs(axial_n) - self._grip_n
         if beyond_n > 0:
             self.slip_m += math.copysign(beyond_n / self.robot_n_m[2, 2], axial_n)
 
