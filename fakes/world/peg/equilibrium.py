@@ -5,6 +5,7 @@ the Jacobian written by hand. W holds normal forces, friction with its bristles,
 inside a connector.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -21,9 +22,9 @@ _RELAXING: Final = 60
 _RELAXED: Final = np.diag([2e6] * 3 + [50.0] * 3)
 """Further rounds as a slow slide, with this stiffness against every step. Where a contact goes over
 the edge between chamfer and bore no equilibrium is near, and Newton's steps jump to and fro."""
-_FOUND_M: Final = 1e-9
-_LEVER_M: Final = 5e-3
-"""Newton's last step; turns count with a lever of 5 mm."""
+_FOUND_M: Final = 2e-8
+_FOUND_RAD: Final = 2e-6
+"""Newton's last step. Within it forces are linear, and are carried along with it."""
 _CREEP: Final = [20e-6] * 3 + [1e-3] * 3
 """By as much the peg moves where Newton finds nothing. Held in place, a free peg would look
 captured; let go at once, it would run away."""
@@ -33,6 +34,8 @@ _SPRING_GIVES_M: Final = 20e-6
 """Contacts inside a connector pull back when the plug has turned round by this much."""
 _INSIDE: Final = -1
 """Number of the bristle of these contacts."""
+
+_NOWHERE: Final = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 Row = tuple[float, float, float, float, float, float]
 
@@ -47,6 +50,8 @@ class Equilibrium:
     bristles: Bristles
     slots: tuple[int, ...]
     """Active ones."""
+    way: Pose6
+    """Of the peg in this step."""
     found: bool
     """False where Newton failed and the peg crept."""
 
@@ -59,18 +64,19 @@ def settle(
     drag = _DRAG / dt_s
     held = robot_n_m + np.diag(drag)
     wanted = robot_n_m @ commanded + drag * before
-    pose: Pose6 = before
+    pose = _moved(before, last.way)  # a steady motion goes on
     for number in range(_ROUNDS + _RELAXING):
         load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
         residual = wanted - held @ pose + load.wrench
-        system = held + load.jacobian()
+        jacobian = load.jacobian()
+        system = held + jacobian
         if number >= _ROUNDS:
             system += _RELAXED
-        step = np.linalg.solve(system, residual).tolist()
-        pose = _moved(pose, step)
-        way_m = max(abs(one) for one in step[:3])
-        turn_rad = max(abs(one) for one in step[3:])
-        if max(way_m, turn_rad * _LEVER_M) < _FOUND_M:
+        step = np.linalg.solve(system, residual)
+        way = step.tolist()
+        pose = _moved(pose, way)
+        if max(map(abs, way[:3])) < _FOUND_M and max(map(abs, way[3:])) < _FOUND_RAD:
+            load.wrench -= jacobian @ step
             return load.standing(pose)
     crept = tuple(
         old + max(-limit, min(limit, new - old))
@@ -85,7 +91,7 @@ def settle(
 
 def free_at(pose: Pose6) -> Equilibrium:
     """A peg that touches nothing."""
-    return Equilibrium(pose, np.zeros(6), {}, (), found=True)
+    return Equilibrium(pose, np.zeros(6), {}, (), _NOWHERE, found=True)
 
 
 class _Load:
@@ -97,7 +103,7 @@ class _Load:
         self._left: list[Row] = []
         self._right: list[tuple[float, Row]] = []
         self._bristles: Bristles = {}
-        self._contacts = contacts
+        self._contacts, self._before = contacts, before
         self._forces: list[tuple[float, Row]] = []
         moved = _difference(pose, before)
         for contact in contacts:
@@ -119,7 +125,8 @@ class _Load:
 
     def standing(self, pose: Pose6, *, found: bool = True) -> Equilibrium:
         slots = tuple(contact.slot for contact in self._contacts)
-        return Equilibrium(pose, self.wrench, self._bristles, slots, found)
+        way = _difference(pose, self._before) if found else _NOWHERE
+        return Equilibrium(pose, self.wrench, self._bristles, slots, way, found)
 
     def _derivative(self, left: Row, size: float, right: Row) -> None:
         self._left.append(left)
@@ -184,7 +191,7 @@ def _difference(a: Pose6, b: Pose6) -> Pose6:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3], a[4] - b[4], a[5] - b[5]
 
 
-def _moved(pose: Pose6, step: list[float]) -> Pose6:
+def _moved(pose: Pose6, step: Sequence[float]) -> Pose6:
     return (
         pose[0] + step[0], pose[1] + step[1], pose[2] + step[2],
         pose[3] + step[3], pose[4] + step[4], pose[5] + step[5],

@@ -13,6 +13,8 @@ from fakes.world.peg.fit import Fit
 
 _ROUNDS = 3
 """From the crossing of two circles to that of an ellipse and a circle: error below 1e-9 m."""
+_NEARLY_UPRIGHT = 0.9999
+"""Cosine of a tilt up to which one round does."""
 
 FacePoint = tuple[int, float, float, float, float]
 """Number of the place (0 to 5), x, y, height of the peg's bottom over it (m), and by how far the
@@ -100,11 +102,12 @@ def _crossings(
     length = math.hypot(sx, sz)
     ax, az = sz / length, -sx / length  # two directions across the peg's axis; a has no y
     bx, by, bz = sy * az, sz * ax - sx * az, -sy * ax
+    rounds = _ROUNDS if sz < _NEARLY_UPRIGHT else 1
     for number, sign in enumerate((1.0, -1.0)):
         angle = towards + sign * half
         ux, uy = math.cos(angle), math.sin(angle)
         turn = math.atan2(ux * bx + uy * by, ux * ax)
-        for _ in range(_ROUNDS):
+        for _ in range(rounds):
             cosine, sine = math.cos(turn), math.sin(turn)
             px, py = x + rim * (ax * cosine + bx * sine), y + rim * by * sine
             qx, qy = rim * (bx * cosine - ax * sine), rim * by * cosine

@@ -15,7 +15,7 @@ _STEP_RAD: Final = 2e-3
 _NEAR_M: Final = 0.2e-3
 """A longer motion than this in one call is not cut into steps as long as nothing is touched."""
 
-_STILL: Final = 1e-12
+_STILL: Final = 1e-9
 """Change of pose (m, rad) in a call below which the peg stands."""
 
 
