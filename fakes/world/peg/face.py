@@ -15,6 +15,9 @@ _ROUNDS = 3
 """From the crossing of two circles to that of an ellipse and a circle: error below 1e-9 m."""
 _NEARLY_UPRIGHT = 0.9999
 """Cosine of a tilt up to which one round does."""
+_NEAR_AXIS = 0.01
+"""Share of a ring's radius up to which the first order does."""
+_CONE_ROUNDS = 4
 
 FacePoint = tuple[int, float, float, float, float]
 """Number of the place (0 to 5), x, y, height of the peg's bottom over it (m), and by how far the
@@ -69,11 +72,17 @@ def cone_point(
     """Point of a ring of the peg that reaches deepest into a cone of 45° about the hole's axis.
 
     Returns x, y, z and the distance from that axis. To first order the depth at an azimuth e of the
-    ring is e·(c + radius·s), with the ring's centre c.
+    ring is e·(c + radius·s), with the ring's centre c; far from the axis a few rounds follow.
     """
     (x, y, z), (sx, sy, sz) = tip, axis
     centre = (x + up * sx, y + up * sy, z + up * sz)
-    return ring_point(centre, axis, radius, (centre[0] + radius * sx, centre[1] + radius * sy))
+    deepest = ring_point(centre, axis, radius, (centre[0] + radius * sx, centre[1] + radius * sy))
+    if math.hypot(centre[0], centre[1]) < _NEAR_AXIS * radius:
+        return deepest
+    for _ in range(_CONE_ROUNDS):
+        px, py, _, rho = deepest
+        deepest = ring_point(centre, axis, radius, (px / rho + sx / sz, py / rho + sy / sz))
+    return deepest
 
 
 def ring_point(

@@ -7,42 +7,22 @@ tilted extreme point: with that of the axis, gaps between slots would let the pe
 """
 
 import math
-from dataclasses import dataclass
 from typing import Final
 
 from fakes.world.peg.attitude import Pose6, Vector3, axis_of
+from fakes.world.peg.contact import Contact
+from fakes.world.peg.edges import TO_CHAMFER, edges_of
 from fakes.world.peg.face import carrying_points, cone_point, ring_point
 from fakes.world.peg.fit import Fit
 
 _HALF: Final = math.sqrt(0.5)
 _RIM: Final = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _FLAT: Final = 1e-3
-_FACE, _RIM_ON_FACE, _RINGS, _EDGE_ON_CHAMFER = 0, 6, 14, 16
-_RIM_ON_WALL, _EDGE_ON_PEG, _FLOOR, _OUTER, _PANEL, _KEYS, _KEY_PLAY, _BURR, _WEDGED = (
-    17, 18, 19, 23, 24, 28, 29, 30, 31,
+"""Tilt (rad) from which the lowest point of the rim carries about half of what it carries later."""
+_FACE, _RIM_ON_FACE, _RINGS = 0, 6, 14
+_RIM_ON_WALL, _FLOOR, _OUTER, _PANEL, _KEYS, _KEY_PLAY, _BURR, _WEDGED = (
+    17, 19, 23, 24, 28, 29, 30, 31,
 )  # fmt: skip
-
-
-@dataclass(slots=True)
-class Contact:
-    """One active slot: force ``stiffness * depth`` along a unit normal on the peg at a lever."""
-
-    slot: int
-    depth_m: float
-    stiffness_n_m: float
-    nx: float
-    ny: float
-    nz: float
-    lx: float
-    ly: float
-    lz: float
-    """From the tip to the place of contact."""
-    around_m: float = 0.0
-    """Radius at which the normal turns when the peg moves across it; zero where it keeps."""
-    up_m: float = 0.0
-    """Lever of the tilt in that turning."""
-    twist: bool = False
-    """A moment about z alone: depth and stiffness are an angle and N·m/rad, n is the sense."""
 
 
 class Slots:
@@ -55,6 +35,7 @@ class Slots:
         self._hole_chamfer, self._peg_chamfer = fit.hole_chamfer_m, fit.peg_chamfer_m
         self._outer, self._k = fit.outer_radius_m, fit.normal_n_m
         self._rings = ((0, self._rim, 0.0), (1, self._radius, self._peg_chamfer))
+        self._edges = edges_of(fit)
         self._enters = fit.hole_present and fit.clearance_m > 0
 
     def active(self, pose: Pose6) -> list[Contact]:
@@ -134,13 +115,12 @@ class Slots:
         z = pose[2]
         if self._hole_chamfer > 0:
             self._rings_on_cone(found, tip, s)
-        if not self._enters:
-            self._ring_wedged(found, tip, s)
-        else:
-            if self._peg_chamfer > 0:
-                self._edge_on_chamfer(found, tip, s)
+        if self._enters:
             self._rim_on_wall(found, tip, s)
-            self._edge_on_peg(found, tip, s)
+            for edge in self._edges:
+                found.extend(edge.contacts(tip, s))
+        else:
+            self._ring_wedged(found, tip, s)
         floor = self.fit.floor_m
         if z < floor + self._rim * math.hypot(s[0], s[1]):
             self._stand_on(found, _FLOOR, floor, z, s)
@@ -155,7 +135,8 @@ class Slots:
         for number, radius, up in rings:
             px, py, pz, rho = cone_point(tip, s, radius, up)
             depth = (rho - self._mouth - pz) * _HALF
-            on_cone = self._bore < rho < self._mouth and pz >= self._bore - rho - self._hole_chamfer
+            below = self._mouth - TO_CHAMFER * pz
+            on_cone = self._bore < rho < below and pz >= self._bore - rho - self._hole_chamfer
             if depth > 0 and on_cone:
                 ex, ey = px / rho, py / rho
                 around = math.hypot(x + (up + radius) * s[0], y + (up + radius) * s[1])
@@ -182,34 +163,6 @@ class Slots:
                 stiffness = 0.5 * self._k
                 found.append(Contact(_WEDGED + place, depth, stiffness, nx, ny, _HALF, *lever))
 
-    def _edge_on_chamfer(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
-        x, y, z = tip
-        sx, sy, sz = s
-        level = -self._hole_chamfer
-        up = (level - z) / sz
-        vx, vy = x + (up + self._bore) * sx, y + (up + self._bore) * sy
-        length = math.hypot(vx, vy)
-        if length < 1e-15:
-            return
-        lx, ly, lz = self._bore * vx / length - x, self._bore * vy / length - y, level - z
-        along = lx * sx + ly * sy + lz * sz
-        if not 0.0 < along < self._peg_chamfer:
-            return
-        rx, ry, rz = lx - along * sx, ly - along * sy, lz - along * sz
-        radial = math.sqrt(rx * rx + ry * ry + rz * rz)
-        depth = (self._rim + along - radial) * _HALF
-        # An edge that is nearer to the bottom than to the cone belongs to the face.
-        if 0.0 < depth <= along:
-            nx, ny, nz = (
-                (sx - rx / radial) * _HALF, (sy - ry / radial) * _HALF, (sz - rz / radial) * _HALF,
-            )  # fmt: skip
-            found.append(
-                Contact(
-                    _EDGE_ON_CHAMFER, depth, self._k, nx, ny, nz, lx, ly, lz,
-                    length, up + self._bore,
-                )
-            )  # fmt: skip
-
     def _rim_on_wall(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
         x, y, z = tip
         sx, sy, sz = s
@@ -222,30 +175,6 @@ class Slots:
                 Contact(
                     _RIM_ON_WALL, depth, self._k, -px / rho, -py / rho, 0.0,
                     px - x, py - y, pz - z, math.hypot(cx, cy), up,
-                )
-            )  # fmt: skip
-
-    def _edge_on_peg(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
-        x, y, z = tip
-        sx, sy, sz = s
-        level = -self._hole_chamfer
-        up = (level - z) / sz
-        ax, ay = x + up * sx, y + up * sy
-        distance = math.hypot(ax, ay)
-        if distance < 1e-15:
-            return
-        ex, ey = ax / distance, ay / distance
-        slope = (ex * sx + ey * sy) / sz
-        lengthened = math.sqrt(1.0 + slope * slope)
-        over = distance + self._radius * lengthened - self._bore
-        lx, ly, lz = self._bore * ex - x, self._bore * ey - y, level - z
-        along = lx * sx + ly * sy + lz * sz
-        # Nearer to the end of the peg than to its wall: chamfer or bottom push there.
-        if 0.0 < over < along - self._peg_chamfer:
-            found.append(
-                Contact(
-                    _EDGE_ON_PEG, over / lengthened, self._k, -ex / lengthened, -ey / lengthened,
-                    slope / lengthened, lx, ly, lz, distance, up,
                 )
             )  # fmt: skip
 

@@ -7,6 +7,7 @@ deep a contact is. Quasi-static: impact would add at higher speeds.
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -70,7 +71,7 @@ class Push:
                 sums, since = np.zeros(3), 0
         return np.array(rows)
 
-    def _model(self):  # type: ignore[no-untyped-def]
+    def _model(self) -> tuple[Any, Any]:
         springs = (
             ("slide", "1 0 0", self.lateral_n_m, _MASS_KG, self.off_m),
             ("slide", "0 1 0", self.lateral_n_m, _MASS_KG, 0.0),
