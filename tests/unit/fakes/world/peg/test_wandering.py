@@ -79,6 +79,6 @@ def test_forces_balance_and_the_peg_stays_out_of_the_plate(
     start = (float(x), float(y), lowest, float(tilt[0]), float(tilt[1]), 0.0)
     peg = HeldPeg(fit, held, start)
     unbalanced_n, deepest_m = _wandered(peg, held, seed)
-    assert unbalanced_n < 0.1
+    assert 0.0 < unbalanced_n < 0.1  # zero: nothing was touched
     assert deepest_m < 0.01 * MM
     assert peg.failures <= 0.02 * _STEPS
