@@ -13,9 +13,10 @@ import numpy as np
 
 from fakes.world.frames import Array
 from fakes.world.peg.attitude import Pose6
+from fakes.world.peg.contact import Contact
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.friction import Bristles, rub
-from fakes.world.peg.slots import Contact, Slots
+from fakes.world.peg.slots import Slots
 
 _ROUNDS: Final = 12
 _RELAXING: Final = 60

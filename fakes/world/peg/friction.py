@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from fakes.world.peg.attitude import Pose6, Vector3
-from fakes.world.peg.slots import Contact
+from fakes.world.peg.contact import Contact
 
 SHARE: Final = 0.7
 """Stiffness of a bristle against that of its contact."""
