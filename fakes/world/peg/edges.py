@@ -19,6 +19,7 @@ TO_CHAMFER: Final = math.sqrt(2.0) - 1.0
 _HALF: Final = math.sqrt(0.5)
 _ROUNDS: Final = 3
 """To the deepest azimuth in the chamfer."""
+_DESCENTS: Final = 8
 _ACROSS: Final = math.cos(math.pi / 8)
 _ALONG: Final = math.sin(math.pi / 8)
 """Of the normal on the shoulder, between those of wall and chamfer."""
@@ -42,16 +43,33 @@ class Edge:
         offset = (tip[0] + up * axis[0], tip[1] + up * axis[1])
         found = [self._on_wall(tip, axis, up, offset)]
         if self.fit.peg_chamfer_m > 0:
-            found.append(self._on_chamfer(tip, axis, up, offset))
+            found.append(self._on_chamfer(tip, axis, up))
         if any(found):
             yield from (one for one in found if one is not None)
         elif self.fit.peg_chamfer_m > 0:
             yield from self._on_shoulder(tip, axis)
 
-    def _on_chamfer(
-        self, tip: Vector3, axis: Vector3, up: float, offset: tuple[float, float]
-    ) -> Contact | None:
-        (sx, sy, sz), (dx, dy), edge = axis, offset, self.radius_m
+    def rests_at(self, x_m: float, y_m: float, axis: Vector3) -> float:
+        """Height of the tip (m) at which the edge meets the chamfer of a peg that comes down.
+
+        ``-inf`` where it passes beside the chamfer.
+        """
+        height_m, along = self.level_m - self.fit.peg_chamfer_m, -1.0
+        for _ in range(_DESCENTS):
+            deepest = self._deepest((x_m, y_m, height_m), axis)
+            if deepest is None:
+                return -math.inf
+            _, along, (rx, ry, rz), _ = deepest
+            # Lifted by as much, the edge leaves the cone: its reach falls with the height, by one.
+            height_m += self.fit.rim_radius_m + along - math.sqrt(rx * rx + ry * ry + rz * rz)
+        return height_m if 0.0 <= along <= self.fit.peg_chamfer_m else -math.inf
+
+    def _deepest(self, tip: Vector3, axis: Vector3) -> tuple[Vector3, float, Vector3, float] | None:
+        """Point of the edge that reaches deepest into the peg's cone: from the tip, along the peg's
+        axis, across it, and the radius at which its azimuth turns. None for a peg in the middle."""
+        (x, y, z), (sx, sy, sz), edge = tip, axis, self.radius_m
+        up = (self.level_m - z) / sz
+        dx, dy = x + up * sx, y + up * sy
         radial = edge
         for _ in range(_ROUNDS):
             vx, vy = dx + radial * sx, dy + radial * sy
@@ -60,9 +78,16 @@ class Edge:
                 return None
             ex, ey = edge * vx / length, edge * vy / length
             radial = math.hypot(ex - dx, ey - dy)
-        lx, ly, lz = ex - tip[0], ey - tip[1], self.level_m - tip[2]
+        lx, ly, lz = ex - x, ey - y, self.level_m - z
         along = lx * sx + ly * sy + lz * sz
-        rx, ry, rz = lx - along * sx, ly - along * sy, lz - along * sz
+        return (lx, ly, lz), along, (lx - along * sx, ly - along * sy, lz - along * sz), length
+
+    def _on_chamfer(self, tip: Vector3, axis: Vector3, up: float) -> Contact | None:
+        deepest = self._deepest(tip, axis)
+        if deepest is None:
+            return None
+        lever, along, (rx, ry, rz), length = deepest
+        sx, sy, sz = axis
         radial = math.sqrt(rx * rx + ry * ry + rz * rz)
         depth = (self.fit.rim_radius_m + along - radial) * _HALF
         # An edge that is nearer to the bottom or to the wall of the peg belongs to them.
@@ -71,7 +96,7 @@ class Edge:
         return Contact(
             _ON_CHAMFER + self.number, depth, self.fit.normal_n_m,
             (sx - rx / radial) * _HALF, (sy - ry / radial) * _HALF, (sz - rz / radial) * _HALF,
-            lx, ly, lz, length, up + edge,
+            *lever, length, up + self.radius_m,
         )  # fmt: skip
 
     def _on_wall(

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator
 
 from fakes.world.peg.attitude import Vector3, axis_of
+from fakes.world.peg.edges import edges_of
 from fakes.world.peg.fit import Fit
 
 _ROUNDS = 3
@@ -30,7 +31,8 @@ def height_map(
     """Height of the tip over the face (m) at which a rigid peg coming down touches first.
 
     x, y are those of the tip from the axis of the hole. ``-inf`` where nothing but the wall of the
-    bore is below: the peg goes in.
+    bore is below: the peg goes in. The end of the peg's chamfer on an edge is left out: near the
+    hole's axis, where a tilted peg has no more play, it may truly rest higher.
     """
     tip, axis = (x_m, y_m, 0.0), axis_of(tilt_x_rad, tilt_y_rad)
     over = (point[3] for point in carrying_points(fit, tip, axis))
@@ -39,6 +41,9 @@ def height_map(
         _, _, at_m, rho_m = cone_point(tip, axis, radius_m, up_m)
         if fit.bore_radius_m < rho_m < fit.mouth_radius_m:
             height_m = max(height_m, rho_m - fit.mouth_radius_m - at_m)
+    if fit.peg_chamfer_m > 0 and fit.hole_present:
+        edges = (edge.rests_at(x_m, y_m, axis) for edge in edges_of(fit))
+        height_m = max(height_m, *edges)
     return height_m
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from fakes.world.frames import Array
+from fakes.world.peg.attitude import Pose6, axis_of
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.held_peg import HeldPeg
 
@@ -70,3 +71,27 @@ def above(
 def at_depth(rows: Array, depth_mm: float) -> Array:
     """Wrench at a depth."""
     return np.asarray(rows[np.abs(rows[:, 0] - depth_mm * MM).argmin(), 1:])
+
+
+def reach_into_plate_m(fit: Fit, pose: Pose6) -> float:
+    """How deep the surface of the peg reaches into plate or plug (m), by its points."""
+    s = np.array(axis_of(pose[3], pose[4]))
+    a = np.array([s[2], 0.0, -s[0]]) / math.hypot(s[0], s[2])
+    turn = np.linspace(0, 2 * np.pi, 721)
+    ring = np.outer(a, np.cos(turn)) + np.outer(np.cross(s, a), np.sin(turn))
+    chamfer = np.linspace(0.0, fit.peg_chamfer_m, 12)
+    deepest = -math.inf
+    for up in [*chamfer, *np.linspace(fit.peg_chamfer_m, 4 * MM, 25)]:
+        radius = fit.rim_radius_m + min(up, fit.peg_chamfer_m)
+        x, y, z = np.array(pose[:3])[:, None] + up * s[:, None] + radius * ring
+        rho = np.hypot(x, y)
+        inside = np.minimum.reduce(
+            [
+                -z,
+                rho - fit.bore_radius_m,
+                (rho - fit.mouth_radius_m - z) * math.sqrt(0.5),
+                fit.outer_radius_m - rho,
+            ]
+        )
+        deepest = max(deepest, float(inside.max()))
+    return deepest

@@ -10,7 +10,7 @@ from fakes.world.frames import Array
 from fakes.world.peg.attitude import axis_of
 from fakes.world.peg.face import height_map
 from fakes.world.peg.fit import Fit
-from tests.unit.fakes.world.peg.pushing import MM, pin, plug
+from tests.unit.fakes.world.peg.pushing import MM, pin, plug, reach_into_plate_m
 
 
 def _searched(fit: Fit, x_m: float, y_m: float, tilt_x: float, tilt_y: float) -> float:
@@ -82,3 +82,25 @@ def test_beyond_the_outer_edge_a_plug_finds_no_face() -> None:
     assert height_map(plug(), 31.0 * MM, 0.0, 0.0, tilt) == -math.inf
     # The outer edge below the bottom carries it where its lowest point is over the edge.
     assert 0 < height_map(plug(), 10.0 * MM, 0.0, 0.0, tilt) < 14 * MM * math.sin(tilt)
+
+
+def _lowered(fit: Fit, x_m: float, y_m: float, tilt: tuple[float, float]) -> float:
+    """The height at which no point of wall and chamfer is inside the plate any more."""
+    low, high = -3.0 * MM, 1.0 * MM
+    for _ in range(18):
+        middle = (low + high) / 2
+        inside = reach_into_plate_m(fit, (x_m, y_m, middle, *tilt, 0.0)) > 0
+        low, high = (middle, high) if inside else (low, middle)
+    return high
+
+
+@pytest.mark.parametrize("tilt_deg", [0.5, 4.0, 8.0])
+def test_with_chamfers_the_map_is_that_of_all_points_of_the_peg(tilt_deg: float) -> None:
+    fit, rng = pin(0.05), np.random.default_rng(1)
+    for _ in range(10):
+        x, y = rng.uniform(-3.0 * MM, 3.0 * MM, 2)
+        bearing = rng.uniform(0.0, 2 * np.pi)
+        tilt = math.radians(tilt_deg)
+        lean = (tilt * math.cos(bearing), tilt * math.sin(bearing))
+        found = height_map(fit, x, y, *lean)
+        assert found == pytest.approx(_lowered(fit, x, y, lean), abs=0.003 * MM)

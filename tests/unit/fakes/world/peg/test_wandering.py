@@ -6,38 +6,13 @@ import numpy as np
 import pytest
 
 from fakes.world.frames import Array
-from fakes.world.peg.attitude import Pose6, axis_of
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.held_peg import HeldPeg
-from tests.unit.fakes.world.peg.pushing import MM, arm, pin, plug
+from tests.unit.fakes.world.peg.pushing import MM, arm, pin, plug, reach_into_plate_m
 
 _STEPS = 500
 _HARDEST_N = 40.0
 _DRAG = np.array([10.0] * 3 + [1e-3] * 3) / 1e-3
-
-
-def _deepest(fit: Fit, pose: Pose6) -> float:
-    """How deep the surface of the peg reaches into plate or plug (m), by its points."""
-    s = np.array(axis_of(pose[3], pose[4]))
-    a = np.array([s[2], 0.0, -s[0]]) / math.hypot(s[0], s[2])
-    turn = np.linspace(0, 2 * np.pi, 721)
-    ring = np.outer(a, np.cos(turn)) + np.outer(np.cross(s, a), np.sin(turn))
-    chamfer = np.linspace(0.0, fit.peg_chamfer_m, 12)
-    deepest = -math.inf
-    for up in [*chamfer, *np.linspace(fit.peg_chamfer_m, 4 * MM, 25)]:
-        radius = fit.rim_radius_m + min(up, fit.peg_chamfer_m)
-        x, y, z = np.array(pose[:3])[:, None] + up * s[:, None] + radius * ring
-        rho = np.hypot(x, y)
-        inside = np.minimum.reduce(
-            [
-                -z,
-                rho - fit.bore_radius_m,
-                (rho - fit.mouth_radius_m - z) * math.sqrt(0.5),
-                fit.outer_radius_m - rho,
-            ]
-        )
-        deepest = max(deepest, float(inside.max()))
-    return deepest
 
 
 def _wandered(peg: HeldPeg, robot_n_m: Array, seed: int) -> tuple[float, float]:
@@ -60,7 +35,7 @@ def _wandered(peg: HeldPeg, robot_n_m: Array, seed: int) -> tuple[float, float]:
             left = robot_n_m @ (np.array(peg.commanded) - peg.pose) + peg.wrench - drag
             unbalanced_n = max(unbalanced_n, float(np.abs(left[:3]).max()))
         if number % 20 == 0:
-            deepest_m = max(deepest_m, _deepest(peg.fit, peg.pose))
+            deepest_m = max(deepest_m, reach_into_plate_m(peg.fit, peg.pose))
     return unbalanced_n, deepest_m
 
 
