@@ -6,6 +6,7 @@ import json
 import signal
 import sys
 from collections.abc import Awaitable, Callable, Mapping
+from dataclasses import replace
 from typing import Any
 
 from fakes.clock import WorldClock
@@ -102,8 +103,15 @@ class Cell:
             self.clock,
             ports,
             faults=FaultBoard(name, ROBOT_FAULTS),
-            offer=StreamOffer() if robot.streams else None,
+            offer=_offer(robot) if robot.streams else None,
         )
+
+
+def _offer(robot: Robot) -> StreamOffer:
+    """What a job program with streamed motion says that it can do."""
+    usual = StreamOffer()
+    travel = {"travel_mm": robot.stream_travel_mm, "travel_deg": robot.stream_travel_deg}
+    return replace(usual, limits=replace(usual.limits, **travel))
 
 
 async def _listen(name: str, port: int, starting: Awaitable[int]) -> int:

@@ -76,6 +76,9 @@ class Robot(Section):
     deadman_ms: int
     streams: bool = False
     """Whether its job program offers streamed motion."""
+    stream_travel_mm: float = 30.0
+    """Farthest that a stream may go from where it began."""
+    stream_travel_deg: float = 5.0
     home_deg: Six
     """Joint angles at switch-on."""
 

@@ -1,0 +1,1 @@
+"""A peg or a plug in the fingers of one arm, and a socket that nobody sees any more."""

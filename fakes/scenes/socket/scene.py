@@ -1,0 +1,111 @@
+"""A peg in the fingers of one arm finds its hole by touch.
+
+What the arm holds is quasi-static: the contact acts through the compliance of arm and wrist, the
+inertia is that of the tool alone and does not bounce on the contact.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from fakes.scenario import Scenario
+from fakes.scenes.socket.part import FAULTS, draw_part, fit_with, grip_force_n, nominal_fit
+from fakes.scenes.socket.peaks import ForcePeaks
+from fakes.scenes.socket.scenario import SocketScenario
+from fakes.scenes.socket.truth import truth_of
+from fakes.world.frames import MM, Array, from_written, inverse_matrix
+from fakes.world.mounted_sensor import STEP_S
+from fakes.world.payload import Payload
+from fakes.world.peg.attitude import pose_of
+from fakes.world.peg.held_peg import HeldPeg
+from fakes.world.scene import Seen
+from fakes.world.world import Command, World
+
+
+class SocketScene(World[SocketScenario]):
+    """One arm with a force sensor, a gripped peg, and a face with a hole."""
+
+    scenario_model: ClassVar[type[Scenario]] = SocketScenario
+    fault_texts: ClassVar[Mapping[str, str]] = FAULTS
+
+    def __init__(self, scenario: SocketScenario, seed: int) -> None:
+        super().__init__(scenario, seed)
+        settings = scenario.peg
+        self._flange_T_sensor = self.truth.force_sensors[settings.force_sensor].flange_T_sensor
+        sensor = scenario.force_sensors[settings.force_sensor]
+        nominal = from_written(sensor.flange_T_sensor_mm_deg)
+        self._tool = Payload(
+            settings,
+            self._flange_T_sensor,
+            mass_kg=settings.mass_kg,
+            com_in_flange_m=nominal.apply(np.array(settings.com_in_sensor_mm) * MM),
+        )
+        compliance = scenario.compliance
+        self._robot_n_m = np.diag(
+            [compliance.lateral_n_m] * 2
+            + [compliance.axial_n_m]
+            + [compliance.turning_nm_rad] * 2
+            + [compliance.yaw_nm_rad]
+        )
+        self.nominal_fit = nominal_fit(scenario.fit)
+        self.loads = 0
+        self.load()
+
+    def load(self) -> dict[str, Any]:
+        """Bring the next peg and the next face with its hole; peaks and slip begin anew."""
+        self.loads += 1
+        self.part = draw_part(self.scenario, self.seed, self.loads)
+        self._hole = self.part.cell_T_hole.as_matrix()
+        self._hole_inverse = inverse_matrix(self._hole)
+        self._flange_T_peg = self.part.flange_T_peg.as_matrix()
+        self.peaks = ForcePeaks()
+        self._contact = np.zeros(6)
+        flange = self.flange(self.scenario.peg.carried_by).as_matrix()
+        self.peg = HeldPeg(
+            fit_with(self.scenario.fit, self.faults),
+            self._robot_n_m,
+            pose_of(self._hole_inverse @ flange @ self._flange_T_peg),
+            grip_n=grip_force_n(self.scenario, self.faults),
+        )
+        return {"load": self.loads}
+
+    def commands(self) -> Mapping[str, Command]:
+        """The hands of the operator on the control port."""
+        return {"load": self.load}
+
+    def faults_changed(self) -> None:
+        """Faults of hole and fingers act at once."""
+        self.peg.change(fit_with(self.scenario.fit, self.faults))
+        self.peg.hold_with(grip_force_n(self.scenario, self.faults))
+
+    # -- forces ---------------------------------------------------------------------------------
+    def load_on(self, sensor: str, flange: Array, *, moving: bool) -> Array:
+        """Weight and inertia of the tool, and what the hole does to the peg."""
+        if sensor != self.scenario.peg.force_sensor:
+            return np.zeros(6)
+        self._tool.advance(flange, moving=moving)
+        self.peg.follow(pose_of(self._hole_inverse @ flange @ self._flange_T_peg), STEP_S)
+        self.peaks.take(self.peg.wrench)
+        return np.asarray(self._tool.load + self._at_sensor(flange))
+
+    def _at_sensor(self, flange: Array) -> Array:
+        wrench = self.peg.wrench
+        if not wrench.any():
+            return wrench
+        sensor = flange @ self._flange_T_sensor.as_matrix()
+        force, torque = self._hole[:3, :3] @ wrench[:3], self._hole[:3, :3] @ wrench[3:]
+        tip = self._hole[:3, :3] @ np.array(self.peg.pose[:3]) + self._hole[:3, 3]
+        torque = torque + np.cross(tip - sensor[:3, 3], force)
+        turned = sensor[:3, :3].T
+        return np.concatenate([turned @ force, turned @ torque])
+
+    # -- views and truth ------------------------------------------------------------------------
+    def bodies_before(self, camera_T_cell: RigidTransform) -> Iterable[Seen]:  # noqa: ARG002
+        """Nothing: the hole is where no camera sees it."""
+        return ()
+
+    def truth_report(self) -> dict[str, Any]:
+        """The peg against its hole, seated or not, slip, and the largest forces."""
+        return truth_of(self)

@@ -1,0 +1,199 @@
+"""Where a massless peg stands between the spring of the robot and its contacts.
+
+Solves K (commanded - X) + W(X) - D (X - before) / dt = 0 for the pose X by Newton's method, with
+the Jacobian written by hand. W holds normal forces, friction with its bristles, and the contacts
+inside a connector.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from fakes.world.frames import Array
+from fakes.world.peg.attitude import Pose6
+from fakes.world.peg.contact import Contact
+from fakes.world.peg.fit import Fit
+from fakes.world.peg.friction import Bristles, rub
+from fakes.world.peg.slots import Slots
+
+_ROUNDS: Final = 12
+_RELAXING: Final = 60
+_RELAXED: Final = np.diag([2e6] * 3 + [50.0] * 3)
+"""Further rounds as a slow slide, with this stiffness against every step. Where a contact goes over
+the edge between chamfer and bore no equilibrium is near, and Newton's steps jump to and fro."""
+_FOUND_M: Final = 2e-8
+_FOUND_RAD: Final = 2e-6
+"""Newton's last step. Within it forces are linear, and are carried along with it."""
+_CREEP: Final = [20e-6] * 3 + [1e-3] * 3
+"""By as much the peg moves where Newton finds nothing. Held in place, a free peg would look
+captured; let go at once, it would run away."""
+_DRAG: Final = np.array([10.0] * 3 + [1e-3] * 3)
+"""N·s/m and N·m·s/rad: keeps a peg that nothing holds in place."""
+_SPRING_GIVES_M: Final = 20e-6
+"""Contacts inside a connector pull back when the plug has turned round by this much."""
+_INSIDE: Final = -1
+"""Number of the bristle of these contacts."""
+
+_NOWHERE: Final = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+Row = tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Equilibrium:
+    """The peg at the end of a step."""
+
+    pose: Pose6
+    wrench: Array
+    """On the peg by what it touches, about its tip, in the axes of the hole: N, N·m, shape (6,)."""
+    bristles: Bristles
+    slots: tuple[int, ...]
+    """Active ones."""
+    way: Pose6
+    """Of the peg in this step."""
+    found: bool
+    """False where Newton failed and the peg crept."""
+
+
+def settle(
+    slots: Slots, robot_n_m: Array, commanded: Pose6, last: Equilibrium, dt_s: float
+) -> Equilibrium:
+    """One step of time. ``robot_n_m`` is the 6x6 stiffness of everything that holds the peg."""
+    before, bristles = last.pose, last.bristles
+    drag = _DRAG / dt_s
+    held = robot_n_m + np.diag(drag)
+    wanted = robot_n_m @ commanded + drag * before
+    pose = _moved(before, last.way)  # a steady motion goes on
+    for number in range(_ROUNDS + _RELAXING):
+        load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
+        residual = wanted - held @ pose + load.wrench
+        jacobian = load.jacobian()
+        system = held + jacobian
+        if number >= _ROUNDS:
+            system += _RELAXED
+        step = np.linalg.solve(system, residual)
+        way = step.tolist()
+        pose = _moved(pose, way)
+        if max(map(abs, way[:3])) < _FOUND_M and max(map(abs, way[3:])) < _FOUND_RAD:
+            load.wrench -= jacobian @ step
+            return load.standing(pose)
+    crept = tuple(
+        old + max(-limit, min(limit, new - old))
+        for old, new, limit in zip(before, pose, _CREEP, strict=True)
+    )
+    pose = (crept[0], crept[1], crept[2], crept[3], crept[4], crept[5])
+    load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
+    # What the arm presses with is all that can be carried.
+    load.wrench = -(robot_n_m @ (np.array(commanded) - pose))
+    return load.standing(pose, found=False)
+
+
+def free_at(pose: Pose6) -> Equilibrium:
+    """A peg that touches nothing."""
+    return Equilibrium(pose, np.zeros(6), {}, (), _NOWHERE, found=True)
+
+
+class _Load:
+    """Forces of the contacts at one pose, with the rows of their Jacobian."""
+
+    def __init__(
+        self, fit: Fit, contacts: list[Contact], pose: Pose6, before: Pose6, bristles: Bristles
+    ) -> None:
+        self._left: list[Row] = []
+        self._right: list[tuple[float, Row]] = []
+        self._bristles: Bristles = {}
+        self._contacts, self._before = contacts, before
+        self._forces: list[tuple[float, Row]] = []
+        moved = _difference(pose, before)
+        for contact in contacts:
+            self._add(contact, moved, bristles, fit.friction)
+        if fit.contact_forces and pose[2] < -fit.contact_forces[0][0]:
+            self._add_inside(fit, pose[2], moved[2], bristles)
+        self.wrench = np.zeros(6)
+        if self._forces:
+            sizes = np.array([size for size, _ in self._forces])
+            self.wrench = sizes @ np.array([row for _, row in self._forces])
+
+    def jacobian(self) -> Array:
+        """Minus the derivative of the wrench against the pose, shape (6, 6)."""
+        if not self._left:
+            return np.zeros((6, 6))
+        sizes = np.array([size for size, _ in self._right])
+        rows = np.array([row for _, row in self._right])
+        return np.asarray(np.array(self._left).T @ (sizes[:, None] * rows))
+
+    def standing(self, pose: Pose6, *, found: bool = True) -> Equilibrium:
+        slots = tuple(contact.slot for contact in self._contacts)
+        way = _difference(pose, self._before) if found else _NOWHERE
+        return Equilibrium(pose, self.wrench, self._bristles, slots, way, found)
+
+    def _derivative(self, left: Row, size: float, right: Row) -> None:
+        self._left.append(left)
+        self._right.append((size, right))
+
+    def _add(self, contact: Contact, moved: Pose6, bristles: Bristles, friction: float) -> None:
+        normal_n = contact.stiffness_n_m * contact.depth_m
+        if contact.twist:
+            row = (0.0, 0.0, 0.0, 0.0, 0.0, contact.nz)
+            self._forces.append((normal_n, row))
+            self._derivative(row, contact.stiffness_n_m, row)
+            return
+        pressed = _row(contact, contact.nx, contact.ny, contact.nz)
+        self._forces.append((normal_n, pressed))
+        self._derivative(pressed, contact.stiffness_n_m, pressed)
+        if contact.around_m > 0.0:
+            self._turning_normal(contact, normal_n)
+        if friction == 0.0:
+            return
+        rubbed = rub(contact, bristles, moved, friction)
+        self._bristles[contact.slot] = rubbed.deflection
+        along, across = _row(contact, *rubbed.along), _row(contact, *rubbed.across)
+        self._forces.append((-rubbed.force_n, along))
+        stiffness = rubbed.force_n / rubbed.trial_m if rubbed.trial_m > 1e-15 else 0.0
+        if rubbed.slips:
+            self._derivative(along, -friction * contact.stiffness_n_m, pressed)
+        else:
+            stiffness = stiffness or 0.7 * contact.stiffness_n_m
+            self._derivative(along, stiffness, along)
+        self._derivative(across, stiffness, across)
+
+    def _turning_normal(self, contact: Contact, normal_n: float) -> None:
+        """The normal follows the azimuth at which the peg leans on a round wall."""
+        level = (contact.nx * contact.nx + contact.ny * contact.ny) ** 0.5
+        if level < 1e-9:
+            return
+        tx, ty = -contact.ny / level, contact.nx / level
+        force = _row(contact, tx, ty, 0.0)
+        motion = (tx, ty, 0.0, -contact.up_m * ty, contact.up_m * tx, 0.0)
+        self._derivative(force, normal_n * level / contact.around_m, motion)
+
+    def _add_inside(self, fit: Fit, height_m: float, sunk_m: float, bristles: Bristles) -> None:
+        """Contacts of a connector rub along its axis, with a force by the depth."""
+        depths, forces = zip(*fit.contact_forces, strict=True)
+        limit_n = float(np.interp(-height_m, depths, forces))
+        trial = bristles.get(_INSIDE, (0.0, 0.0, 0.0))[2] + sunk_m
+        kept = max(-_SPRING_GIVES_M, min(_SPRING_GIVES_M, trial))
+        self._bristles[_INSIDE] = (0.0, 0.0, kept)
+        axial = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+        self._forces.append((-limit_n * kept / _SPRING_GIVES_M, axial))
+        if kept == trial:
+            self._derivative(axial, limit_n / _SPRING_GIVES_M, axial)
+
+
+def _row(contact: Contact, x: float, y: float, z: float) -> Row:
+    """A force of one newton at a contact, as a wrench about the tip."""
+    lx, ly, lz = contact.lx, contact.ly, contact.lz
+    return x, y, z, ly * z - lz * y, lz * x - lx * z, lx * y - ly * x
+
+
+def _difference(a: Pose6, b: Pose6) -> Pose6:
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3], a[4] - b[4], a[5] - b[5]
+
+
+def _moved(pose: Pose6, step: Sequence[float]) -> Pose6:
+    return (
+        pose[0] + step[0], pose[1] + step[1], pose[2] + step[2],
+        pose[3] + step[3], pose[4] + step[4], pose[5] + step[5],
+    )  # fmt: skip
