@@ -9,7 +9,8 @@ from thrift.Thrift import TType
 
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from drivers.robot.siasun_rpc.connection import RpcConnection
-from drivers.robot.siasun_rpc.protocol import MethodUnknown, request
+from drivers.robot.siasun_rpc.messages import MethodUnknown
+from drivers.robot.siasun_rpc.protocol import request
 from fakes.wire.duco.codec import write_reply, write_unknown
 
 MOVING, STOP = request("robotmoving"), request("stop", False)

@@ -14,6 +14,7 @@ from cellctl.errors.link import (
     ProtocolViolation,
     VersionMismatch,
 )
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults
 from drivers.robot.siasun.config import SiasunStopChannelConfig
@@ -220,9 +221,4 @@ def flange_state(status: Status, time_s: float) -> FlangeState:
 def rotation_from_abc(a_deg: float, b_deg: float, c_deg: float) -> tuple[float, ...]:
     """R = Rz(a) Ry(b) Rx(c), row by row."""
     a, b, c = math.radians(a_deg), math.radians(b_deg), math.radians(c_deg)
-    ca, sa, cb, sb, cc, sc = (f(x) for x in (a, b, c) for f in (math.cos, math.sin))
-    return (
-        *(ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc),
-        *(sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc),
-        *(-sb, cb * sc, cb * cc),
-    )
+    return EulerOrder.FIXED_XYZ.rows(c, b, a)

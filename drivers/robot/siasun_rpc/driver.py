@@ -37,8 +37,9 @@ from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.background import BackgroundTasks
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.link import RpcLink
+from drivers.robot.siasun_rpc.messages import Request
 from drivers.robot.siasun_rpc.motion import Motion
-from drivers.robot.siasun_rpc.protocol import Request, request
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready
 from drivers.robot.siasun_rpc.stream import ServoStream
 

@@ -12,7 +12,8 @@ from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.features import Features, features
 from drivers.robot.siasun_rpc.frame_stream import FrameStream
-from drivers.robot.siasun_rpc.protocol import MethodUnknown, request
+from drivers.robot.siasun_rpc.messages import MethodUnknown
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import StateWatch
 
 STOP = request("stop", False)  # noqa: FBT003 - "block": the reply is not to wait for standstill
