@@ -81,7 +81,7 @@ class Robot(Section):
     """Joint angles at switch-on."""
     controller: Controller = "protocol"
     """Whether it speaks from the text of the protocol, or runs the shipped job files."""
-    statement_ms: float = 1.0
+    statement_ms: float = 0.5
     """Of a job file; nobody has published the speed of the real interpreter."""
 
 

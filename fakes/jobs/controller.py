@@ -22,6 +22,7 @@ MAIN = "SJLMAIN"
 _TICK_S = 0.004
 _JOB_PORTS: dict[int, Channel] = {5001: "CMD", 5002: "STA", 5003: "GRD"}
 """Ports in the shipped job files."""
+_CAUSES = {1: "asked for by the PC", 2: "no heartbeat", 3: "link lost", 4: "panel"}
 _PERMIT, _GUARD_PERMIT, _PERMIT_LOOP = 9, 10, 9
 
 
@@ -58,6 +59,7 @@ class JobController:
 
     def _power_on(self) -> None:
         self.memory = Memory(self._input)
+        self._logged: dict[str, int] = {}
         self.motions = Motions(self._arm, self._clock, self._panel)
         self._shared = Shared(
             memory=self.memory,
@@ -139,7 +141,17 @@ class JobController:
                     for connection in task.sockets.values():
                         connection.cut()
             self.motions.supervise()
+            self._log_stops()
             await asyncio.sleep(_TICK_S)
+
+    def _log_stops(self) -> None:
+        """What the background jobs have counted as stops, and why, by the comments of the jobs."""
+        for job, count, why in (("SJLSTA", 61, 65), ("SJLGRD", 62, 66)):
+            stops = int(self.memory.numbers["I", count])
+            if stops != self._logged.get(job, 0):
+                cause = _CAUSES.get(int(self.memory.numbers["I", why]), "no cause")
+                _log.warning("%s, stop %d of %s: %s", self.faults.device, stops, job, cause)
+            self._logged[job] = stops
 
     def _input(self, family: str, index: int) -> int:
         panel = self._panel()
