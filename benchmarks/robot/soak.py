@@ -15,7 +15,6 @@ import logging
 import random
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable
 from contextlib import AbstractAsyncContextManager
 from dataclasses import asdict, dataclass, field
@@ -52,9 +51,11 @@ class Count:
     lost: int = 0
     """Reported as finished, and not at the target or not standing."""
     doubled: int = 0
-    """Motions of the arm beyond the one of a call, or after its end."""
+    """Motions of the arm beyond the one of a call, until the next call."""
     stale: int = 0
     """Motions that began on a state older than allowed."""
+    begun_unlinked: int = 0
+    """Motions whose command had left before the link was lost; allowed, since they are stopped."""
     beyond_time_outs: int = 0
     not_released: int = 0
     """Faults after which the arm could not be used again."""
@@ -62,7 +63,7 @@ class Count:
     longest_release_s: float = 0.0
     greatest_state_age_s: float = 0.0
     fake_hours: float = 0.0
-    faults: Counter[str] = field(default_factory=Counter)
+    faults: dict[str, int] = field(default_factory=dict)
     """How often each was injected."""
     wrong: dict[int, str] = field(default_factory=dict)
     """Motions after which something had happened that must not, and the fault that they had."""
@@ -87,10 +88,13 @@ class Soak:
         """A motion, a fault shortly before it or in it, its end, and the release."""
         soaked, rng, count = self._soaked, self._rng, self._count
         name = rng.choice(sorted(soaked.known))
+        aged, before = len(soaked.ages_s), len(soaked.begun_s)
         before_it = rng.random() < _BEFORE
         if before_it:
             soaked.known[name](soaked, rng)
             await asyncio.sleep(rng.uniform(0.0, 2 * STALE_S))
+        # Nobody has asked for one yet.
+        count.doubled += len(soaked.begun_s) - before
         up = RigidTransform.from_translation([0.0, 0.0, rng.uniform(-0.01, 0.01)])
         target, before = up * self._home, len(soaked.begun_s)
         began_s = time.monotonic()
@@ -103,22 +107,20 @@ class Soak:
         end = await _outcome(job)
         ended_s = time.monotonic() - began_s
         count.moves += 1
-        count.faults[name] += 1
+        count.faults[name] = count.faults.get(name, 0) + 1
         count.longest_end_s = max(count.longest_end_s, ended_s)
         count.beyond_time_outs += ended_s > MOVE_END_S
         self._judge(end, target, len(soaked.begun_s) - before)
         await self._stand()
-        begun = len(soaked.begun_s)
         soaked.heal()
         await self._release()
-        count.doubled += len(soaked.begun_s) - begun
-        self._judge_ages(before)
+        count.doubled += max(0, len(soaked.begun_s) - before - 1)
+        self._judge_ages(aged)
         if not count.good and not count.wrong:
             count.wrong[count.moves] = name
 
     def _judge(self, end: RobotState | None, target: RigidTransform, begun: int) -> None:
         soaked, count = self._soaked, self._count
-        count.doubled += max(0, begun - 1)
         if end is None:
             count.ended_early += 1
             return
@@ -186,6 +188,7 @@ async def soak(
         one = Soak(soaked, rng, count)
         for _ in range(moves):
             await one.move()
+        count.begun_unlinked = soaked.unlinked
     count.fake_hours = (time.monotonic() - began_s) / 3600
     return count
 
@@ -216,11 +219,14 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--way", choices=sorted(WAYS), nargs="+", default=list(WAYS))
     parser.add_argument("--out", type=Path)
     options = parser.parse_args(arguments)
+    counts: dict[str, Count] = {}
     # The lost links are what is tried here.
     logging.disable(logging.WARNING)
-    counts = {
-        name: QuickTime().run(soak(WAYS[name], options.moves, options.seed)) for name in options.way
-    }
+    try:
+        for name in options.way:
+            counts[name] = QuickTime().run(soak(WAYS[name], options.moves, options.seed))
+    finally:
+        logging.disable(logging.NOTSET)
     print(table(counts))
     if options.out is not None:
         options.out.parent.mkdir(parents=True, exist_ok=True)

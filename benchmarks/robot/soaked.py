@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 from dataclasses import dataclass, field
 from typing import Any
 
+from cellctl.errors.base import CellError
 from cellctl.interfaces.robot import Robot
 from fakes.faults import FaultBoard
 from fakes.world.robot import RobotArm
@@ -37,7 +38,10 @@ class Soaked:
     """What can go wrong."""
     begun_s: list[float] = field(default_factory=list)
     ages_s: list[float] = field(default_factory=list)
-    """Age of the newest state that the driver had, at each of these."""
+    """Age of the newest state that the driver had, at each of these but the unlinked ones."""
+    unlinked: int = 0
+    """Motions that began when the driver had just reported the loss of its link: their command had
+    left before. The controller stops them."""
 
     def heal(self) -> None:
         """End all faults."""
@@ -58,7 +62,10 @@ class Soaked:
         def noted(*arguments: Any) -> None:
             begin(*arguments)
             self.begun_s.append(now_s())
-            self.ages_s.append(now_s() - self.robot.state(1e9).time_s)
+            try:
+                self.ages_s.append(now_s() - self.robot.state(1e9).time_s)
+            except CellError:
+                self.unlinked += 1
 
         self.arm.start_linear = noted  # type: ignore[method-assign]
 
