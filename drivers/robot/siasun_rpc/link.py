@@ -42,12 +42,7 @@ class RpcLink:
         self._wanted = False
         """Between ``open`` and ``close``."""
         self.features = Features("", streams=False)
-        self.motion = RpcConnection(f"{robot} motion", self.drop)
-        self.control = RpcConnection(f"{robot} control", self.drop)
-        self._asking = RpcConnection(f"{robot} state", self.drop)
-        self._beating = RpcConnection(f"{robot} heartbeat", self.drop)
-        self._frames = FrameStream(f"{robot} state stream", self.drop)
-        self.watch = StateWatch(robot, config, self._asking, self._frames)
+        self._new_session()
         self._jobs = BackgroundTasks()
         self._reopening: asyncio.Task[None] | None = None
         self._down: asyncio.Future[None] | None = None
@@ -62,8 +57,19 @@ class RpcLink:
         await self._open()
         self._wanted = True
 
+    def _new_session(self) -> None:
+        """Connections that nothing of an earlier session can reach: neither its late end nor a
+        reply that comes after all."""
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        self.control = RpcConnection(f"{self._robot} control", self.drop)
+        self._asking = RpcConnection(f"{self._robot} state", self.drop)
+        self._beating = RpcConnection(f"{self._robot} heartbeat", self.drop)
+        self._frames = FrameStream(f"{self._robot} state stream", self.drop)
+        self.watch = StateWatch(self._robot, self._config, self._asking, self._frames)
+
     async def _open(self) -> None:
         config = self._config
+        self._new_session()
         self._down = asyncio.get_running_loop().create_future()
         self.up = True
         try:
@@ -83,6 +89,17 @@ class RpcLink:
         except BaseException:
             self._hang_up()
             raise
+
+    def facts(self) -> dict[str, str]:
+        """What is known of the controller, in words by name."""
+        service = "connected" if self.up else "not connected"
+        return {
+            "service": f"{service}, four connections and the state stream",
+            "controller software": self.features.version or "names no version",
+            "streamed motion": "known" if self.features.streams else "not known to this driver",
+            "tool and work object": f"{self._config.tool} and {self._config.work_frame}",
+            "dead man": f"{self._config.heartbeat_ms} ms",
+        }
 
     def drop(self, fault: LinkError) -> None:
         """End everything because of a fault, after a last stop if that can still be sent."""
@@ -140,6 +157,7 @@ class RpcLink:
         self.motion.close()
         if not self.up:
             return
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
         try:
             async with asyncio.timeout(self._config.connect_timeout_s):
                 await self.motion.open(self._config.host, self._config.rpc_port)
