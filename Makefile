@@ -79,6 +79,7 @@ bench-guard: venv
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc
 	$(BIN)/python -m benchmarks.robot.slow_jobs
+	$(BIN)/python -m benchmarks.robot.stops
 
 # Takes about a quarter of an hour; N motions on each of three ways to an arm.
 soak-robot: N = 10000

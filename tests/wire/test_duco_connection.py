@@ -141,4 +141,4 @@ async def test_the_late_end_of_an_old_connection_does_not_touch_the_new_session(
             old.connection_lost(None)
             old.data_received(b"late")
         assert link.up
-        assert rig.robot.state().ready
+        assert not rig.robot.state().moving
