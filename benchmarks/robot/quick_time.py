@@ -19,7 +19,7 @@ _LOOKS = 3
 soon as this thread lets it."""
 
 
-class _JumpingSelector(selectors.DefaultSelector):  # type: ignore[valid-type, misc]
+class _JumpingSelector(selectors.DefaultSelector):
     """Asks the sockets without waiting, and tells how long it would have waited."""
 
     def __init__(self, jump: Callable[[float], None]) -> None:
@@ -30,10 +30,10 @@ class _JumpingSelector(selectors.DefaultSelector):  # type: ignore[valid-type, m
         """As every selector; without a timer it really waits."""
         for _ in range(_LOOKS):
             if (events := super().select(0)) or timeout == 0:
-                return events  # type: ignore[no-any-return]
+                return events
             os.sched_yield()
         if timeout is None:
-            return super().select(None)  # type: ignore[no-any-return]
+            return super().select(None)
         self._jump(timeout)
         return []
 

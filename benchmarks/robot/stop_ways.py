@@ -1,4 +1,4 @@
-"""The ways to stop an arm, each with the driver, the fake controller and the wires that it needs."""
+"""The ways to stop an arm, each with the driver, the fake controller and the wires it needs."""
 
 import asyncio
 import contextlib
