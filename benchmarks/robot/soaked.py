@@ -67,11 +67,16 @@ class Soaked:
             except CellError:
                 self.unlinked += 1
 
-        self.arm.start_linear = noted  # type: ignore[method-assign]
+        self.arm.start_linear = noted  # type: ignore[method-assign, assignment]
 
 
 def _one(soaked: Soaked, rng: random.Random) -> ChaosProxy:
     return rng.choice(soaked.wires)
+
+
+def _reset_all(soaked: Soaked) -> None:
+    for wire in soaked.wires:
+        wire.reset()
 
 
 def _way(soaked: Soaked, rng: random.Random) -> Chaos:
@@ -90,7 +95,7 @@ def _inject(name: str, **parameters: Any) -> Inject:
 
 _WIRE: dict[str, Inject] = {
     "none": lambda _soaked, _rng: None,
-    "all connections reset": lambda soaked, _: [wire.reset() for wire in soaked.wires],
+    "all connections reset": lambda soaked, _: _reset_all(soaked),
     "one wire reset": lambda soaked, rng: _one(soaked, rng).reset(),
     "half open": lambda s, rng: setattr(_way(s, rng), "blocked", True),
     "byte by byte": lambda s, rng: setattr(_way(s, rng), "split", True),

@@ -1,7 +1,6 @@
 """The ways to stop an arm, each with the driver, the fake controller and the wires it needs."""
 
 import asyncio
-import contextlib
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
@@ -9,7 +8,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from cellctl.errors.base import CellError
 from cellctl.interfaces.robot import Robot
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
@@ -32,7 +30,12 @@ HOST_MS = 50.0
 """What a busy PC may need for one write and its wire."""
 PERMIT = 3
 """Address of the output whose contact is in the permit loop."""
-SLOW = {"stale_s": 10.0, "silence_s": 10.0, "reply_timeout_s": 10.0, "stop_timeout_s": 20.0}
+SLOW: dict[str, Any] = {
+    "stale_s": 10.0,
+    "silence_s": 10.0,
+    "reply_timeout_s": 10.0,
+    "stop_timeout_s": 20.0,
+}
 """Time-outs of the driver that would end a motion before the stop that is measured does."""
 
 
@@ -135,14 +138,13 @@ async def _contact(rig: JobRig) -> AsyncIterator[tuple[ModbusCouplerIo, ChaosPro
     async with AsyncExitStack() as stack:
         wire = await stack.enter_async_context(ChaosProxy(await coupler.start()))
         stack.push_async_callback(coupler.stop)
-        running = [asyncio.create_task(_watchdog(coupler))]
-        stack.callback(lambda: [task.cancel() for task in running])
+        watching = asyncio.create_task(_watchdog(coupler))
+        stack.callback(watching.cancel)
         settings = ModbusCouplerConfig(
             host="127.0.0.1", port=wire.port, inputs={"ready": 0}, outputs={"permit": PERMIT}
         )
         io = await stack.enter_async_context(ModbusCouplerIo("permit", settings))
         await io.write({"permit": True})
-        running.append(asyncio.create_task(_asked(io)))
         yield io, wire
 
 
@@ -151,14 +153,6 @@ async def _watchdog(coupler: CouplerServer) -> None:
     while True:
         coupler.expire()
         await asyncio.sleep(0.002)
-
-
-async def _asked(io: ModbusCouplerIo) -> None:
-    """The daemon reads its coupler all the time, which holds off the watchdog."""
-    with contextlib.suppress(CellError):
-        while True:
-            await io.read()
-            await asyncio.sleep(0.05)
 
 
 @asynccontextmanager
