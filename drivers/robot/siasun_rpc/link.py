@@ -43,6 +43,7 @@ class RpcLink:
         """Between ``open`` and ``close``."""
         self.features = Features("", streams=False)
         self._new_session()
+        self.watch = StateWatch(robot, config, self._asking, self._frames)
         self._jobs = BackgroundTasks()
         self._reopening: asyncio.Task[None] | None = None
         self._down: asyncio.Future[None] | None = None
@@ -65,11 +66,11 @@ class RpcLink:
         self._asking = RpcConnection(f"{self._robot} state", self.drop)
         self._beating = RpcConnection(f"{self._robot} heartbeat", self.drop)
         self._frames = FrameStream(f"{self._robot} state stream", self.drop)
-        self.watch = StateWatch(self._robot, self._config, self._asking, self._frames)
 
     async def _open(self) -> None:
         config = self._config
         self._new_session()
+        self.watch.follow(self._asking, self._frames)
         self._down = asyncio.get_running_loop().create_future()
         self.up = True
         try:

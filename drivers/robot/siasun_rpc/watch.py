@@ -85,6 +85,10 @@ class StateWatch:
         self._news = asyncio.Event()
         self._requests = _questions(config)
 
+    def follow(self, connection: RpcConnection, frames: FrameStream) -> None:
+        """Go on with those of a new session; whoever waits for a report waits for one of it."""
+        self._connection, self._frames = connection, frames
+
     async def run(self) -> None:
         """Ask and remember; drops the connection when the state stream is not to be trusted."""
         self._report = None
