@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot bench-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -79,6 +79,12 @@ bench-guard: venv
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc
 	$(BIN)/python -m benchmarks.robot.slow_jobs
+	$(BIN)/python -m benchmarks.robot.stops
+
+# Takes about a quarter of an hour; N motions on each of three ways to an arm.
+soak-robot: N = 10000
+soak-robot: venv
+	$(BIN)/python -m benchmarks.robot.soak --moves $(N)
 
 bench-cameras: venv
 	$(BIN)/python -m benchmarks.cameras.throughput

@@ -10,10 +10,17 @@ import typer
 
 from fakes import scenario as scenarios
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
+from fakes.sections import Controller
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
 ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
+RobotsOption = Annotated[
+    Controller | None,
+    typer.Option(
+        "--robots", help="What all controllers do, in place of what the scenario file says."
+    ),
+]
 
 app = typer.Typer(
     help="The fake cell, a line PLC, and the demonstration of both.",
@@ -48,13 +55,16 @@ def run(
     imperfection: Annotated[
         list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
     ] = None,
+    robots: RobotsOption = None,
 ) -> None:
     """Run the fake cell until SIGINT or SIGTERM."""
     from fakes.cell import run_cell
 
     ports = dict(_port(item) for item in port or [])
     scales = dict(_scale(item) for item in imperfection or [])
-    raise typer.Exit(asyncio.run(run_cell(scenarios.load(scenario, scales), seed, ports)))
+    written = scenarios.load(scenario, scales)
+    described = written if robots is None else written.with_controllers(robots)
+    raise typer.Exit(asyncio.run(run_cell(described, seed, ports)))
 
 
 def _port(item: str) -> tuple[str, int]:

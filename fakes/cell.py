@@ -12,7 +12,9 @@ from typing import Any
 from fakes.clock import WorldClock
 from fakes.control import ControlServer
 from fakes.devices import DeviceFaults, DeviceRack
-from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.faults import JOB_FAULTS, ROBOT_FAULTS, FaultBoard
+from fakes.jobs.controller import JobController
+from fakes.jobs.installation import Adaptation
 from fakes.motion_watch import MotionWatch
 from fakes.operator import Operator
 from fakes.priority import stand_apart
@@ -49,7 +51,17 @@ class Cell:
 
     def commands(self) -> Mapping[str, Command]:
         """What the hands of an operator can do in this cell, by name."""
-        return {**self.world.commands(), **self._rack.commands()}
+        commands = {**self.world.commands(), **self._rack.commands()}
+        if any(isinstance(robot, JobController) for robot in self.robots.values()):
+            commands["acknowledge"] = self._acknowledge
+        return commands
+
+    def _acknowledge(self, robot: str) -> None:
+        """Reset the alarm of a controller at its pendant and start its main job again."""
+        controller = self.robots.get(robot)
+        if not isinstance(controller, JobController) or not controller.alarm:
+            raise ValueError(f"{robot!r} shows no alarm of a job")
+        controller.acknowledge()
 
     def faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
         """What can be injected faults into, by name; the bodies are called ``world``."""
@@ -93,11 +105,20 @@ class Cell:
         await self._control.stop()
         self._rack.shut_down()
 
-    def _controller(self, name: str, robot: Robot) -> SjlController:
+    def _controller(self, name: str, robot: Robot) -> SjlController | JobController:
         ports = {
             channel: self._ports.get(f"{name}.{channel}", port)
             for channel, port in robot.ports.items()
         }
+        if robot.controller == "jobs":
+            return JobController(
+                self.world.arms[name],
+                self.clock,
+                ports,
+                faults=FaultBoard(name, JOB_FAULTS),
+                statement_s=robot.statement_ms / 1000,
+                adaptation=Adaptation(robot.name, robot.step_max_mm, robot.deadman_ms),
+            )
         return SjlController(
             self.world.arms[name],
             self.clock,

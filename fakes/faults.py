@@ -40,6 +40,17 @@ ROBOT_FAULTS = {
     "set_repeated": "a setpoint of a stream is heard twice",
     "ticks_silent": "the ticks of a stream are not reported, the stream goes on",
 }
+JOB_FAULTS = {
+    name: meaning
+    for name, meaning in ROBOT_FAULTS.items()
+    if name not in {"set_lost", "set_late", "set_repeated", "ticks_silent"}
+} | {
+    "frozen_stat": "the background jobs stand still",
+    "clock_jump": "TIMER jumps by `jump_ms`, for STAT and for the dead man alike",
+    "reject": "the next motion is an alarm with `reason` that ends the main job",
+    "abort": "the controller shows an error when `after_s` have passed",
+}
+"""Of a controller that runs the shipped jobs. They offer no streamed motion."""
 TRACKER_FAULTS = {
     "silent": "requests are not answered",
     "error": "requests are answered with an error",

@@ -14,6 +14,7 @@ from pydantic import Field, field_validator, model_validator
 from fakes.imperfections import CATALOGUE, check_scales, scale_written
 from fakes.sections import (
     Camera,
+    Controller,
     DeviceName,
     DigitalIo,
     ForceSensor,
@@ -66,6 +67,14 @@ class Scenario(Section):
     def size_of(self, imperfection: str) -> float:
         """Size of an imperfection whose size is that of the catalogue, in its unit there."""
         return CATALOGUE[imperfection].size * self.imperfections.get(imperfection, 0.0)
+
+    def with_controllers(self, controller: Controller) -> Self:
+        """The same cell with one kind of controller at all arms."""
+        robots = {
+            name: robot.model_copy(update={"controller": controller})
+            for name, robot in self.robots.items()
+        }
+        return self.model_copy(update={"robots": robots})
 
     def without_imperfections(self) -> Self:
         """The same cell without those whose size is that of the catalogue."""

@@ -13,6 +13,7 @@ Pose = tuple[float, float, float, float, float, float]
 """x, y, z in mm and A, B, C in degrees with R = Rz(A) Ry(B) Rx(C)."""
 DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 Channel = Literal["CMD", "STA", "GRD"]
+Controller = Literal["protocol", "jobs"]
 Six = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
 Pair = tuple[float, float]
@@ -81,6 +82,10 @@ class Robot(Section):
     stream_travel_deg: float = 5.0
     home_deg: Six
     """Joint angles at switch-on."""
+    controller: Controller = "protocol"
+    """Whether it speaks from the text of the protocol, or runs the shipped job files."""
+    statement_ms: float = 0.5
+    """Of a job file; nobody has published the speed of the real interpreter."""
 
 
 class ForceSensor(Section):

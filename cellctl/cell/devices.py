@@ -11,6 +11,7 @@ from cellctl import log, plugins
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.noted_robot import RobotNotes
+from cellctl.cell.permitted_robot import permitted
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
@@ -41,14 +42,17 @@ class Cell:
         self.config = config
         self.folder = folder
         self.robot_notes = RobotNotes()
+        self.digital_ios: Mapping[str, DigitalIo] = _built(config, "digital_ios")
+        built = [
+            permitted(config, one, self.digital_ios) for one in _built(config, "robots").values()
+        ]
         # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
-        noted = map(self.robot_notes.noted, _built(config, "robots").values())
+        noted = map(self.robot_notes.noted, built)
         self.robots = zoned_robots(config, {robot.name: robot for robot in noted})
         self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
         self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
         self.cameras: Mapping[str, Camera] = _built(config, "cameras")
         self.grippers: Mapping[str, Gripper] = _built(config, "grippers")
-        self.digital_ios: Mapping[str, DigitalIo] = _built(config, "digital_ios")
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
         """By the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()

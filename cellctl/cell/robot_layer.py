@@ -33,6 +33,10 @@ class RobotLayer(Robot):
         """That of the robot behind it."""
         return self._robot.state(max_age_s)
 
+    def link_facts(self) -> dict[str, str]:
+        """Those of the robot behind it."""
+        return self._robot.link_facts()
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """As the robot behind it."""
         return await self._robot.move_joint(joints_rad, speed_ratio=speed_ratio)

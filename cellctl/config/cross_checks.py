@@ -15,6 +15,7 @@ def cross_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> list[ConfigI
         *_names(cell),
         *_recipe_ids(cell),
         *_carriers(cell),
+        *_permits(cell),
         *_pace(cell, found),
         *_simulation(cell),
     ]
@@ -55,6 +56,19 @@ def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
             # A robot has one channel for a guard, and a guard has one sensor (decision 0003).
             key = f"force_sensors.{name}.mounted_on"
             yield ConfigIssue(key, repr(sensor.mounted_on), "a robot carries one force sensor")
+
+
+def _permits(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Digital outputs that robots are permitted by."""
+    permits = {name: robot.permit for name, robot in cell.robots.items() if robot.permit}
+    used = Counter((permit.device, permit.output) for permit in permits.values())
+    for name, permit in permits.items():
+        key = f"robots.{name}.permit"
+        if permit.device not in cell.digital_ios:
+            ios = ", ".join(cell.digital_ios) or "none"
+            yield ConfigIssue(f"{key}.device", repr(permit.device), f"one of digital_ios: {ios}")
+        if used[permit.device, permit.output] > 1:
+            yield ConfigIssue(f"{key}.output", repr(permit.output), "one contact for each robot")
 
 
 def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:

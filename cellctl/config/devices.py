@@ -23,11 +23,22 @@ class DeviceConfig(Section):
     """Checked by the driver's own ``Config``."""
 
 
+class PermitConfig(Section):
+    """A digital output of this PC whose contact is in the permit loop of a robot."""
+
+    device: DeviceName
+    """The digital I/O; one with a watchdog, so that the contact opens when this PC dies."""
+    output: str
+    """Name of the output there; on is the permit."""
+
+
 class RobotConfig(DeviceConfig):
     """A robot, with the poses that were taught and the speeds between them."""
 
     poses_deg: dict[DeviceName, JointsDeg] = Field(default_factory=dict)
     """Taught joint positions by name, such as ``home``; a process says which ones it needs."""
+    permit: PermitConfig | None = None
+    """Opened with every stop, closed when the robot is re-armed."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
     """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0

@@ -6,50 +6,37 @@ nothing is guessed.
 """
 
 import math
-from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial.transform import Rotation
 
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.geometry.pose import Array
 
 _POLE = 1e-9
 """Cosine of the middle angle below which only the sum or difference of the others is defined."""
 
 
-class EulerOrder(Enum):
-    """How three angles (rx, ry, rz), in rad about x, y and z, make a rotation matrix R."""
+def rotation_of(order: EulerOrder, angles_rad: ArrayLike) -> Rotation:
+    """Rotation of three angles, shape (3,), in the order rx, ry, rz; ``ValueError`` if they are
+    none."""
+    angles = np.asarray(angles_rad, dtype=float)
+    if angles.shape != (3,) or not np.isfinite(angles).all():
+        raise ValueError(f"an orientation is three finite numbers, got {angles_rad!r}")
+    return Rotation.from_matrix(np.reshape(order.rows(*angles.tolist()), (3, 3)))
 
-    FIXED_XYZ = "fixed-xyz"
-    """About the fixed axes x, then y, then z: R = Rz Ry Rx. The same as the moving axes z, y', x''.
+
+def angles_of(order: EulerOrder, rotation: Rotation) -> Array:
+    """Angles, shape (3,), in the order rx, ry, rz, each in [-pi, pi].
+
+    At the poles, where ry is ±pi/2, rx is set to 0: only the sum or difference of rx and rz is
+    defined there, and the rotation is the same for every choice.
     """
-    MOVING_XYZ = "moving-xyz"
-    """About the moving axes x, then y', then z'': R = Rx Ry Rz."""
-    ROTATION_VECTOR = "rotation-vector"
-    """Not Euler angles: the axis of the rotation times its angle."""
-
-    def rotation(self, angles_rad: ArrayLike) -> Rotation:
-        """Rotation of three angles, shape (3,), in the order rx, ry, rz."""
-        angles = np.asarray(angles_rad, dtype=float)
-        if angles.shape != (3,) or not np.isfinite(angles).all():
-            raise ValueError(f"an orientation is three finite numbers, got {angles_rad!r}")
-        if self is EulerOrder.ROTATION_VECTOR:
-            return Rotation.from_rotvec(angles)
-        if self is EulerOrder.FIXED_XYZ:
-            return Rotation.from_euler("xyz", angles)
-        return Rotation.from_euler("XYZ", angles)
-
-    def angles(self, rotation: Rotation) -> Array:
-        """Angles, shape (3,), in the order rx, ry, rz, each in [-pi, pi].
-
-        At the poles, where ry is ±pi/2, rx is set to 0: only the sum or difference of rx and rz is
-        defined there, and the rotation is the same for every choice.
-        """
-        if self is EulerOrder.ROTATION_VECTOR:
-            return np.asarray(rotation.as_rotvec())
-        matrix = rotation.as_matrix()
-        return _fixed_xyz(matrix) if self is EulerOrder.FIXED_XYZ else _moving_xyz(matrix)
+    if order is EulerOrder.ROTATION_VECTOR:
+        return np.asarray(rotation.as_rotvec())
+    matrix = rotation.as_matrix()
+    return _fixed_xyz(matrix) if order is EulerOrder.FIXED_XYZ else _moving_xyz(matrix)
 
 
 # The last angle is taken from what is left of the rotation once the first is undone. However little

@@ -94,6 +94,13 @@ class Robot(Device):
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report; raises ``StaleData`` when it is older than ``max_age_s``."""
 
+    def link_facts(self) -> dict[str, str]:
+        """What the controller has said about itself when it connected: words by name, for people.
+
+        Asked by `cellctl robot`; empty where a driver has nothing to say.
+        """
+        return {}
+
     @abstractmethod
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """Joint motion to shape (6,) at a ratio (0, 1] of the rated speed."""

@@ -35,6 +35,14 @@ class StopChannel(BlockingDevice):
     def request_stop(self) -> None:
         """Send the stop request now and return; does not wait for standstill. Repeatable."""
 
+    def repeat_stop(self) -> None:
+        """Ask again for a stop that was requested and is not reported as latched yet.
+
+        Called at every beat until it is. A channel whose far end reads slowly may leave some out:
+        requests that queue up there would be obeyed after the release of the latch.
+        """
+        self.request_stop()
+
     @abstractmethod
     def heartbeat(self) -> None:
         """Tell the controller that the guard lives."""

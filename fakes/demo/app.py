@@ -21,6 +21,7 @@ from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, req
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.imperfections import UnknownImperfection, parsed_scale
 from fakes.scenes.registry import UnknownScene
+from fakes.sections import Controller
 
 DEFAULT_PROCESS = "deck-to-frame"
 _REFUSALS = (
@@ -72,6 +73,10 @@ def demo(
     imperfection: Annotated[
         list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
     ] = None,
+    robots: Annotated[
+        Controller | None,
+        typer.Option(help="What all robot controllers do; default: what the scenario file says."),
+    ] = None,
 ) -> None:
     """Run one job of a process on its fake cell; exit code 0 only for a good part.
 
@@ -87,6 +92,7 @@ def demo(
             cell=cell or shown.cell,
             out=out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}",
             imperfections=dict(parsed_scale(item) for item in imperfection or ()),
+            robots=robots,
         )
         _check(files)
         code = _run(shown, files, job, console, complaint)

@@ -15,6 +15,7 @@ from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
 from fakes.demo.safety import own_calibrations
 from fakes.demo.verdict import why_not_good
+from fakes.sections import Controller
 
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
@@ -33,6 +34,8 @@ class Files:
     out: Path
     imperfections: Mapping[str, float] = field(default_factory=dict)
     """Scales in place of those of the scenario file, by name."""
+    robots: Controller | None = None
+    """What all controllers do, in place of what the scenario file says."""
 
 
 def too_slow(lost_s: float, passed_s: float) -> str:
@@ -76,6 +79,8 @@ class Session:
         arguments = ["-m", "fakes", "run", "--scenario", scenario, "--seed", seed]
         for name, scale in self._files.imperfections.items():
             arguments += ["--imperfection", f"{name}={scale:g}"]
+        if self._files.robots is not None:
+            arguments += ["--robots", self._files.robots]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
         self._control = Control(int(ports["control"]))
 

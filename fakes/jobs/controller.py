@@ -5,11 +5,11 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-from fakes.faults import ROBOT_FAULTS, FaultBoard
+from fakes.faults import JOB_FAULTS, FaultBoard
+from fakes.jobs.installation import SHIPPED, Adaptation, installed
 from fakes.jobs.lexer import JobError
 from fakes.jobs.memory import Memory
 from fakes.jobs.motion import Motions
-from fakes.jobs.program import load_program
 from fakes.jobs.sockets import JobSocket
 from fakes.jobs.task import Shared, Task
 from fakes.sections import Channel
@@ -22,6 +22,7 @@ MAIN = "SJLMAIN"
 _TICK_S = 0.004
 _JOB_PORTS: dict[int, Channel] = {5001: "CMD", 5002: "STA", 5003: "GRD"}
 """Ports in the shipped job files."""
+_CAUSES = {1: "asked for by the PC", 2: "no heartbeat", 3: "link lost", 4: "panel"}
 _PERMIT, _GUARD_PERMIT, _PERMIT_LOOP = 9, 10, 9
 
 
@@ -36,20 +37,21 @@ class JobController:
         arm: RobotArm,
         clock: Callable[[], float],
         ports: dict[Channel, int],
-        folder: Path,
+        folder: Path = SHIPPED,
         *,
         host: str = "127.0.0.1",
         faults: FaultBoard | None = None,
         statement_s: float = 0.0005,
+        adaptation: Adaptation | None = None,
     ) -> None:
-        """``folder`` holds the job files."""
-        self.faults = faults or FaultBoard("robot", ROBOT_FAULTS)
+        """``folder`` holds the job files; without ``adaptation`` they run as they are shipped."""
+        self.faults = faults or FaultBoard("robot", JOB_FAULTS)
         self.contact_closed = True
         """The PC's digital output in the permit loop."""
         self.alarm = ""
         """What has ended a job; the main job starts again with ``acknowledge``."""
         self._arm, self._clock, self._ports, self._host = arm, clock, ports, host
-        self._programs = {path.stem: load_program(path) for path in sorted(folder.glob("*.job"))}
+        self._programs = installed(folder, adaptation)
         self._statement_s = statement_s
         self._jobs: dict[str, asyncio.Task[None]] = {}
         self.tasks: dict[str, Task] = {}
@@ -57,11 +59,13 @@ class JobController:
 
     def _power_on(self) -> None:
         self.memory = Memory(self._input)
+        self._logged: dict[str, int] = {}
         self.motions = Motions(self._arm, self._clock, self._panel)
         self._shared = Shared(
             memory=self.memory,
             motions=self.motions,
             clock=self._clock,
+            timer=self._timer_s,
             route=lambda _, port: (self._host, self._ports.get(_JOB_PORTS[port], 1)),
             socket=lambda: JobSocket(self.faults),
             start=self._start_background,
@@ -93,9 +97,24 @@ class JobController:
         self.alarm = ""
         self._begin(MAIN, background=False)
 
+    @property
+    def open_channels(self) -> list[Channel]:
+        """Channels on which a job has a PC."""
+        channels: dict[str, Channel] = {"SJLMAIN": "CMD", "SJLSTA": "STA", "SJLGRD": "GRD"}
+        return sorted(
+            channels[name]
+            for name, task in self.tasks.items()
+            if name in channels and any(one.greeted for one in task.sockets.values())
+        )
+
     def moving(self) -> bool:
         """The arm moves."""
         return self.motions.moving()
+
+    def _timer_s(self) -> float:
+        """The clock that TIMER reads."""
+        jump = self.faults.active("clock_jump")
+        return self._clock() + (jump.number("jump_ms", 1e6) / 1000 if jump else 0.0)
 
     def _panel(self) -> Panel:
         return Panel(self.faults, self._arm.by_hand)
@@ -122,7 +141,17 @@ class JobController:
                     for connection in task.sockets.values():
                         connection.cut()
             self.motions.supervise()
+            self._log_stops()
             await asyncio.sleep(_TICK_S)
+
+    def _log_stops(self) -> None:
+        """What the background jobs have counted as stops, and why, by the comments of the jobs."""
+        for job, count, why in (("SJLSTA", 61, 65), ("SJLGRD", 62, 66)):
+            stops = int(self.memory.numbers["I", count])
+            if stops != self._logged.get(job, 0):
+                cause = _CAUSES.get(int(self.memory.numbers["I", why]), "no cause")
+                _log.warning("%s, stop %d of %s: %s", self.faults.device, stops, job, cause)
+            self._logged[job] = stops
 
     def _input(self, family: str, index: int) -> int:
         panel = self._panel()

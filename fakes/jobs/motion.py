@@ -37,6 +37,10 @@ class Motions:
     def begin(self, word: str, target: Position, speed: float, acceleration: float) -> None:
         """Raises ``JobError`` where the controller would show an alarm."""
         now_s = self._clock()
+        faults = self._panel().faults
+        self._arm.override_percent = 0 if faults.active("override_zero") else 100
+        if rejected := faults.use("reject"):
+            raise JobError(f"alarm of the controller: {rejected.text('reason', 'LIMIT')}")
         try:
             if word == "MOVJ":
                 joints = np.deg2rad([target[name] for name in _JOINTS])
@@ -60,6 +64,9 @@ class Motions:
 
     def stop(self, *, latency_s: float | None = None) -> None:
         """Brake on the path."""
+        slow = self._panel().faults.active("stop_latency")
+        if latency_s is None and slow:
+            latency_s = slow.number("latency_s", 0.5)
         if self.moving():
             self._arm.stop(self._clock(), latency_s=latency_s)
 

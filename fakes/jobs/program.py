@@ -74,10 +74,15 @@ class Program:
 
 def load_program(path: Path) -> Program:
     """Read a job file; raises ``JobError`` with the line that the language does not allow."""
-    lines = path.read_text("ascii").splitlines()
+    return read_program(path.stem, path.read_text("ascii"))
+
+
+def read_program(name: str, text: str) -> Program:
+    """The same for the text of a job."""
+    lines = text.splitlines()
     if not lines or lines[0] != "NOP" or lines[-1] != "END":
-        raise JobError(f"{path.name}: a job begins with NOP and ends with END")
-    return _Reader(path.stem).program(lines[1:-1])
+        raise JobError(f"{name}: a job begins with NOP and ends with END")
+    return _Reader(name).program(lines[1:-1])
 
 
 class _Reader:

@@ -16,6 +16,9 @@ _WRONG_HELLOS = {
     "wrong_unit": ("UNIT=MMDEG", "UNIT=MRAD"),
     "wrong_name": (r"(CMD|STA|GRD),[^,]*", r"\1,NOBODY"),
 }
+_ACCEPTED = b"OKAY"
+_STOP, _STOP_BYTES = b"ABRT", 26
+"""The word of a stop, and how long its record is (docs/protocols/sjl-2.md, section 3)."""
 
 
 class JobSocket:
@@ -28,6 +31,8 @@ class JobSocket:
         self._writer: asyncio.StreamWriter | None = None
         self._sender: Sender | None = None
         self._sending: asyncio.Task[None] | None = None
+        self.greeted = False
+        """A PC has answered the hello of this connection."""
 
     async def create(self, host: str, port: int) -> None:
         """TCPCREATE."""
@@ -74,10 +79,20 @@ class JobSocket:
             return None
         if self._faults.active("half_open"):
             return b""
-        return data or None
+        self.greeted = self.greeted or data.startswith(_ACCEPTED)
+        return self._heard(data) if data else None
+
+    def _heard(self, data: bytes) -> bytes:
+        """What is left of stops that a fault lets the job overhear. A stop that comes in pieces is
+        heard: the fault is a job that misses a word, not a line that loses bytes."""
+        place = data.find(_STOP)
+        if place < 0 or self._faults.use("ignore_stop") is None:
+            return data
+        return data[:place] + data[place + _STOP_BYTES :]
 
     async def close(self) -> None:
         """TCPCLOSE."""
+        self.greeted = False
         writer, self._writer, self._reader, self._sender = self._writer, None, None, None
         if self._sending is not None:
             self._sending.cancel()

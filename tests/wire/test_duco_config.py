@@ -3,7 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from cellctl.geometry.euler import EulerOrder
+from cellctl.geometry.euler_order import EulerOrder
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig, SiasunRpcStopChannelConfig
 
 CONTROLLER: dict[str, object] = {

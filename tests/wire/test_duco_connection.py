@@ -9,8 +9,10 @@ from thrift.Thrift import TType
 
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from drivers.robot.siasun_rpc.connection import RpcConnection
-from drivers.robot.siasun_rpc.protocol import MethodUnknown, request
+from drivers.robot.siasun_rpc.messages import MethodUnknown
+from drivers.robot.siasun_rpc.protocol import request
 from fakes.wire.duco.codec import write_reply, write_unknown
+from tests.wire.duco_rig import duco_rig
 
 MOVING, STOP = request("robotmoving"), request("stop", False)
 YES, NO = (write_reply("robotmoving", TType.BOOL, value) for value in (True, False))
@@ -121,3 +123,22 @@ async def test_closing_is_no_loss() -> None:
         with pytest.raises(LinkLost):
             await reply
         assert lost == []
+
+
+async def test_the_late_end_of_an_old_connection_does_not_touch_the_new_session() -> None:
+    async with duco_rig() as rig:
+        await rig.robot.connect()
+        link = rig.robot._link
+        before = link.motion, link.control, link._frames
+        rig.reset()
+        async with asyncio.timeout(3.0):
+            while link.up:  # noqa: ASYNC110 - the loss has no event
+                await asyncio.sleep(0.005)
+            while not link.up or link._reopening is not None:  # noqa: ASYNC110 - likewise
+                await asyncio.sleep(0.005)
+        for old, new in zip(before, (link.motion, link.control, link._frames), strict=True):
+            assert old is not new
+            old.connection_lost(None)
+            old.data_received(b"late")
+        assert link.up
+        assert not rig.robot.state().moving

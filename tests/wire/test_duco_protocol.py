@@ -12,7 +12,7 @@ from thrift.Thrift import TType
 from cellctl.errors.link import ProtocolViolation
 from drivers.robot.siasun_rpc import protocol
 from drivers.robot.siasun_rpc.framing import MAX_MESSAGE_BYTES, MessageReader
-from drivers.robot.siasun_rpc.protocol import MethodUnknown
+from drivers.robot.siasun_rpc.messages import MethodUnknown
 from drivers.robot.siasun_rpc.signatures import SIGNATURES, TRIGGER_FIELDS
 from fakes.wire.duco.codec import CallError, read_call, write_reply, write_unknown
 from tests.wire.duco_golden import STATE_REPLY, STOP_CALL, STOP_REPLY_4

@@ -26,6 +26,7 @@ def run(folder: Path, *lines: str) -> Memory:
         memory=memory,
         motions=None,  # type: ignore[arg-type]
         clock=lambda: 0.0,
+        timer=lambda: 0.0,
         route=lambda host, port: (host, port),
         socket=lambda: None,  # type: ignore[arg-type, return-value]
         start=lambda name: None,

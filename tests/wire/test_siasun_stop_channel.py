@@ -245,3 +245,58 @@ async def test_the_death_of_the_guard_stops_the_fake_controller(
             with pytest.raises(MotionAborted, match="DEADMAN"):
                 await moving
         channel.close()
+
+
+async def test_repeated_stops_do_not_pile_up_before_a_slow_interpreter() -> None:
+    """Each would be a stop of its own, and those that are read late one after the release."""
+    async with job_rig(channels=("CMD", "STA", "GRD"), statement_s=0.001) as rig:
+        channel = SiasunStopChannel(rig.guard)
+        opening = asyncio.create_task(asyncio.to_thread(channel.open))
+        await rig.connect()
+        await opening
+        states: list[FlangeState] = []
+        wanted = True
+
+        async def guard() -> None:
+            """Every 20 ms, as the guard does: beat, and repeat until the robot has latched."""
+            nonlocal wanted
+            while True:
+                if state := channel.poll():
+                    states.append(state)
+                    wanted = wanted and not state.stop_latched
+                if wanted:
+                    channel.repeat_stop()
+                channel.heartbeat()
+                await asyncio.sleep(0.02)
+
+        channel.request_stop()
+        beating = asyncio.create_task(guard())
+        async with asyncio.timeout(5.0):
+            while wanted:  # noqa: ASYNC110  the channel has no event
+                await asyncio.sleep(0.01)
+            await rig.robot.rearm()
+            known = len(states)
+            while len(states) < known + 6:  # noqa: ASYNC110  likewise
+                await asyncio.sleep(0.01)
+        beating.cancel()
+        # The first of them may be as old as the release.
+        assert not any(state.stop_latched for state in states[known + 1 :])
+        assert rig.controller.memory.numbers["I", 62] == 1
+        channel.close()
+
+
+async def test_a_stop_that_was_overheard_is_repeated() -> None:
+    async with job_rig(channels=("CMD", "STA", "GRD")) as rig:
+        rig.controller.faults.inject("ignore_stop", count=1)
+        channel = SiasunStopChannel(rig.guard)
+        opening = asyncio.create_task(asyncio.to_thread(channel.open))
+        await rig.connect()
+        await opening
+        channel.request_stop()
+        async with asyncio.timeout(3.0):
+            while not ((state := channel.poll()) and state.stop_latched):
+                channel.heartbeat()
+                channel.repeat_stop()
+                await asyncio.sleep(0.02)
+        assert rig.controller.faults.active("ignore_stop") is None
+        channel.close()

@@ -98,9 +98,10 @@ class StopSupervisor:
 
     def stop(self, now_s: float) -> None:
         """Want a stop from now on; the first request leaves at once."""
-        if self._wanted_s is None:
+        first = self._wanted_s is None
+        if first:
             self._wanted_s, self._confirmed = now_s, False
-        self._request(now_s)
+        self._request(now_s, first=first)
 
     def release(self) -> None:
         """Want no stop any more. The robot's own latch is not the guard's to release."""
@@ -110,7 +111,7 @@ class StopSupervisor:
         """Repeat a stop that is not confirmed; beat unless that has taken too long."""
         wanted_s = self._wanted_s
         if wanted_s is not None and not self._confirmed:
-            self._request(now_s)
+            self._request(now_s, first=False)
             if now_s - wanted_s > self._confirm_s:
                 return
         if self._channel is not None and self.up:
@@ -128,11 +129,14 @@ class StopSupervisor:
             self._channel.close()
         self.up = False
 
-    def _request(self, now_s: float) -> None:
+    def _request(self, now_s: float, *, first: bool) -> None:
         if self._channel is None or not self.up:
             return
         try:
-            self._channel.request_stop()
+            if first:
+                self._channel.request_stop()
+            else:
+                self._channel.repeat_stop()
         except CellError as error:
             self._lost(error, now_s)
 

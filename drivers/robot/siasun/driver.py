@@ -32,6 +32,7 @@ from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
 from drivers.robot.siasun.stream import SiasunStream
@@ -118,6 +119,10 @@ class SiasunRobot(StreamingRobot):
         # The latch of this driver counts like that of the controller: whoever asks for readiness
         # must see that a move would be refused.
         return replace(state, stop_latched=True) if self._latch else state
+
+    def link_facts(self) -> dict[str, str]:
+        """From the hello of both channels."""
+        return link_facts({"CMD": self._command.channel, "STA": self._state.channel})
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
@@ -256,12 +261,7 @@ class SiasunRobot(StreamingRobot):
         if self._latch is not None:
             raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
         state = self.state(self._config.stale_s)
-        if state.stop_latched:
-            raise NotRearmed(f"{self.name}: the controller's stop latch is set")
-        if state.error_code:
-            raise ControllerFault(f"{self.name}: controller error {state.error_code}")
-        if not state.ready:
-            raise faults.not_ready(self.name, state)
+        faults.check_ready(self.name, state)
 
     async def _stop_before_leaving(self) -> None:
         """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to

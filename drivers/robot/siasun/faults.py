@@ -74,8 +74,17 @@ def abortion(robot: str, reason: str) -> CellError:
     return fault(f"{robot}: {words} ({reason})")
 
 
-def not_ready(robot: str, state: RobotState) -> CellError:
-    """Fault of a robot that may not move at all."""
+def check_ready(robot: str, state: RobotState) -> None:
+    """Raise ``NotRearmed``, ``ControllerFault`` or ``RobotNotReady`` when it may not move."""
+    if state.stop_latched:
+        raise NotRearmed(f"{robot}: the controller's stop latch is set")
+    if state.error_code:
+        raise ControllerFault(f"{robot}: controller error {state.error_code}")
+    if not state.ready:
+        raise _not_ready(robot, state)
+
+
+def _not_ready(robot: str, state: RobotState) -> CellError:
     drives = "on" if state.drives_on else "off"
     button = "active" if state.emergency_stop else "released"
     return RobotNotReady(

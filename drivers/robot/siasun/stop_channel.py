@@ -14,6 +14,7 @@ from cellctl.errors.link import (
     ProtocolViolation,
     VersionMismatch,
 )
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults
 from drivers.robot.siasun.config import SiasunStopChannelConfig
@@ -24,6 +25,8 @@ from drivers.robot.siasun.words import words_of
 
 _CHUNK_BYTES = 4096
 _READS_PER_POLL = 8
+_REPEAT_S = 0.5
+"""A slow interpreter that has not confirmed a stop for so long is asked again."""
 
 
 class SiasunStopChannel(StopChannel):
@@ -45,6 +48,11 @@ class SiasunStopChannel(StopChannel):
         self._words = words_of(Hello(""))
         self._compact = self._beat_due = False
         self._stop_record = b""
+        self._asked_s: float | None = None
+        """When the last stop was asked for; None once a report from behind its standstill is here,
+        since whoever wants a stop then wants another one."""
+        self._confirmed = False
+        self._asked_record = b""
         self._last: Status | None = None
         self._stranger = ""
         """Address of the last caller that is not the robot."""
@@ -79,7 +87,19 @@ class SiasunStopChannel(StopChannel):
         # Sent first and packed for the next time afterwards: nothing is computed before a stop
         # leaves.
         self._send(self._stop_record)
+        self._asked_s, self._asked_record = now_s(), self._stop_record
+        self._confirmed = False
         self._pack_stop()
+
+    def repeat_stop(self) -> None:
+        """ABORT again. To a slow interpreter, which reads one record a round, only from time to
+        time and with the same number: what queues up there is read after the release, and must be
+        no stop of its own then; and it would hold back the heartbeats behind it."""
+        if not self._compact or self._asked_s is None:
+            self.request_stop()
+        elif now_s() - self._asked_s >= _REPEAT_S:
+            self._send(self._asked_record)
+            self._asked_s = now_s()
 
     def heartbeat(self) -> None:
         """Send BEAT, without which the controller's dead man stops the arm."""
@@ -115,6 +135,10 @@ class SiasunStopChannel(StopChannel):
         try:
             while (record := self._reader.next()) is not None:
                 self._beat_due = True
+                if isinstance(record, StopDone):
+                    self._confirmed = True
+                elif self._confirmed:
+                    self._asked_s = None
                 if _is_news(record, self._last):
                     newest = self._last = record
         except ProtocolViolation:
@@ -165,6 +189,7 @@ class SiasunStopChannel(StopChannel):
         client.settimeout(0.0)
         self._socket, self._reader, self._last = client, reader, None
         self._stops = self._beats = 0
+        self._asked_s = None
         self._pack_stop()
 
     def _pack_stop(self) -> None:
@@ -220,9 +245,4 @@ def flange_state(status: Status, time_s: float) -> FlangeState:
 def rotation_from_abc(a_deg: float, b_deg: float, c_deg: float) -> tuple[float, ...]:
     """R = Rz(a) Ry(b) Rx(c), row by row."""
     a, b, c = math.radians(a_deg), math.radians(b_deg), math.radians(c_deg)
-    ca, sa, cb, sb, cc, sc = (f(x) for x in (a, b, c) for f in (math.cos, math.sin))
-    return (
-        *(ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc),
-        *(sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc),
-        *(-sb, cb * sc, cb * cc),
-    )
+    return EulerOrder.FIXED_XYZ.rows(c, b, a)

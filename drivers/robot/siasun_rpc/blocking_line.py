@@ -7,9 +7,9 @@ from collections import deque
 
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkLost, ProtocolViolation
-from drivers.robot.siasun_rpc import protocol
 from drivers.robot.siasun_rpc.framing import MessageReader
-from drivers.robot.siasun_rpc.protocol import Request, Value
+from drivers.robot.siasun_rpc.guard_calls import answer
+from drivers.robot.siasun_rpc.messages import Request, Value
 
 _CHUNK_BYTES = 4096
 _READS_PER_POLL = 8
@@ -106,5 +106,5 @@ class BlockingLine:
         while (message := self._reader.next()) is not None:
             if not self.waiting:
                 raise ProtocolViolation(f"{self._label}: a reply that nobody asked for")
-            self._answers.append(protocol.reply(self.waiting.popleft(), message))
+            self._answers.append(answer(self.waiting.popleft(), message))
         return data

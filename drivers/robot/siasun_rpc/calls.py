@@ -7,7 +7,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.protocol import Request, request
+from drivers.robot.siasun_rpc.messages import Request
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import write_pose
 
 _AT_ONCE = False

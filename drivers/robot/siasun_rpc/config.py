@@ -4,7 +4,7 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from cellctl.geometry.euler import EulerOrder
+from cellctl.geometry.euler_order import EulerOrder
 from drivers.robot.siasun.config import MotionLimits, Port, Seconds
 
 Word = Annotated[int, Field(ge=1, le=32)]

@@ -9,7 +9,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from drivers.robot.siasun_rpc import faults, protocol
 from drivers.robot.siasun_rpc.framing import MessageReader
-from drivers.robot.siasun_rpc.protocol import Request, Value
+from drivers.robot.siasun_rpc.messages import MethodUnknown, Request, Value
 
 LINGER_S = 0.2
 """Time for what was sent last to leave; it may be a stop."""
@@ -101,7 +101,7 @@ class RpcConnection(asyncio.Protocol):
         method, future = self._waiting.popleft()
         try:
             value = protocol.reply(method, message)
-        except protocol.MethodUnknown as unknown:
+        except MethodUnknown as unknown:
             # Only that call has failed; the connection is as good as before.
             _settle(future, unknown)
         except ProtocolViolation as fault:

@@ -17,7 +17,6 @@ from cellctl.errors.robot import (
     MotionRejected,
     NotRearmed,
     StopFailed,
-    StreamNotOffered,
     StreamSilent,
     TargetOutOfBounds,
 )
@@ -37,8 +36,9 @@ from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.background import BackgroundTasks
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.link import RpcLink
+from drivers.robot.siasun_rpc.messages import Request
 from drivers.robot.siasun_rpc.motion import Motion
-from drivers.robot.siasun_rpc.protocol import Request, request
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready
 from drivers.robot.siasun_rpc.stream import ServoStream
 
@@ -107,6 +107,10 @@ class SiasunRpcRobot(StreamingRobot):
         state = self._link.watch.state(max_age_s)
         return replace(state, stop_latched=True) if self._latch else state
 
+    def link_facts(self) -> dict[str, str]:
+        """Version, and the frames that every pose is asked for with."""
+        return self._link.facts()
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """movej. With a dh table, refused when the flange would leave its box on the way."""
         _, percent = self._bounds.joints(joints_rad, speed_ratio)
@@ -140,10 +144,7 @@ class SiasunRpcRobot(StreamingRobot):
         self._check_link()
         config, features = self._config, self._link.features
         if config.servo_period_ms is None or not features.streams:
-            version = features.version or "without a version"
-            period = "no" if config.servo_period_ms is None else "a"
-            facts = f"{period} servo_period_ms in the cell file, controller software {version}"
-            raise StreamNotOffered(f"{self.name}: {facts}")
+            raise features.not_offered(self.name, config.servo_period_ms)
         figures = StreamFigures(
             config.max_stream_step_mm,
             config.max_stream_step_deg,

@@ -8,6 +8,7 @@ import re
 from dataclasses import dataclass
 
 from cellctl.errors.link import VersionMismatch
+from cellctl.errors.robot import StreamNotOffered
 
 Version = tuple[int, int, int]
 OLDEST: Version = (3, 2, 0)
@@ -24,6 +25,13 @@ class Features:
     """As it names itself, empty when it does not know the call."""
     streams: bool
     """Whether its streamed motion is the one that this driver knows."""
+
+    def not_offered(self, robot: str, period_ms: int | None) -> StreamNotOffered:
+        """The fault of a stream that is asked for all the same."""
+        version = self.version or "without a version"
+        period = "no" if period_ms is None else "a"
+        facts = f"{period} servo_period_ms in the cell file, controller software {version}"
+        return StreamNotOffered(f"{robot}: {facts}")
 
 
 def features(version: str | None) -> Features:

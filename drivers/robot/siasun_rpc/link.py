@@ -12,7 +12,8 @@ from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.features import Features, features
 from drivers.robot.siasun_rpc.frame_stream import FrameStream
-from drivers.robot.siasun_rpc.protocol import MethodUnknown, request
+from drivers.robot.siasun_rpc.messages import MethodUnknown
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import StateWatch
 
 STOP = request("stop", False)  # noqa: FBT003 - "block": the reply is not to wait for standstill
@@ -41,11 +42,7 @@ class RpcLink:
         self._wanted = False
         """Between ``open`` and ``close``."""
         self.features = Features("", streams=False)
-        self.motion = RpcConnection(f"{robot} motion", self.drop)
-        self.control = RpcConnection(f"{robot} control", self.drop)
-        self._asking = RpcConnection(f"{robot} state", self.drop)
-        self._beating = RpcConnection(f"{robot} heartbeat", self.drop)
-        self._frames = FrameStream(f"{robot} state stream", self.drop)
+        self._new_session()
         self.watch = StateWatch(robot, config, self._asking, self._frames)
         self._jobs = BackgroundTasks()
         self._reopening: asyncio.Task[None] | None = None
@@ -61,8 +58,19 @@ class RpcLink:
         await self._open()
         self._wanted = True
 
+    def _new_session(self) -> None:
+        """Connections that nothing of an earlier session can reach: neither its late end nor a
+        reply that comes after all."""
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        self.control = RpcConnection(f"{self._robot} control", self.drop)
+        self._asking = RpcConnection(f"{self._robot} state", self.drop)
+        self._beating = RpcConnection(f"{self._robot} heartbeat", self.drop)
+        self._frames = FrameStream(f"{self._robot} state stream", self.drop)
+
     async def _open(self) -> None:
         config = self._config
+        self._new_session()
+        self.watch.follow(self._asking, self._frames)
         self._down = asyncio.get_running_loop().create_future()
         self.up = True
         try:
@@ -82,6 +90,17 @@ class RpcLink:
         except BaseException:
             self._hang_up()
             raise
+
+    def facts(self) -> dict[str, str]:
+        """What is known of the controller, in words by name."""
+        service = "connected" if self.up else "not connected"
+        return {
+            "service": f"{service}, four connections and the state stream",
+            "controller software": self.features.version or "names no version",
+            "streamed motion": "known" if self.features.streams else "not known to this driver",
+            "tool and work object": f"{self._config.tool} and {self._config.work_frame}",
+            "dead man": f"{self._config.heartbeat_ms} ms",
+        }
 
     def drop(self, fault: LinkError) -> None:
         """End everything because of a fault, after a last stop if that can still be sent."""
@@ -139,6 +158,7 @@ class RpcLink:
         self.motion.close()
         if not self.up:
             return
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
         try:
             async with asyncio.timeout(self._config.connect_timeout_s):
                 await self.motion.open(self._config.host, self._config.rpc_port)

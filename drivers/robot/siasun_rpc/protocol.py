@@ -6,40 +6,28 @@ memory. Units are the controller's own: metres, radians, seconds; percent where 
 
 import struct
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from thrift.protocol.TBinaryProtocol import TBinaryProtocol
 from thrift.Thrift import TApplicationException, TException, TMessageType, TType
 from thrift.transport.TTransport import TMemoryBuffer
 
-from cellctl.errors.link import ProtocolViolation, VersionMismatch
+from cellctl.errors.link import ProtocolViolation
 from drivers.robot.siasun_rpc.framing import MAX_MESSAGE_BYTES
+from drivers.robot.siasun_rpc.messages import (
+    SEQUENCE_NUMBER,
+    Argument,
+    MethodUnknown,
+    Request,
+    Value,
+)
 from drivers.robot.siasun_rpc.signatures import NO_TRIGGER, SIGNATURES, TRIGGER_FIELDS
-
-Value = bool | int | str | list[float] | list[int] | list[str] | None
-"""What a reply carries; None for a call without a result."""
-Argument = bool | int | float | str | list[float]
 
 _WIRE_TYPES = {
     "b": TType.BOOL, "y": TType.BYTE, "h": TType.I16, "i": TType.I32, "d": TType.DOUBLE,
     "s": TType.STRING, "D": TType.LIST, "B": TType.LIST, "S": TType.LIST, "O": TType.STRUCT,
 }  # fmt: skip
 _ELEMENTS = {"D": TType.DOUBLE, "B": TType.BYTE, "S": TType.STRING}
-_SEQUENCE_NUMBER = 0
-"""The service does not count calls: replies come in the order of the calls of their connection."""
-
-
-class MethodUnknown(VersionMismatch):
-    """The controller's software does not have a call. Raised for the one that asked."""
-
-
-@dataclass(frozen=True, slots=True)
-class Request:
-    """A call that is packed and can be sent at any time."""
-
-    method: str
-    data: bytes
 
 
 def request(method: str, *arguments: Argument) -> Request:
@@ -47,7 +35,7 @@ def request(method: str, *arguments: Argument) -> Request:
     signature = SIGNATURES[method]
     transport = TMemoryBuffer()
     protocol = TBinaryProtocol(transport, strictRead=True, strictWrite=True)
-    protocol.writeMessageBegin(method, TMessageType.CALL, _SEQUENCE_NUMBER)
+    protocol.writeMessageBegin(method, TMessageType.CALL, SEQUENCE_NUMBER)
     given = iter(arguments)
     for number, letter in enumerate(signature.arguments, start=1):
         protocol.writeFieldBegin("", _WIRE_TYPES[letter], number)
@@ -81,7 +69,7 @@ def reply(method: str, message: bytes) -> Value:
 
 def _read_reply(protocol: Any, method: str) -> Value:
     name, kind, number = protocol.readMessageBegin()
-    if name != method or number != _SEQUENCE_NUMBER:
+    if name != method or number != SEQUENCE_NUMBER:
         raise ProtocolViolation(f"reply to {name!r} number {number} where {method} was asked")
     if kind == TMessageType.EXCEPTION:
         failure = TApplicationException()

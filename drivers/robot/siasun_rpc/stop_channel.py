@@ -1,5 +1,6 @@
-"""The guard's own connections to a collaborative arm: blocking sockets, no event loop."""
+"""The guard's connections to a collaborative arm: blocking sockets, no event loop, no arrays."""
 
+import math
 import select
 from typing import cast
 
@@ -8,12 +9,12 @@ from cellctl.errors.link import ConnectTimeout, LinkLost, ProtocolViolation
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun_rpc.blocking_line import BlockingLine
 from drivers.robot.siasun_rpc.config import SiasunRpcStopChannelConfig
-from drivers.robot.siasun_rpc.protocol import Request, Value, request
-from drivers.robot.siasun_rpc.watch import read_pose
+from drivers.robot.siasun_rpc.guard_calls import packed
+from drivers.robot.siasun_rpc.messages import Request, Value
 
 WORDS = 32_767
 """Stops are counted from 1 to here and then from 1 again: a word may have a sign."""
-STOP = request("stop", False)  # noqa: FBT003 - "block": nobody waits for the reply
+STOP = packed("stop", False)  # noqa: FBT003 - "block": nobody waits for the reply
 
 
 class SiasunRpcStopChannel(StopChannel):
@@ -38,12 +39,12 @@ class SiasunRpcStopChannel(StopChannel):
         self._was_lost = False
         self._questions = (
             # Before the pose, so that the pose of an arm that stands is the one where it stands.
-            request("robotmoving"),
-            request("get_tcp_pose_coord", config.tool, config.work_frame),
-            request("read_word_reg", config.stop_word),
-            request("read_word_reg", config.rearm_word),
+            packed("robotmoving"),
+            packed("get_tcp_pose_coord", config.tool, config.work_frame),
+            packed("read_word_reg", config.stop_word),
+            packed("read_word_reg", config.rearm_word),
         )
-        self._beat_data = request("rpc_heartbeat", config.heartbeat_ms)
+        self._beat_data = packed("rpc_heartbeat", config.heartbeat_ms)
 
     def open(self) -> None:
         """Connect and read the count of stops; ``ConnectTimeout`` when nobody answers.
@@ -126,12 +127,10 @@ class SiasunRpcStopChannel(StopChannel):
 
     def _report(self, answers: list[Value]) -> FlangeState:
         moving, pose, stops, acknowledged = answers
-        base_T_flange = read_pose(pose, self._config.euler)
-        x, y, z = base_T_flange.translation.tolist()
-        rotation = base_T_flange.rotation.as_matrix().ravel().tolist()
-        return FlangeState(
-            self._ask.asked_s, (x, y, z), tuple(rotation), bool(moving), stops != acknowledged
-        )
+        x_m, y_m, z_m, *angles = _six(pose)
+        rotation = self._config.euler.rows(*angles)
+        latched = stops != acknowledged
+        return FlangeState(self._ask.asked_s, (x_m, y_m, z_m), rotation, bool(moving), latched)
 
     def _count_of_stops(self, deadline_s: float) -> int:
         """The count in the controller, which outlives this process."""
@@ -144,7 +143,7 @@ class SiasunRpcStopChannel(StopChannel):
 
     def _pack_stop(self) -> None:
         self._stops = self._stops % WORDS + 1
-        count = request("write_word_reg", self._config.stop_word, self._stops)
+        count = packed("write_word_reg", self._config.stop_word, self._stops)
         self._stop_data = (STOP, count, STOP)
 
     def _send(self, line: BlockingLine, *requests: Request) -> None:
@@ -157,3 +156,11 @@ class SiasunRpcStopChannel(StopChannel):
     def _lose(self) -> None:
         self._was_lost = True
         self.close()
+
+
+def _six(value: Value) -> list[float]:
+    """A pose as the controller writes it: metres, and radians in its own order."""
+    numbers = cast(list[float], value)
+    if len(numbers) != 6 or not all(map(math.isfinite, numbers)):
+        raise ProtocolViolation(f"six finite numbers expected, got {value!r:.120}")
+    return numbers

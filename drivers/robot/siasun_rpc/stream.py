@@ -21,8 +21,9 @@ from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.link import RpcLink
+from drivers.robot.siasun_rpc.messages import Request, Value
 from drivers.robot.siasun_rpc.motion import Motion
-from drivers.robot.siasun_rpc.protocol import Request, Value, request
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.vendor import TaskState
 from drivers.robot.siasun_rpc.watch import read_pose
 

@@ -16,13 +16,15 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleData
-from cellctl.geometry.euler import EulerOrder
+from cellctl.geometry.euler import angles_of, rotation_of
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.robot import RobotMode, RobotState
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.frame_stream import FrameStream
-from drivers.robot.siasun_rpc.protocol import Request, Value, request
+from drivers.robot.siasun_rpc.messages import Request, Value
+from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.state_frame import StateFrame
 from drivers.robot.siasun_rpc.vendor import OperationMode, Power, SafetyState
 
@@ -82,6 +84,10 @@ class StateWatch:
         self._agreed_s = 0.0
         self._news = asyncio.Event()
         self._requests = _questions(config)
+
+    def follow(self, connection: RpcConnection, frames: FrameStream) -> None:
+        """Go on with those of a new session; whoever waits for a report waits for one of it."""
+        self._connection, self._frames = connection, frames
 
     async def run(self) -> None:
         """Ask and remember; drops the connection when the state stream is not to be trusted."""
@@ -225,7 +231,7 @@ def read_pose(value: Value, euler: EulerOrder) -> RigidTransform:
 
 def write_pose(pose: RigidTransform, euler: EulerOrder) -> list[float]:
     """The same for a call."""
-    return [*pose.translation.tolist(), *euler.angles(pose.rotation).tolist()]
+    return [*pose.translation.tolist(), *angles_of(euler, pose.rotation).tolist()]
 
 
 def _agree(frame: StateFrame, report: Report) -> bool:
@@ -234,7 +240,7 @@ def _agree(frame: StateFrame, report: Report) -> bool:
 
 
 def _transform(numbers: Array, euler: EulerOrder) -> RigidTransform:
-    return RigidTransform.from_components(numbers[:3], euler.rotation(numbers[3:]))
+    return RigidTransform.from_components(numbers[:3], rotation_of(euler, numbers[3:]))
 
 
 def _six(value: Value) -> Array:

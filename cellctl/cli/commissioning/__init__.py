@@ -1,0 +1,1 @@
+"""Commands that talk to one robot without the daemon, for whoever commissions it. None moves it."""

@@ -1,0 +1,125 @@
+"""`cellctl robot` and `cellctl teach` against a fake arm on the wire: nothing moves."""
+
+import json
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from cellctl.cli.commands import whole_app
+from cellctl.cli.commissioning.teach import write_pose
+from cellctl.errors.config import ConfigInvalid, FileInvalid
+from fakes.demo.control import Control
+from tests.ports import free_ports
+
+CONFIG = Path(__file__).parents[4] / "config"
+
+
+@pytest.fixture(scope="module")
+def ports() -> Iterator[dict[str, int]]:
+    """A small fake cell whose arm runs the shipped jobs; its ports by name."""
+    command, state, guard = free_ports(3)
+    options = [f"arm.CMD={command}", f"arm.STA={state}", f"arm.GRD={guard}"]
+    options += ["control=0", "camera=0", "force=0"]
+    process = subprocess.Popen(
+        [
+            *(sys.executable, "-m", "fakes", "run", "--robots", "jobs"),
+            *("--scenario", str(CONFIG / "small.scenario.toml")),
+            *(word for option in options for word in ("--port", option)),
+        ],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout is not None
+    ready = json.loads(process.stdout.readline())
+    yield {"CMD": command, "STA": state, "control": ready["ports"]["control"]}
+    process.terminate()
+    process.wait(20)
+    process.stdout.close()
+
+
+@pytest.fixture
+def cell_file(ports: dict[str, int], tmp_path: Path) -> Path:
+    text = (CONFIG / "small.toml").read_text(encoding="utf-8")
+    text = re.sub(r"command_port = \d+", f"command_port = {ports['CMD']}", text)
+    text = re.sub(r"state_port = \d+", f"state_port = {ports['STA']}", text)
+    path = tmp_path / "small.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def watched(ports: dict[str, int]) -> Iterator[None]:
+    """No arm of the fake world may have moved at the end of a test."""
+    with closing(Control(ports["control"])) as control:
+        control.request("watch_begin")
+        yield
+        assert not any(control.request("watched")["motions"].values())
+
+
+def run(*words: object, answers: str = "") -> Result:
+    return CliRunner().invoke(
+        whole_app(), [str(word) for word in words], input=answers, catch_exceptions=False
+    )
+
+
+def heard(result: Result) -> dict[str, Any]:
+    assert result.exit_code == 0
+    found: dict[str, Any] = json.loads(result.stdout)
+    return found
+
+
+@pytest.mark.usefixtures("watched")
+def test_a_robot_says_who_it_is_and_how_often(cell_file: Path) -> None:
+    found = heard(run("robot", cell_file, "arm", "--seconds", 1, "--json"))
+    assert "ARM-1" in found["link"]["CMD"]
+    assert found["reports"]["count"] > 3
+    assert found["reports"]["oldest_ms"] >= found["reports"]["period_ms_p50"] / 2
+    assert (found["state"]["mode"], found["state"]["drives_on"]) == ("remote", True)
+    assert len(found["state"]["joints_deg"]) == 6
+    text = run("robot", cell_file, "arm", "--seconds", 0.5)
+    assert "nothing was moved" in text.stdout
+    assert "override_percent" in text.stdout
+
+
+@pytest.mark.usefixtures("watched")
+def test_the_taught_poses_are_compared(cell_file: Path) -> None:
+    found = heard(run("teach", cell_file, "arm", "--json"))
+    assert found["poses"]["home"]["off_deg"] == pytest.approx(0.0, abs=0.01)
+    assert found["poses"]["look"]["off_deg"] > 1.0
+    assert "look" in run("teach", cell_file, "arm").stdout
+
+
+@pytest.mark.usefixtures("watched")
+def test_a_pose_is_written_after_a_yes_only(cell_file: Path) -> None:
+    before = cell_file.read_text(encoding="utf-8")
+    assert "left as it was" in run("teach", cell_file, "arm", "look", answers="\nn\n").stdout
+    assert cell_file.read_text(encoding="utf-8") == before
+    shown = run("teach", cell_file, "arm", "look", answers="\ny\n")
+    assert "joints in the file" in shown.stdout
+    after = cell_file.read_text(encoding="utf-8")
+    poses = tomllib.loads(after)["robots"]["arm"]["poses_deg"]
+    assert poses["look"] == pytest.approx(poses["home"], abs=0.01)
+    assert "taught 20" in after
+    assert after.count("#") - before.count("#") in (0, 1)
+    assert [path.name for path in cell_file.parent.iterdir()] == [cell_file.name]
+
+
+def test_an_unknown_robot_is_refused_with_those_that_there_are(cell_file: Path) -> None:
+    with pytest.raises(FileInvalid, match="it has arm"):
+        run("robot", cell_file, "leg")
+
+
+def test_a_pose_that_makes_the_file_wrong_leaves_it_as_it_was(cell_file: Path) -> None:
+    before = cell_file.read_bytes()
+    with pytest.raises(ConfigInvalid, match="file is as it was"):
+        write_pose(cell_file, "arm", "look", [0.0, 0.0, 0.0, 0.0, 0.0, 999.0])
+    assert cell_file.read_bytes() == before
+    assert [path.name for path in cell_file.parent.iterdir()] == [cell_file.name]
