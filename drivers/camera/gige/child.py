@@ -102,7 +102,7 @@ class _Cameras:
             camera.start()
         self._clean = True
         self._tries = request.acquisition.tries
-        return Opened(tuple(camera.serial_number for camera in self._open))
+        return Opened(tuple(camera.stated() for camera in self._open))
 
     def _grabbed(self, number: int) -> tuple[Answer, list[int]]:
         for _ in range(self._tries):

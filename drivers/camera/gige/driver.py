@@ -8,8 +8,9 @@ import numpy as np
 
 from cellctl.errors.camera import CamerasNotTogether, ImagesDamaged
 from cellctl.errors.link import LinkLost, ProtocolViolation
-from cellctl.interfaces.camera import Camera, CameraImage
+from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.device import Device
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image, StereoCamera, StereoPair
 from drivers.camera.gige.config import Acquisition, GigeCameraConfig, GigeHeadConfig, Selection
 from drivers.camera.gige.connection import Block, LibraryProcess
@@ -19,6 +20,7 @@ from drivers.camera.gige.protocol import (
     Grabbed,
     GrabRequest,
     Opened,
+    OpenedCamera,
     OpenRequest,
     Request,
     SentImage,
@@ -40,7 +42,7 @@ class GigeDevice(Device):
         self._cameras = cameras
         self._library = LibraryProcess(name)
         self._turn = asyncio.Lock()
-        self._serials: tuple[str, ...] = ()
+        self._opened: tuple[OpenedCamera, ...] = ()
         self._frame = 0
 
     async def connect(self) -> None:
@@ -53,13 +55,13 @@ class GigeDevice(Device):
 
     async def serial_number(self) -> str:
         """Serial numbers of the cameras, left and right with a plus between them."""
-        if not self._serials:
+        if not self._opened:
             raise LinkLost(f"{self.name}: not connected")
-        return "+".join(self._serials)
+        return "+".join(camera.serial_number for camera in self._opened)
 
     async def _exposed(self) -> tuple[int, tuple[SentImage, ...], list[Block]]:
         async def grab() -> tuple[int, tuple[SentImage, ...], list[Block]]:
-            if not self._serials:
+            if not self._opened:
                 raise LinkLost(f"{self.name}: not connected")
             if not self._library.running:
                 await self._connected()
@@ -72,6 +74,17 @@ class GigeDevice(Device):
             return self._frame, answer.images, blocks
 
         return await self._in_turn(grab)
+
+    def _record(self, number: int, image: SentImage, bits: int) -> ExposureRecord:
+        camera = self._opened[number]
+        return ExposureRecord(
+            serial_number=camera.serial_number,
+            pixel_format=image.pixel_format,
+            bits=bits,
+            exposure_s=camera.exposure_s,
+            gain_db=camera.gain_db,
+            device_time_ns=image.device_time_ns or None,
+        )
 
     async def _connected(self) -> None:
         if self._library.running:
@@ -86,10 +99,10 @@ class GigeDevice(Device):
             raise
         if not isinstance(answer, Opened):
             raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for open cameras")
-        self._serials = answer.serial_numbers
+        self._opened = answer.cameras
 
     async def _ended(self) -> None:
-        self._serials = ()
+        self._opened = ()
         await asyncio.to_thread(self._library.end)
 
     async def _ask(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:
@@ -124,7 +137,9 @@ class GigeCamera(GigeDevice, Camera):
             pixels, pixel_format = decoded(data, image.pixel_format, image.width, image.height)
         except ValueError as error:
             raise ImagesDamaged(f"{self.name}: {error}") from error
-        return CameraImage(pixels, pixel_format, image.time_s, frame)
+        deep = pixel_format is PixelFormat.MONO16
+        record = self._record(0, image, bits_of(image.pixel_format) if deep else 8)
+        return CameraImage(pixels, pixel_format, image.time_s, frame, record)
 
 
 class GigeHead(GigeDevice, StereoCamera):
@@ -150,7 +165,8 @@ class GigeHead(GigeDevice, StereoCamera):
         left, right = (
             self._grey(image, block) for image, block in zip(images, blocks, strict=True)
         )
-        return StereoPair(left, right, images[0].time_s, frame)
+        records = tuple(self._record(number, image, 8) for number, image in enumerate(images))
+        return StereoPair(left, right, images[0].time_s, frame, records)
 
     def _require_together(self, left: SentImage, right: SentImage) -> None:
         """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""

@@ -28,6 +28,13 @@ class Features:
         with camera_errors(self._label):
             return str(getattr(self._nodes, name).value) if self.has(name) else ""
 
+    def fixed(self, name: str, automatic: str) -> float | None:
+        """A number that stays as it is; None where the camera lacks it or sets it by itself."""
+        if not self.has(name) or self.text(automatic) not in ("", "Off"):
+            return None
+        with camera_errors(self._label):
+            return float(getattr(self._nodes, name).value)
+
     def execute(self, name: str) -> None:
         """Carry out a command feature."""
         with camera_errors(self._label):

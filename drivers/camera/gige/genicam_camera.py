@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from cellctl.clock import now_s
 from drivers.camera.gige.config import Acquisition, Selection
 from drivers.camera.gige.features import Features
-from drivers.camera.gige.protocol import SeenCamera, SentImage, Trouble
+from drivers.camera.gige.protocol import OpenedCamera, SeenCamera, SentImage, Trouble
 from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors
 
 BUFFERS = 4
@@ -61,6 +61,15 @@ class GenicamCamera:
     def set_up(self) -> None:
         """Write the settings; raises ``TroubleError`` with what the camera allows."""
         self._features.set_up(self._settings)
+
+    def stated(self) -> OpenedCamera:
+        """What the camera says of itself once it is set up."""
+        exposure_us = self._features.fixed("ExposureTime", "ExposureAuto")
+        return OpenedCamera(
+            serial_number=self.serial_number,
+            exposure_s=None if exposure_us is None else exposure_us * 1e-6,
+            gain_db=self._features.fixed("Gain", "GainAuto"),
+        )
 
     def start(self) -> None:
         """Begin to acquire: with a trigger, nothing is exposed yet."""

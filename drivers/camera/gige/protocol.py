@@ -65,11 +65,19 @@ class SeenCamera:
 
 
 @dataclass(frozen=True, slots=True)
+class OpenedCamera:
+    """One camera as it was set up; None for what it does not say or sets by itself."""
+
+    serial_number: str
+    exposure_s: float | None
+    gain_db: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Opened:
     """All cameras are open, set up and acquire."""
 
-    serial_numbers: tuple[str, ...]
-    warnings: tuple[str, ...] = ()
+    cameras: tuple[OpenedCamera, ...]
 
 
 @dataclass(frozen=True, slots=True)
