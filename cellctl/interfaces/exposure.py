@@ -14,5 +14,7 @@ class ExposureRecord:
     """Significant bits of a sample as the driver hands it on."""
     exposure_s: float | None = None
     gain_db: float | None = None
+    averaged: int = 1
+    """Exposures of which the image is the mean; time stamps are those of the last."""
     device_time_ns: int | None = None
     """By the camera's own clock; its zero is the camera's affair."""

@@ -25,8 +25,9 @@ _TEXT_BYTES = 64
 _WORDS = (
     "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
     "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
+    "pulses", "wired_to", "strobes",
 )  # fmt: skip
-_RESERVED_WORDS = 17
+_RESERVED_WORDS = 14
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
 Format = Literal["Mono8", "Mono12", "BayerRG8"]
@@ -74,6 +75,15 @@ class FakeCameras:
     def inject(self, serial: str, fault: Fault, amount: int = 1) -> None:
         """Have something go wrong; 0 puts it right. See ``camera.h`` for what each amount means."""
         self._put(serial, fault, amount)
+
+    def pulse(self) -> None:
+        """A pulse on Line1 of all cameras that are not wired to another one."""
+        for serial in self._index:
+            self._put(serial, "pulses", self._get(serial, "pulses") + 1)
+
+    def wire(self, output: str, to: str) -> None:
+        """Lead the exposure output of one camera to Line1 of another; both by serial number."""
+        self._put(to, "wired_to", self._index[output] + 1)
 
     def exposures(self, serial: str) -> int:
         """Images that a camera has exposed since the file was made."""

@@ -90,7 +90,8 @@ class Features:
         if self.has("TriggerSelector"):
             self.write("TriggerSelector", "FrameStart")
         self.write("TriggerMode", "On")
-        self.write("TriggerSource", "Software")
+        wired = settings.trigger.startswith("Line")
+        self.write("TriggerSource", settings.trigger if wired else "Software")
         if self.has("AcquisitionMode"):
             self.write("AcquisitionMode", "Continuous")
 

@@ -26,19 +26,26 @@ class Trouble(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class OpenRequest:
-    """Load the producers and open these cameras, in this order."""
+class CameraSetup:
+    """One camera and how it is set up."""
 
+    selection: Selection
     acquisition: Acquisition
-    cameras: tuple[Selection, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class OpenRequest:
+    """Load the producers and open these cameras, in this order: that of their triggers.
+
+    Producers and tries are those of the first.
+    """
+
+    cameras: tuple[CameraSetup, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class GrabRequest:
     """Expose all cameras once."""
-
-    number: int
-    """Given back with the answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +108,6 @@ class SentImage:
 class Grabbed:
     """One image of every camera."""
 
-    number: int
     images: tuple[SentImage, ...]
     damaged: int
     """Images that were taken again since the cameras were opened."""

@@ -81,6 +81,13 @@ GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size) {
     return GC_ERR_SUCCESS;
 }
 
+/* Pulses on Line1 so far. */
+uint32_t camera_line(const camera *self) {
+    uint32_t wired_to = self->state->wired_to;
+    if (!wired_to) return self->state->pulses;
+    return (self->state - self->index + (wired_to - 1))->strobes;
+}
+
 static bool is(uint64_t address, size_t size, uint32_t place) { return address == place && size == 4; }
 
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size) {
@@ -99,13 +106,14 @@ GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t s
         self->acquiring = true;
         self->starts++;
         self->triggers = 0;
+        self->line_seen = camera_line(self);
     } else if (is(address, size, REG_STOP)) {
         self->acquiring = false;
     } else if (is(address, size, REG_TRIGGER_SOFTWARE)) {
         /* A trigger that comes before the acquisition is started is overheard, as by real cameras. */
         if (self->state->drop)
             self->state->drop--;
-        else if (self->acquiring)
+        else if (self->acquiring && camera_u32(self, REG_TRIGGER_SOURCE) == SOURCE_SOFTWARE)
             self->triggers++;
     }
     pthread_cond_broadcast(&self->changed);

@@ -27,7 +27,10 @@ typedef struct {
     volatile uint32_t busy;       /* 1: another program has the camera */
     volatile uint32_t opened;     /* process that has it, 0 for none */
     volatile uint32_t buffers;    /* announced now */
-    volatile uint32_t reserved[17];
+    volatile uint32_t pulses;     /* on Line1, so far; whoever maps the file counts up */
+    volatile uint32_t wired_to;   /* Line1 is the exposure output of this camera, counted from 1; 0: none */
+    volatile uint32_t strobes;    /* exposures begun, each a pulse on the exposure output */
+    volatile uint32_t reserved[14];
     char serial[TEXT_BYTES], user_id[TEXT_BYTES];
 } camera_state;
 
@@ -47,6 +50,8 @@ enum {
 };
 enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_BAYER_RG8 = 0x01080009 };
 
+enum { SOURCE_SOFTWARE, SOURCE_LINE1 };
+
 typedef enum { FREE, INPUT, OUTPUT, OUT } place; /* of a buffer: nowhere, waiting, filled, with the user */
 
 typedef struct {
@@ -64,7 +69,7 @@ typedef struct camera {
     camera_state *state;
     uint8_t registers[REGISTER_BYTES];
     bool is_open, stream_open, acquiring, stream_running, ending, event_killed, event_registered;
-    uint32_t triggers, starts;
+    uint32_t triggers, starts, line_seen;
     uint64_t frame_id, order, delivered, last_time_ns;
     frame_buffer buffers[MAX_BUFFERS];
     pthread_t thread;
@@ -76,6 +81,7 @@ void camera_power_up(camera *self, int index, camera_state *state);
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size);
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size);
 size_t camera_payload(const camera *self);
+uint32_t camera_line(const camera *self);
 uint32_t camera_u32(const camera *self, uint32_t address);
 
 GC_ERROR stream_open(camera *self);

@@ -51,6 +51,7 @@ static void take(camera *self) {
     memcpy(&exposure_us, self->registers + REG_EXPOSURE_US, sizeof exposure_us);
     /* A free-running camera of 50 images a second. */
     uint32_t starts = self->starts;
+    self->state->strobes++;
     uint64_t took_us = triggered ? (uint64_t)exposure_us : 20000;
     pause_us(self, took_us + 1000ull * self->state->slow_ms);
     /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
@@ -86,12 +87,34 @@ static void take(camera *self) {
     pthread_cond_broadcast(&self->changed);
 }
 
+static bool by_wire(const camera *self) {
+    return camera_u32(self, REG_TRIGGER_MODE) && camera_u32(self, REG_TRIGGER_SOURCE) == SOURCE_LINE1;
+}
+
+/* A wire wakes nobody in another process, so it is looked at each millisecond. */
+static void watch_line(camera *self) {
+    uint32_t now = camera_line(self);
+    if (self->acquiring && self->stream_running) self->triggers += now - self->line_seen;
+    self->line_seen = now;
+    if (self->triggers) return;
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += 1000000;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_sec++;
+        until.tv_nsec -= 1000000000;
+    }
+    pthread_cond_timedwait(&self->changed, &self->mutex, &until);
+}
+
 static void *run(void *argument) {
     camera *self = argument;
     pthread_mutex_lock(&self->mutex);
     while (!self->ending) {
         if (due(self))
             take(self);
+        else if (by_wire(self))
+            watch_line(self);
         else
             pthread_cond_wait(&self->changed, &self->mutex);
     }
