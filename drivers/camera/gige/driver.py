@@ -3,7 +3,7 @@
 import asyncio
 import math
 from collections.abc import Awaitable, Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
 from drivers.camera.gige.config import GigeCameraConfig, GigeHeadConfig
 from drivers.camera.gige.connection import Block, LibraryProcess
 from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey
-from drivers.camera.gige.running_mean import RunningMean
 from drivers.camera.gige.protocol import (
     Answer,
     CameraSetup,
@@ -28,6 +27,7 @@ from drivers.camera.gige.protocol import (
     Request,
     SentImage,
 )
+from drivers.camera.gige.running_mean import RunningMean
 
 _PATIENCE_S = 2.0
 """What the process may take beyond the time-outs of its own before it counts as hung."""
@@ -145,7 +145,7 @@ class GigeCamera(GigeDevice, Camera):
 
     async def grab(self) -> CameraImage:
         """Expose now; damaged images are taken again as often as the settings allow."""
-        mean = RunningMean()
+        mean: RunningMean[Any] = RunningMean()
         for _ in range(self._settings.burst):
             (image,), (data,) = await self._exposed()
             pixels, pixel_format = self._decoded(image, data)
@@ -175,7 +175,8 @@ class GigeHead(GigeDevice, StereoCamera):
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""
-        left, right = RunningMean(), RunningMean()
+        left: RunningMean[np.uint8] = RunningMean()
+        right: RunningMean[np.uint8] = RunningMean()
         for _ in range(self._settings.burst):
             images, blocks = await self._exposed()
             self._require_together(images[0], images[1])
@@ -183,8 +184,8 @@ class GigeHead(GigeDevice, StereoCamera):
                 pixels, kind = self._decoded(image, block)
                 mean.add(grey(pixels, kind, bits_of(image.pixel_format)))
         records = tuple(self._record(number, image, 8) for number, image in enumerate(images))
-        pair = np.asarray(left.pixels()), np.asarray(right.pixels())
-        return StereoPair(*pair, images[0].time_s, self._next_frame(), records)
+        time_s = images[0].time_s
+        return StereoPair(left.pixels(), right.pixels(), time_s, self._next_frame(), records)
 
     def _require_together(self, left: SentImage, right: SentImage) -> None:
         """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""

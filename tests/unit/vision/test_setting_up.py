@@ -44,7 +44,8 @@ def test_an_image_without_contrast_has_no_blur() -> None:
 def texture(seed: int) -> Grey:
     noise = np.random.default_rng(seed).uniform(0, 255, (600, 900)).astype(np.float32)
     smooth = cv2.GaussianBlur(noise, (0, 0), 4.0)
-    return np.rint(255.0 * (smooth - smooth.min()) / np.ptp(smooth)).astype(np.uint8)
+    stretched = 255.0 * (smooth - smooth.min()) / np.ptp(smooth)
+    return np.asarray(np.rint(stretched), dtype=np.uint8)
 
 
 @pytest.mark.parametrize("shift_px", [0, 100, 250])
