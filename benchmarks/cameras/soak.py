@@ -8,6 +8,7 @@ import asyncio
 import os
 import tempfile
 from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -127,6 +128,8 @@ async def _soaked(
     fakes: FakeCameras,
     library: int = 0,
 ) -> Soaked:
+    # One thread: a pool that is still growing would look like threads that are kept.
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(max_workers=1))
     began_s = now_s()
     warm = max(3, round(_WARM_UP * times))
     for _ in track(range(warm), name, transient=True):
