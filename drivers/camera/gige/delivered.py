@@ -39,7 +39,7 @@ def delivered(buffer: Any, nodes: Any) -> Delivered | None:
     ``buffer`` is the module of genicam, ``nodes`` the features of the camera for what the producer
     does not say. Raises ``ValueError`` for a buffer that is smaller than its image.
     """
-    parts = said(lambda: list(buffer.parts), [])
+    parts: list[Any] = said(lambda: list(buffer.parts), [])
     image = next((part for part in parts if _is_image(part)), None)
     if parts and image is None:
         return None
