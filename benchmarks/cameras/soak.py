@@ -79,6 +79,7 @@ async def _all(
 
 async def soak_openings(producer: Path, fakes: FakeCameras, times: int) -> Soaked:
     """Open, one image, close."""
+    _use_one_thread()
 
     async def once() -> None:
         async with _camera(producer) as camera:
@@ -89,6 +90,7 @@ async def soak_openings(producer: Path, fakes: FakeCameras, times: int) -> Soake
 
 async def soak_pulls(producer: Path, fakes: FakeCameras, times: int) -> Soaked:
     """An image, the cable is pulled, the next image is a fault, the cable is put in again."""
+    _use_one_thread()
     camera = _camera(producer)
 
     async def once() -> None:
@@ -109,6 +111,7 @@ async def soak_pulls(producer: Path, fakes: FakeCameras, times: int) -> Soaked:
 
 async def soak_grabs(producer: Path, fakes: FakeCameras, times: int) -> Soaked:
     """Images of one camera that stays open."""
+    _use_one_thread()
     async with _camera(producer) as camera:
         last = 0
 
@@ -128,8 +131,6 @@ async def _soaked(
     fakes: FakeCameras,
     library: int = 0,
 ) -> Soaked:
-    # One thread: a pool that is still growing would look like threads that are kept.
-    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(max_workers=1))
     began_s = now_s()
     warm = max(3, round(_WARM_UP * times))
     for _ in track(range(warm), name, transient=True):
@@ -142,6 +143,12 @@ async def _soaked(
     left = "the camera is still open" if busy else ""
     of_library = None if not library else (before[1], after[1])
     return Soaked(name, times, now_s() - began_s, (before[0], after[0]), of_library, left)
+
+
+def _use_one_thread() -> None:
+    """A pool that is still growing would look like threads that are kept."""
+    # Before a camera is opened: its process ends with the thread that has started it.
+    asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(max_workers=1))
 
 
 def _kept(library: int) -> tuple[Kept, Kept]:

@@ -30,9 +30,14 @@ _WORDS = (
 _RESERVED_WORDS = 14
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
-Format = Literal["Mono8", "Mono12", "BayerRG8"]
+Format = Literal["Mono8", "Mono12", "Mono12Packed", "BayerRG8"]
 Fault = Literal["drop", "lost", "incomplete", "stale", "slow_ms", "hang", "crash", "busy"]
-_FORMATS = {"Mono8": 0x01080001, "Mono12": 0x01100005, "BayerRG8": 0x01080009}
+_FORMATS = {
+    "Mono8": 0x01080001,
+    "Mono12": 0x01100005,
+    "Mono12Packed": 0x010C0006,
+    "BayerRG8": 0x01080009,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +134,6 @@ def expected_image(
     """What a camera, by its place in the file, draws into an image; shape (height, width)."""
     y, x = np.mgrid[0:height, 0:width].astype(np.int64)
     level = x + 3 * y + 37 * frame_id + 11 * camera
-    if pixel_format == "Mono12":
+    if pixel_format.startswith("Mono12"):
         return np.asarray((16 * level + 5) & 0x0FFF, dtype=np.uint16)
     return np.asarray(level & 0xFF, dtype=np.uint8)

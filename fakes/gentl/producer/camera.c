@@ -32,9 +32,15 @@ static void set_text(camera *self, uint32_t address, const char *text) {
     memcpy(self->registers + address, text, size);
 }
 
+size_t camera_line_bytes(const camera *self) {
+    uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
+    size_t width = camera_u32(self, REG_WIDTH);
+    if (format == PFNC_MONO12_PACKED) return width / 2 * 3; /* widths are multiples of four */
+    return width * (format == PFNC_MONO12 ? 2 : 1) + LINE_PADDING;
+}
+
 size_t camera_payload(const camera *self) {
-    size_t bytes = camera_u32(self, REG_PIXEL_FORMAT) == PFNC_MONO12 ? 2 : 1;
-    return (size_t)camera_u32(self, REG_WIDTH) * camera_u32(self, REG_HEIGHT) * bytes;
+    return camera_line_bytes(self) * camera_u32(self, REG_HEIGHT);
 }
 
 void camera_power_up(camera *self, int index, camera_state *state) {

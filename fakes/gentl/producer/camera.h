@@ -48,7 +48,12 @@ enum {
     REG_EXPOSURE_US = 0x40, REG_GAIN_DB = 0x48, REG_WIDTH_MAX = 0x50, REG_HEIGHT_MAX = 0x54, REG_PACKET_SIZE = 0x58,
     REG_PACKET_DELAY = 0x5C, REG_VENDOR = 0x80, REG_MODEL = 0xC0, REG_SERIAL = 0x100, REG_USER_ID = 0x140,
 };
-enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_BAYER_RG8 = 0x01080009 };
+enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009 };
+
+/* Bytes that a producer leaves at the end of each line; a packed image has none. */
+#ifndef LINE_PADDING
+#define LINE_PADDING 0
+#endif
 
 enum { SOURCE_SOFTWARE, SOURCE_LINE1 };
 
@@ -61,7 +66,7 @@ typedef struct {
     bool announced, owned, new_data, incomplete;
     place where;
     uint64_t order, time_ns, frame_id;
-    uint32_t width, height, offset_x, offset_y, pixel_format;
+    uint32_t width, height, offset_x, offset_y, pixel_format, padding;
 } frame_buffer;
 
 typedef struct camera {
@@ -80,6 +85,7 @@ typedef struct camera {
 void camera_power_up(camera *self, int index, camera_state *state);
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size);
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size);
+size_t camera_line_bytes(const camera *self);
 size_t camera_payload(const camera *self);
 uint32_t camera_line(const camera *self);
 uint32_t camera_u32(const camera *self, uint32_t address);

@@ -9,19 +9,24 @@
 static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
     uint32_t width = camera_u32(self, REG_WIDTH), height = camera_u32(self, REG_HEIGHT);
     uint32_t left = camera_u32(self, REG_OFFSET_X), top = camera_u32(self, REG_OFFSET_Y);
-    bool deep = camera_u32(self, REG_PIXEL_FORMAT) == PFNC_MONO12;
-    uint8_t *bytes = buffer->base;
-    for (uint32_t y = 0; y < height; y++)
+    uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
+    for (uint32_t y = 0; y < height; y++) {
+        uint8_t *line = buffer->base + y * camera_line_bytes(self);
         for (uint32_t x = 0; x < width; x++) {
             uint32_t level = (x + left) + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
-            size_t at = (size_t)y * width + x;
-            if (deep) {
-                uint16_t value = (uint16_t)((16 * level + 5) & 0x0FFF);
-                memcpy(bytes + 2 * at, &value, sizeof value);
+            uint16_t deep = (uint16_t)((16 * level + 5) & 0x0FFF);
+            if (format == PFNC_MONO12) {
+                memcpy(line + 2 * x, &deep, sizeof deep);
+            } else if (format == PFNC_MONO12_PACKED) {
+                /* Two pixels in three bytes, their low nibbles in the middle one. */
+                uint8_t *triple = line + x / 2 * 3;
+                triple[x % 2 ? 2 : 0] = (uint8_t)(deep >> 4);
+                triple[1] = (uint8_t)(x % 2 ? (triple[1] | (deep & 15) << 4) : (deep & 15));
             } else {
-                bytes[at] = (uint8_t)level;
+                line[x] = (uint8_t)level;
             }
         }
+    }
 }
 
 static frame_buffer *first(camera *self, place where) {
@@ -78,6 +83,7 @@ static void take(camera *self) {
     buffer->offset_x = camera_u32(self, REG_OFFSET_X);
     buffer->offset_y = camera_u32(self, REG_OFFSET_Y);
     buffer->pixel_format = camera_u32(self, REG_PIXEL_FORMAT);
+    buffer->padding = buffer->pixel_format == PFNC_MONO12_PACKED ? 0 : LINE_PADDING;
     buffer->frame_id = self->frame_id;
     buffer->time_ns = self->last_time_ns;
     buffer->new_data = true;

@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cellctl.clock import now_s
 from cellctl.errors.camera import CameraFeatureRefused
 from drivers.camera.gige.config import GigeCameraConfig, Selection
 from drivers.camera.gige.features import Features
 from fakes.gentl.build import SOURCES, build_producer
-from fakes.gentl.cameras import FakeCameras, expected_image
+from fakes.gentl.cameras import FakeCameras, Format, expected_image
 from tests.wire.gige.conftest import LEFT, camera
 
 AUTOMATIC = """
@@ -93,6 +94,27 @@ async def test_an_automatic_exposure_is_switched_off_first(
         image = await eye.grab()
         assert image.exposure is not None
         assert image.exposure.exposure_s == pytest.approx(0.003)
+
+
+@pytest.mark.parametrize("pixel_format", ["Mono8", "Mono12", "Mono12Packed"])
+async def test_padded_lines_and_packed_samples(
+    tmp_path: Path, fakes: FakeCameras, pixel_format: Format
+) -> None:
+    producer = build_producer(tmp_path, "-DLINE_PADDING=12")
+    async with camera(producer, pixel_format=pixel_format) as eye:
+        image = await eye.grab()
+    assert np.array_equal(image.pixels, expected_image(1, 64, 48, pixel_format))
+
+
+async def test_a_clock_of_ticks(tmp_path: Path, fakes: FakeCameras) -> None:
+    producer = build_producer(tmp_path, "-DTICKS_PER_S=125000000")
+    async with camera(producer) as eye:
+        before_s = now_s()
+        image = await eye.grab()
+        after_s = now_s()
+    assert image.exposure is not None
+    assert image.exposure.device_time_ns is not None
+    assert before_s <= image.exposure.device_time_ns * 1e-9 <= after_s
 
 
 class Node:
