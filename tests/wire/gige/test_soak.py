@@ -43,4 +43,4 @@ def test_what_is_kept_is_seen() -> None:
     assert after.outgrows(before)
     assert not before.outgrows(before)
     assert Kept(1, 1, 50_000).outgrows(Kept(1, 1, 1_000))
-    assert Kept(1, 2, 1_000).outgrows(Kept(1, 1, 1_000))
+    assert Kept(1, 3, 1_000).outgrows(Kept(1, 1, 1_000))
