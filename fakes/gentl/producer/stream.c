@@ -5,27 +5,45 @@
 
 #include "camera.h"
 
+static uint16_t deep_value(uint32_t level) { return (uint16_t)((16 * level + 5) & 0x0FFF); }
+
+static void draw_8(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x++) line[x] = (uint8_t)(level + x);
+}
+
+static void draw_16(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x++) {
+        uint16_t value = deep_value(level + x);
+        memcpy(line + 2 * x, &value, sizeof value);
+    }
+}
+
+/* Two pixels in three bytes, their low nibbles in the middle one. */
+static void draw_packed(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x += 2) {
+        uint16_t one = deep_value(level + x), two = deep_value(level + x + 1);
+        uint8_t *triple = line + x / 2 * 3;
+        triple[0] = (uint8_t)(one >> 4);
+        triple[1] = (uint8_t)((one & 15) | (two & 15) << 4);
+        triple[2] = (uint8_t)(two >> 4);
+    }
+}
+
 /* Any image tells its camera and its frame number, so that a test knows every pixel: see fakes/gentl/cameras.py. */
 static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
     uint32_t width = camera_u32(self, REG_WIDTH), height = camera_u32(self, REG_HEIGHT);
     uint32_t left = camera_u32(self, REG_OFFSET_X), top = camera_u32(self, REG_OFFSET_Y);
     uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
+    size_t line_bytes = camera_line_bytes(self);
     for (uint32_t y = 0; y < height; y++) {
-        uint8_t *line = buffer->base + y * camera_line_bytes(self);
-        for (uint32_t x = 0; x < width; x++) {
-            uint32_t level = (x + left) + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
-            uint16_t deep = (uint16_t)((16 * level + 5) & 0x0FFF);
-            if (format == PFNC_MONO12) {
-                memcpy(line + 2 * x, &deep, sizeof deep);
-            } else if (format == PFNC_MONO12_PACKED) {
-                /* Two pixels in three bytes, their low nibbles in the middle one. */
-                uint8_t *triple = line + x / 2 * 3;
-                triple[x % 2 ? 2 : 0] = (uint8_t)(deep >> 4);
-                triple[1] = (uint8_t)(x % 2 ? (triple[1] | (deep & 15) << 4) : (deep & 15));
-            } else {
-                line[x] = (uint8_t)level;
-            }
-        }
+        uint8_t *line = buffer->base + y * line_bytes;
+        uint32_t level = left + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
+        if (format == PFNC_MONO12)
+            draw_16(line, width, level);
+        else if (format == PFNC_MONO12_PACKED)
+            draw_packed(line, width, level);
+        else
+            draw_8(line, width, level);
     }
 }
 
