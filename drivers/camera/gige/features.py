@@ -113,10 +113,11 @@ class Features:
             if selector != "FrameStart":
                 self.write("TriggerSelector", selector)
                 self._write_if_there("TriggerMode", "Off")
-        self.write("TriggerSelector", "FrameStart")
+        self._write_if_there("TriggerSelector", "FrameStart")
 
-    def _write_if_there(self, name: str, value: object) -> None:
-        if self.has(name):
+    def _write_if_there(self, name: str, value: str) -> None:
+        # What a camera cannot do otherwise is often there all the same, and read-only.
+        if self.has(name) and self.text(name) != value:
             self.write(name, value)
 
     def _name_of(self, name: str) -> str:
