@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -88,6 +88,11 @@ soak-robot: venv
 
 bench-cameras: venv
 	$(BIN)/python -m benchmarks.cameras.throughput
+	$(BIN)/python -m benchmarks.cameras.depth
+
+# Takes half an hour. A short run: python -m benchmarks.cameras.soak --cycles 20 --pulls 10 --grabs 500
+soak-cameras: venv
+	$(BIN)/python -m benchmarks.cameras.soak
 
 bench-antenna-vision: venv
 	$(BIN)/python -m benchmarks.antenna.vision

@@ -7,7 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from cellctl import log, plugins
+from cellctl import log
+from cellctl.cell.driver_object import driver_object
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.noted_robot import RobotNotes
@@ -15,7 +16,7 @@ from cellctl.cell.permitted_robot import permitted
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
-from cellctl.config.devices import GROUPS, DeviceConfig, ForceSensorConfig
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors import CellError
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import StopFailed
@@ -264,13 +265,7 @@ class Cell:
 
 def _built(config: CellConfig, section: str) -> dict[str, Any]:
     devices = config.section(section)
-    return {name: _build(GROUPS[section], name, device) for name, device in devices.items()}
-
-
-def _build(group: str, name: str, device: DeviceConfig) -> Any:
-    """A driver object; its settings were validated when the cell file was loaded."""
-    driver: Any = plugins.load(group, device.driver)
-    return driver(name, driver.Config.model_validate(device.settings))
+    return {name: driver_object(section, name, device) for name, device in devices.items()}
 
 
 def _guard(sensor: ForceSensorConfig) -> GuardClient:

@@ -22,7 +22,7 @@ _CELL, _RECORDS = "The cell", "Records and faults"
 def whole_app() -> typer.Typer:
     """Every command, in the order of the help."""
     app = new_app()
-    for name in ("check", "run", "demo", "robot", "teach"):
+    for name in ("check", "run", "demo", "robot", "teach", "grab", "focus"):
         _ADD[name](app)
     add_operator_commands(app)
     for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload"):
@@ -91,6 +91,18 @@ def _teach(app: typer.Typer) -> None:
     app.command("teach", rich_help_panel=_CELL)(teach)
 
 
+def _grab(app: typer.Typer) -> None:
+    from cellctl.cli.cameras.grab import grab
+
+    app.command("grab", rich_help_panel=_CELL)(grab)
+
+
+def _focus(app: typer.Typer) -> None:
+    from cellctl.cli.cameras.focus import focus
+
+    app.command("focus", rich_help_panel=_CELL)(focus)
+
+
 def _runs(app: typer.Typer) -> None:
     from cellctl.cli import runs
 
@@ -138,6 +150,8 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "demo": _demo,
     "robot": _robot,
     "teach": _teach,
+    "grab": _grab,
+    "focus": _focus,
     "runs": _runs,
     "replay": _replay,
     "faults": _faults,

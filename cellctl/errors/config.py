@@ -45,6 +45,15 @@ class MixedSimulation(ConfigError):
     remedy = "Mark all devices of a simulated cell, or none."
 
 
+class DeviceNotInCell(ConfigError):
+    """A command names a device that the cell file does not have."""
+
+    number = 106
+    text = "Device is not in the cell file"
+    cause = "Misspelt name, another kind of device, or another cell file."
+    remedy = "Use one of the names in the detail."
+
+
 class FileInvalid(ConfigError):
     """A file given to a command is not what it should be."""
 

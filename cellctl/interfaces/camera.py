@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.interfaces.device import Device
+from cellctl.interfaces.exposure import ExposureRecord
 
 
 class PixelFormat(Enum):
@@ -34,6 +35,8 @@ class CameraImage:
     """Monotonic time at which the image was complete on this PC."""
     frame_id: int
     """Counts up by one with each exposure; a repeated number is a repeated image."""
+    exposure: ExposureRecord | None = None
+    """How it was exposed, as far as the driver knows."""
 
 
 class Camera(Device):

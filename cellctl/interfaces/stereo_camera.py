@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.interfaces.device import Device
+from cellctl.interfaces.exposure import ExposureRecord
 
 Image = NDArray[np.uint8]
 
@@ -22,6 +23,8 @@ class StereoPair:
     """Monotonic time of receipt of the request's exposure."""
     frame_id: int
     """Counts up by one a pair; a repeated number is a repeated image."""
+    exposures: tuple[ExposureRecord, ...] = ()
+    """How left and right were exposed, in this order; empty where the driver does not know."""
 
 
 class StereoCamera(Device):

@@ -25,13 +25,19 @@ _TEXT_BYTES = 64
 _WORDS = (
     "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
     "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
+    "pulses", "wired_to", "strobes",
 )  # fmt: skip
-_RESERVED_WORDS = 17
+_RESERVED_WORDS = 14
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
-Format = Literal["Mono8", "Mono12", "BayerRG8"]
+Format = Literal["Mono8", "Mono12", "Mono12Packed", "BayerRG8"]
 Fault = Literal["drop", "lost", "incomplete", "stale", "slow_ms", "hang", "crash", "busy"]
-_FORMATS = {"Mono8": 0x01080001, "Mono12": 0x01100005, "BayerRG8": 0x01080009}
+_FORMATS = {
+    "Mono8": 0x01080001,
+    "Mono12": 0x01100005,
+    "Mono12Packed": 0x010C0006,
+    "BayerRG8": 0x01080009,
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +80,15 @@ class FakeCameras:
     def inject(self, serial: str, fault: Fault, amount: int = 1) -> None:
         """Have something go wrong; 0 puts it right. See ``camera.h`` for what each amount means."""
         self._put(serial, fault, amount)
+
+    def pulse(self) -> None:
+        """A pulse on Line1 of all cameras that are not wired to another one."""
+        for serial in self._index:
+            self._put(serial, "pulses", self._get(serial, "pulses") + 1)
+
+    def wire(self, output: str, to: str) -> None:
+        """Lead the exposure output of one camera to Line1 of another; both by serial number."""
+        self._put(to, "wired_to", self._index[output] + 1)
 
     def exposures(self, serial: str) -> int:
         """Images that a camera has exposed since the file was made."""
@@ -119,6 +134,6 @@ def expected_image(
     """What a camera, by its place in the file, draws into an image; shape (height, width)."""
     y, x = np.mgrid[0:height, 0:width].astype(np.int64)
     level = x + 3 * y + 37 * frame_id + 11 * camera
-    if pixel_format == "Mono12":
+    if pixel_format.startswith("Mono12"):
         return np.asarray((16 * level + 5) & 0x0FFF, dtype=np.uint16)
     return np.asarray(level & 0xFF, dtype=np.uint8)

@@ -42,7 +42,9 @@ class FrameServerHead(FrameServerDevice, StereoCamera):
         # moments.
         exposure = await self._connection.expose(Command.GRAB_PAIR)
         left, right = protocol.split_images(exposure.header, exposure.payload)
-        return StereoPair(left, right, exposure.time_s, exposure.header.frame_id)
+        header = exposure.header
+        one = protocol.exposure_record(header)
+        return StereoPair(left, right, exposure.time_s, header.frame_id, (one, one))
 
 
 class FrameServerCamera(FrameServerDevice, Camera):
@@ -52,4 +54,6 @@ class FrameServerCamera(FrameServerDevice, Camera):
         """Expose now. The server of a stereo head refuses this with ``DeviceFault``."""
         exposure = await self._connection.expose(Command.GRAB_IMAGE)
         pixels, pixel_format = protocol.to_pixels(exposure.header, exposure.payload)
-        return CameraImage(pixels, pixel_format, exposure.time_s, exposure.header.frame_id)
+        header = exposure.header
+        record = protocol.exposure_record(header)
+        return CameraImage(pixels, pixel_format, exposure.time_s, header.frame_id, record)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from cellctl.errors.link import ProtocolViolation
 from cellctl.interfaces.camera import PixelFormat
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
 
 VERSION = 1
@@ -157,6 +158,18 @@ def to_pixels(
     # Samples of two bytes come in network order; the rest of the program counts on the PC's own.
     native = samples.astype(samples.dtype.newbyteorder("="), copy=False)
     return native.reshape(shape), layout.pixel_format
+
+
+def exposure_record(header: Header) -> ExposureRecord:
+    """What a reply says of the exposure of each of its images."""
+    layout = _LAYOUTS[header.format_code]
+    return ExposureRecord(
+        serial_number=None,
+        pixel_format=layout.pixel_format.value,
+        bits=8 * np.dtype(layout.sample).itemsize,
+        exposure_s=header.exposure_us * 1e-6,
+        device_time_ns=header.exposure_time_us * 1000,
+    )
 
 
 def parse_identity(payload: bytes) -> tuple[str, str, str]:

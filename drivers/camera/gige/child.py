@@ -59,6 +59,7 @@ class _Cameras:
         self._damaged = 0
         self._tries = 1
         self._clean = False
+        self._fired_by_others = False
 
     def answer(self, request: Request) -> tuple[Answer, list[int]]:
         """Carry a request out; the answer and descriptors of the images' memory."""
@@ -68,8 +69,8 @@ class _Cameras:
                     return Seen(seen_cameras(self._producers(acquisition))), []
                 case OpenRequest():
                     return self._opened(request), []
-                case GrabRequest(number):
-                    return self._grabbed(number)
+                case GrabRequest():
+                    return self._grabbed()
         except TroubleError as error:
             self._clean = False
             return Failed(error.trouble, str(error)), []
@@ -92,32 +93,35 @@ class _Cameras:
         return self._harvester
 
     def _opened(self, request: OpenRequest) -> Opened:
-        harvester = self._producers(request.acquisition)
+        first = request.cameras[0].acquisition
+        harvester = self._producers(first)
         seen = seen_cameras(harvester)
-        for selection in request.cameras:
-            camera = GenicamCamera(harvester, seen, selection, request.acquisition)
+        for setup in request.cameras:
+            camera = GenicamCamera(harvester, seen, setup.selection, setup.acquisition)
             self._open.append(camera)
             camera.set_up()
         for camera in self._open:
             camera.start()
         self._clean = True
-        self._tries = request.acquisition.tries
-        return Opened(tuple(camera.serial_number for camera in self._open))
+        self._tries = first.tries
+        self._fired_by_others = first.trigger.startswith("Line")
+        return Opened(tuple(camera.stated() for camera in self._open))
 
-    def _grabbed(self, number: int) -> tuple[Answer, list[int]]:
+    def _grabbed(self) -> tuple[Answer, list[int]]:
         for _ in range(self._tries):
             images = self._expose()
             if images is not None:
                 metas = tuple(meta for meta, _ in images)
-                return Grabbed(number, metas, self._damaged), [block for _, block in images]
+                return Grabbed(metas, self._damaged), [block for _, block in images]
             self._damaged += 1
         raise TroubleError(
             Trouble.DAMAGED, f"{self._tries} exposures, and none of them whole and new"
         )
 
     def _expose(self) -> Sequence[tuple[SentImage, int]] | None:
-        if not self._clean:
-            # Whatever is still on its way belongs to a request that has failed.
+        if not self._clean or self._fired_by_others:
+            # Whatever is still on its way belongs to a request that has failed, or to a pulse from
+            # before this one: a wire does not ask whether anybody waits.
             for camera in self._open:
                 camera.stop()
                 camera.start()

@@ -1,12 +1,13 @@
 """The settings of a GenTL camera and of a head of two. Seconds, dB, bytes."""
 
 from pathlib import Path
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Feature = bool | int | float | str
+Line = r"Line\d{1,2}"
 
 
 class Selection(BaseModel):
@@ -49,9 +50,11 @@ class Acquisition(BaseModel):
 
     producers: tuple[Path, ...] = ()
     """Files of GenTL producers (``.cti``); without any, those of GENICAM_GENTL64_PATH."""
-    trigger: Literal["software", "none"] = "software"
-    """``none`` for a camera that runs freely: the first image that was exposed wholly after the
-    request is taken."""
+    trigger: Annotated[str, Field(pattern=rf"^(software|none|{Line})$")] = "software"
+    """``Line1`` and so on: the next pulse on this input. ``none`` for a camera that runs freely:
+    the first image that was exposed wholly after the request is taken."""
+    burst: Annotated[int, Field(ge=1, le=64)] = 1
+    """Exposures of which an image is the mean; nothing may move meanwhile."""
     pixel_format: str = ""
     exposure_s: Annotated[float, Field(gt=0.0, le=60.0)] | None = None
     gain_db: float | None = None
@@ -79,9 +82,27 @@ class GigeHeadConfig(Acquisition):
 
     left: Selection
     right: Selection
+    right_trigger: Annotated[str, Field(pattern=rf"^({Line})?$")] = ""
+    """The input of the right camera that the exposure output of the left one is wired to; without
+    one, the right camera is triggered as the left one is."""
+    left_features: dict[str, Feature] = Field(default_factory=dict)
+    """Features of the left camera alone, written after ``features``: its output, for example."""
+    right_features: dict[str, Feature] = Field(default_factory=dict)
     max_difference_s: Seconds = 0.005
     """Between the exposures of both cameras: by the times of their triggers in this PC, and by what
     their own clocks say from one pair to the next."""
+    clocks_agree: bool = False
+    """The clocks of both cameras are set by each other (IEEE 1588): compared as they are."""
+
+    def of_left(self) -> Acquisition:
+        """How the left camera is set up."""
+        return self.model_copy(update={"features": self.features | self.left_features})
+
+    def of_right(self) -> Acquisition:
+        """How the right camera is set up."""
+        trigger = self.right_trigger or self.trigger
+        features = self.features | self.right_features
+        return self.model_copy(update={"trigger": trigger, "features": features})
 
     @model_validator(mode="after")
     def _two_cameras(self) -> Self:

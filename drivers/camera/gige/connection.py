@@ -32,7 +32,11 @@ class LibraryProcess:
         return self._process is not None and self._process.is_alive()
 
     def start(self) -> None:
-        """Start the process, anew if there is one."""
+        """Start the process, anew if there is one.
+
+        It ends with the thread that calls this, so that it never outlasts its daemon: call it from
+        a thread that lasts, such as a worker of the event loop's own pool.
+        """
         self.end()
         context = get_context("spawn")  # a fork would take the daemon's threads and sockets along
         ours, theirs = context.Pipe()

@@ -1,28 +1,33 @@
 """A single camera and a stereo head over GenTL."""
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from cellctl.errors.camera import CamerasNotTogether, ImagesDamaged
 from cellctl.errors.link import LinkLost, ProtocolViolation
-from cellctl.interfaces.camera import Camera, CameraImage
+from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.device import Device
-from cellctl.interfaces.stereo_camera import Image, StereoCamera, StereoPair
-from drivers.camera.gige.config import Acquisition, GigeCameraConfig, GigeHeadConfig, Selection
+from cellctl.interfaces.exposure import ExposureRecord
+from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
+from drivers.camera.gige.config import GigeCameraConfig, GigeHeadConfig
 from drivers.camera.gige.connection import Block, LibraryProcess
-from drivers.camera.gige.pixels import bits_of, decoded, grey
+from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey
 from drivers.camera.gige.protocol import (
     Answer,
+    CameraSetup,
     Grabbed,
     GrabRequest,
     Opened,
+    OpenedCamera,
     OpenRequest,
     Request,
     SentImage,
 )
+from drivers.camera.gige.running_mean import RunningMean
 
 _PATIENCE_S = 2.0
 """What the process may take beyond the time-outs of its own before it counts as hung."""
@@ -34,13 +39,13 @@ T = TypeVar("T")
 class GigeDevice(Device):
     """What camera and head share: one process of the maker's library for all of its cameras."""
 
-    def __init__(self, name: str, settings: Acquisition, cameras: tuple[Selection, ...]) -> None:
+    def __init__(self, name: str, cameras: tuple[CameraSetup, ...]) -> None:
         self.name = name
-        self._settings = settings
+        self._settings = cameras[0].acquisition
         self._cameras = cameras
         self._library = LibraryProcess(name)
         self._turn = asyncio.Lock()
-        self._serials: tuple[str, ...] = ()
+        self._opened: tuple[OpenedCamera, ...] = ()
         self._frame = 0
 
     async def connect(self) -> None:
@@ -53,25 +58,46 @@ class GigeDevice(Device):
 
     async def serial_number(self) -> str:
         """Serial numbers of the cameras, left and right with a plus between them."""
-        if not self._serials:
+        if not self._opened:
             raise LinkLost(f"{self.name}: not connected")
-        return "+".join(self._serials)
+        return "+".join(camera.serial_number for camera in self._opened)
 
-    async def _exposed(self) -> tuple[int, tuple[SentImage, ...], list[Block]]:
-        async def grab() -> tuple[int, tuple[SentImage, ...], list[Block]]:
-            if not self._serials:
+    async def _exposed(self) -> tuple[tuple[SentImage, ...], list[Block]]:
+        async def grab() -> tuple[tuple[SentImage, ...], list[Block]]:
+            if not self._opened:
                 raise LinkLost(f"{self.name}: not connected")
             if not self._library.running:
                 await self._connected()
             settings = self._settings
             patience_s = settings.tries * settings.image_timeout_s * len(self._cameras)
-            answer, blocks = await self._ask(GrabRequest(self._frame + 1), patience_s + _PATIENCE_S)
+            answer, blocks = await self._ask(GrabRequest(), patience_s + _PATIENCE_S)
             if not isinstance(answer, Grabbed) or len(blocks) != len(self._cameras):
                 raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for images")
-            self._frame += 1
-            return self._frame, answer.images, blocks
+            return answer.images, blocks
 
         return await self._in_turn(grab)
+
+    def _next_frame(self) -> int:
+        self._frame += 1
+        return self._frame
+
+    def _decoded(self, image: SentImage, data: Block) -> tuple[Pixels, PixelFormat]:
+        try:
+            return decoded(data, image.pixel_format, image.width, image.height)
+        except ValueError as error:
+            raise ImagesDamaged(f"{self.name}: {error}") from error
+
+    def _record(self, number: int, image: SentImage, bits: int) -> ExposureRecord:
+        camera = self._opened[number]
+        return ExposureRecord(
+            serial_number=camera.serial_number,
+            pixel_format=image.pixel_format,
+            bits=bits,
+            exposure_s=camera.exposure_s,
+            gain_db=camera.gain_db,
+            averaged=self._settings.burst,
+            device_time_ns=image.device_time_ns or None,
+        )
 
     async def _connected(self) -> None:
         if self._library.running:
@@ -79,17 +105,17 @@ class GigeDevice(Device):
         await asyncio.to_thread(self._library.start)
         try:
             answer, _ = await self._ask(
-                OpenRequest(self._settings, self._cameras), self._settings.connect_timeout_s
+                OpenRequest(self._cameras), self._settings.connect_timeout_s
             )
         except BaseException:
             await asyncio.to_thread(self._library.end)
             raise
         if not isinstance(answer, Opened):
             raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for open cameras")
-        self._serials = answer.serial_numbers
+        self._opened = answer.cameras
 
     async def _ended(self) -> None:
-        self._serials = ()
+        self._opened = ()
         await asyncio.to_thread(self._library.end)
 
     async def _ask(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:
@@ -115,16 +141,18 @@ class GigeCamera(GigeDevice, Camera):
     Config = GigeCameraConfig
 
     def __init__(self, name: str, config: GigeCameraConfig) -> None:
-        super().__init__(name, config, (config.camera,))
+        super().__init__(name, (CameraSetup(config.camera, config),))
 
     async def grab(self) -> CameraImage:
         """Expose now; damaged images are taken again as often as the settings allow."""
-        frame, (image,), (data,) = await self._exposed()
-        try:
-            pixels, pixel_format = decoded(data, image.pixel_format, image.width, image.height)
-        except ValueError as error:
-            raise ImagesDamaged(f"{self.name}: {error}") from error
-        return CameraImage(pixels, pixel_format, image.time_s, frame)
+        mean: RunningMean[Any] = RunningMean()
+        for _ in range(self._settings.burst):
+            (image,), (data,) = await self._exposed()
+            pixels, pixel_format = self._decoded(image, data)
+            mean.add(pixels)
+        deep = pixel_format is PixelFormat.MONO16
+        record = self._record(0, image, bits_of(image.pixel_format) if deep else 8)
+        return CameraImage(mean.pixels(), pixel_format, image.time_s, self._next_frame(), record)
 
 
 class GigeHead(GigeDevice, StereoCamera):
@@ -133,8 +161,10 @@ class GigeHead(GigeDevice, StereoCamera):
     Config = GigeHeadConfig
 
     def __init__(self, name: str, config: GigeHeadConfig) -> None:
-        super().__init__(name, config, (config.left, config.right))
+        left = CameraSetup(config.left, config.of_left())
+        super().__init__(name, (left, CameraSetup(config.right, config.of_right())))
         self._max_difference_s = config.max_difference_s
+        self._clocks_agree = config.clocks_agree
         self._ahead: tuple[float, float] | None = None
         """At the last pair: monotonic time, and the clock of the left camera before the right."""
 
@@ -145,19 +175,27 @@ class GigeHead(GigeDevice, StereoCamera):
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""
-        frame, images, blocks = await self._exposed()
-        self._require_together(images[0], images[1])
-        left, right = (
-            self._grey(image, block) for image, block in zip(images, blocks, strict=True)
-        )
-        return StereoPair(left, right, images[0].time_s, frame)
+        left: RunningMean[np.uint8] = RunningMean()
+        right: RunningMean[np.uint8] = RunningMean()
+        for _ in range(self._settings.burst):
+            images, blocks = await self._exposed()
+            self._require_together(images[0], images[1])
+            for mean, image, block in zip((left, right), images, blocks, strict=True):
+                pixels, kind = self._decoded(image, block)
+                mean.add(grey(pixels, kind, bits_of(image.pixel_format)))
+        records = tuple(self._record(number, image, 8) for number, image in enumerate(images))
+        time_s = images[0].time_s
+        return StereoPair(left.pixels(), right.pixels(), time_s, self._next_frame(), records)
 
     def _require_together(self, left: SentImage, right: SentImage) -> None:
         """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""
-        apart_s = right.trigger_s - left.trigger_s
+        by_wire = math.isnan(right.trigger_s)  # whose trigger this PC does not see
+        apart_s = 0.0 if by_wire else right.trigger_s - left.trigger_s
         ahead_s = (left.device_time_ns - right.device_time_ns) * 1e-9
         before, self._ahead = self._ahead, (left.time_s, ahead_s)
-        if before is not None and left.device_time_ns and right.device_time_ns:
+        if self._clocks_agree:
+            apart_s = max(apart_s, abs(ahead_s))
+        elif before is not None and left.device_time_ns and right.device_time_ns:
             # Each camera has a clock of its own, and only the change of their difference says
             # something; clocks drift apart by themselves meanwhile.
             change_s = abs(ahead_s - before[1])
@@ -168,10 +206,3 @@ class GigeHead(GigeDevice, StereoCamera):
                 f"{self.name}: {apart_s * 1e3:.1f} ms apart, allowed "
                 f"{self._max_difference_s * 1e3:.1f} ms"
             )
-
-    def _grey(self, image: SentImage, data: Block) -> Image:
-        try:
-            pixels, kind = decoded(data, image.pixel_format, image.width, image.height)
-            return np.asarray(grey(pixels, kind, bits_of(image.pixel_format)))
-        except ValueError as error:
-            raise ImagesDamaged(f"{self.name}: {error}") from error

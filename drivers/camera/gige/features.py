@@ -8,6 +8,10 @@ from drivers.camera.gige.config import Acquisition, Region
 from drivers.camera.gige.protocol import Trouble
 from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors, in_words
 
+_OTHER_EDITIONS = {
+    "ExposureTime": "ExposureTimeAbs",  # before SFNC 1.5.1, in µs too
+    "GevSCPSPacketSize": "DeviceStreamChannelPacketSize",  # from SFNC 2.0 on, of any transport
+}
 _SHOWN = 40
 """Names of features that a refusal lists."""
 
@@ -27,6 +31,14 @@ class Features:
         """A feature as text; empty where the camera does not have it."""
         with camera_errors(self._label):
             return str(getattr(self._nodes, name).value) if self.has(name) else ""
+
+    def fixed(self, name: str, automatic: str) -> float | None:
+        """A number that stays as it is; None where the camera lacks it or sets it by itself."""
+        name = self._name_of(name)
+        if not self.has(name) or self.text(automatic) not in ("", "Off"):
+            return None
+        with camera_errors(self._label):
+            return float(getattr(self._nodes, name).value)
 
     def execute(self, name: str) -> None:
         """Carry out a command feature."""
@@ -55,11 +67,15 @@ class Features:
         if settings.region is not None:
             self._set_region(settings.region)
         if settings.exposure_s is not None:
-            self.write("ExposureTime", settings.exposure_s * 1e6)
+            # What sets itself is read-only, or is overwritten by the camera in the next image.
+            self._write_if_there("ExposureMode", "Timed")
+            self._write_if_there("ExposureAuto", "Off")
+            self.write(self._name_of("ExposureTime"), settings.exposure_s * 1e6)
         if settings.gain_db is not None:
+            self._write_if_there("GainAuto", "Off")
             self.write("Gain", settings.gain_db)
         if settings.packet_bytes is not None:
-            self.write("GevSCPSPacketSize", settings.packet_bytes)
+            self.write(self._name_of("GevSCPSPacketSize"), settings.packet_bytes)
         if settings.packet_delay_ticks is not None:
             self.write("GevSCPD", settings.packet_delay_ticks)
         for name, value in settings.features.items():
@@ -75,17 +91,39 @@ class Features:
             self.write(name, value)
 
     def _set_trigger(self, settings: Acquisition) -> None:
+        self._write_if_there("AcquisitionMode", "Continuous")
+        self._switch_other_triggers_off()
         if settings.trigger == "none":
-            if self.has("TriggerMode"):
-                self.write("TriggerMode", "Off")
+            self._write_if_there("TriggerMode", "Off")
             return
-        # The selector first: the other two belong to what it selects.
-        if self.has("TriggerSelector"):
-            self.write("TriggerSelector", "FrameStart")
+        if settings.trigger == "software" and not self.has("TriggerSoftware"):
+            text = f"{self._label} has no software trigger; a wire (Line1) or none is left"
+            raise TroubleError(Trouble.FEATURE, text)
         self.write("TriggerMode", "On")
-        self.write("TriggerSource", "Software")
-        if self.has("AcquisitionMode"):
-            self.write("AcquisitionMode", "Continuous")
+        wired = settings.trigger.startswith("Line")
+        self.write("TriggerSource", settings.trigger if wired else "Software")
+
+    def _switch_other_triggers_off(self) -> None:
+        """Leave the start of a frame selected; another trigger that was left on waits for ever."""
+        if not self.has("TriggerSelector"):
+            return
+        with camera_errors(self._label):
+            selectors = list(self._nodes.TriggerSelector.symbolics)
+        for selector in selectors:
+            if selector != "FrameStart":
+                self.write("TriggerSelector", selector)
+                self._write_if_there("TriggerMode", "Off")
+        self._write_if_there("TriggerSelector", "FrameStart")
+
+    def _write_if_there(self, name: str, value: str) -> None:
+        # What a camera cannot do otherwise is often there all the same, and read-only.
+        if self.has(name) and self.text(name) != value:
+            self.write(name, value)
+
+    def _name_of(self, name: str) -> str:
+        """The name that this camera has for a feature: that of another edition, if need be."""
+        other = _OTHER_EDITIONS.get(name, name)
+        return name if self.has(name) or not self.has(other) else other
 
 
 def _allowed(node: Any) -> str:

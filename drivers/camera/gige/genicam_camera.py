@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from cellctl.clock import now_s
 from drivers.camera.gige.config import Acquisition, Selection
+from drivers.camera.gige.delivered import delivered, time_stamp
 from drivers.camera.gige.features import Features
-from drivers.camera.gige.protocol import SeenCamera, SentImage, Trouble
+from drivers.camera.gige.protocol import OpenedCamera, SeenCamera, SentImage, Trouble
 from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors
 
 BUFFERS = 4
@@ -53,7 +54,7 @@ class GenicamCamera:
         self._acquirer.timeout_period_on_update_event_data_call = POLL_MS
         self._incomplete = _Count()
         self._acquirer.add_callback(ImageAcquirer.Events.INCOMPLETE_BUFFER, self._incomplete)
-        self._last_time_ns = -1
+        self._last_stamp = 0
         self._trigger_s = math.nan
         serial = self._features.text("DeviceSerialNumber") or self._features.text("DeviceID")
         self.serial_number = serial or self.label
@@ -61,6 +62,15 @@ class GenicamCamera:
     def set_up(self) -> None:
         """Write the settings; raises ``TroubleError`` with what the camera allows."""
         self._features.set_up(self._settings)
+
+    def stated(self) -> OpenedCamera:
+        """What the camera says of itself once it is set up."""
+        exposure_us = self._features.fixed("ExposureTime", "ExposureAuto")
+        return OpenedCamera(
+            serial_number=self.serial_number,
+            exposure_s=None if exposure_us is None else exposure_us * 1e-6,
+            gain_db=self._features.fixed("Gain", "GainAuto"),
+        )
 
     def start(self) -> None:
         """Begin to acquire: with a trigger, nothing is exposed yet."""
@@ -75,7 +85,7 @@ class GenicamCamera:
     def drop_old(self) -> None:
         """Give back whatever was exposed before this call."""
         while self._waiting() and (old := self._fetch(_EMPTY_S)) is not None:
-            old.queue()
+            self._give_back(old)
 
     def trigger(self) -> None:
         """Expose now; nothing to do for a camera that runs freely."""
@@ -101,7 +111,7 @@ class GenicamCamera:
                 continue
             if skip:
                 skip -= 1
-                buffer.queue()
+                self._give_back(buffer)
                 continue
             return self._taken(buffer)
         raise TroubleError(
@@ -124,33 +134,42 @@ class GenicamCamera:
     def _fetch(self, timeout_s: float) -> Any:
         with camera_errors(self.label):
             try:
-                return self._acquirer.try_fetch(timeout=timeout_s)
+                return self._acquirer.try_fetch(timeout=timeout_s, is_raw=True)
             except gentl.TimeoutException:
                 return None
 
     def _taken(self, buffer: Any) -> tuple[SentImage, int] | None:
         whole_s = now_s()
-        with buffer, camera_errors(self.label, Trouble.DAMAGED):
-            time_ns = _time_ns(buffer)
-            # A time stamp that stands still is an old image again. Cameras without a clock say 0.
-            if time_ns and time_ns <= self._last_time_ns:
-                return None
-            self._last_time_ns = time_ns
-            components = buffer.payload.components
-            if not components:
-                return None
-            image = components[0]
-            data = image.data.view(np.uint8).ravel()
-            meta = SentImage(
-                pixel_format=image.data_format,
-                width=image.width,
-                height=image.height,
-                size=len(data),
-                device_time_ns=time_ns,
-                trigger_s=self._trigger_s,
-                time_s=whole_s,
-            )
-            return meta, _memory(data)
+        nodes, device = self._acquirer.remote_device.node_map, self._acquirer.device.module
+        try:
+            with camera_errors(self.label, Trouble.DAMAGED):
+                stamp, time_ns = time_stamp(buffer, device, nodes)
+                # A time stamp that stands still is an old image again. Cameras without a clock say
+                # 0, and clocks that are set by the network may go back.
+                if stamp and stamp == self._last_stamp:
+                    return None
+                self._last_stamp = stamp
+                image = delivered(buffer, nodes)
+                if image is None:
+                    return None
+                meta = SentImage(
+                    pixel_format=image.pixel_format,
+                    width=image.width,
+                    height=image.height,
+                    size=len(image.data),
+                    device_time_ns=time_ns,
+                    trigger_s=self._trigger_s,
+                    time_s=whole_s,
+                )
+                return meta, _memory(image.data)
+        except ValueError as error:
+            raise TroubleError(Trouble.DAMAGED, f"{self.label}: {error}") from error
+        finally:
+            self._give_back(buffer)
+
+    def _give_back(self, buffer: Any) -> None:
+        with camera_errors(self.label):
+            buffer.parent.queue_buffer(buffer)
 
 
 class _Count(Callback):  # type: ignore[misc]  # harvesters has no types
@@ -207,10 +226,3 @@ def _memory(data: NDArray[np.uint8]) -> int:
     while left:
         left = left[os.write(block, left) :]
     return block
-
-
-def _time_ns(buffer: Any) -> int:
-    try:
-        return int(buffer.timestamp_ns)
-    except (*GENICAM_ERRORS, AttributeError):
-        return int(buffer.timestamp or 0)

@@ -82,16 +82,16 @@ _FAMILIES: dict[str, Callable[[Bytes, str, int, int], tuple[Pixels, PixelFormat]
     "BGR": _colour,
 }
 SUPPORTED = (
-    "supported are Mono and Bayer of 8, 10, 12, 14 and 16 bit (10p, 12p and 12Packed too), "
-    "RGB8, BGR8, RGBa8 and BGRa8"
+    "supported are Mono and Bayer of 8, 10, 12, 14 and 16 bit (10p, 12p, 10Packed and 12Packed "
+    "too), RGB8, BGR8, RGBa8 and BGRa8"
 )
 
 
 def _samples(data: Bytes, name: str, width: int, height: int) -> Pixels:
     count = width * height
     bits = bits_of(name)
-    if name.endswith("12Packed"):
-        return _packed_gev(data, count).reshape(height, width)
+    if name.endswith("Packed"):
+        return _packed_gev(data, count, bits).reshape(height, width)
     if name.endswith("p"):
         return _packed_lsb(data, count, bits).reshape(height, width)
     if bits == 8:
@@ -107,11 +107,15 @@ def _packed_lsb(data: Bytes, count: int, bits: int) -> NDArray[np.uint16]:
     return np.asarray(stream.reshape(count, bits) @ weights, dtype=np.uint16)
 
 
-def _packed_gev(data: Bytes, count: int) -> NDArray[np.uint16]:
-    """Two samples in three bytes, their low nibbles in the middle one (GigE Vision "Packed")."""
+def _packed_gev(data: Bytes, count: int, bits: int) -> NDArray[np.uint16]:
+    """Two samples in three bytes, their low bits in the middle one (GigE Vision "Packed")."""
+    low = bits - 8
+    if low not in (2, 4):
+        raise ValueError(f"Packed has 10 or 12 bit, not {bits}; {SUPPORTED}")
+    mask = (1 << low) - 1
     triples = _whole(data, -(-count // 2) * 3).reshape(-1, 3).astype(np.uint16)
-    first = triples[:, 0] << 4 | triples[:, 1] & 0x0F
-    second = triples[:, 2] << 4 | triples[:, 1] >> 4
+    first = triples[:, 0] << low | triples[:, 1] & mask
+    second = triples[:, 2] << low | triples[:, 1] >> 4 & mask
     return np.column_stack([first, second]).ravel()[:count]
 
 

@@ -26,19 +26,26 @@ class Trouble(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class OpenRequest:
-    """Load the producers and open these cameras, in this order."""
+class CameraSetup:
+    """One camera and how it is set up."""
 
+    selection: Selection
     acquisition: Acquisition
-    cameras: tuple[Selection, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class OpenRequest:
+    """Load the producers and open these cameras, in this order: that of their triggers.
+
+    Producers and tries are those of the first.
+    """
+
+    cameras: tuple[CameraSetup, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class GrabRequest:
     """Expose all cameras once."""
-
-    number: int
-    """Given back with the answer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +72,19 @@ class SeenCamera:
 
 
 @dataclass(frozen=True, slots=True)
+class OpenedCamera:
+    """One camera as it was set up; None for what it does not say or sets by itself."""
+
+    serial_number: str
+    exposure_s: float | None
+    gain_db: float | None
+
+
+@dataclass(frozen=True, slots=True)
 class Opened:
     """All cameras are open, set up and acquire."""
 
-    serial_numbers: tuple[str, ...]
-    warnings: tuple[str, ...] = ()
+    cameras: tuple[OpenedCamera, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +108,6 @@ class SentImage:
 class Grabbed:
     """One image of every camera."""
 
-    number: int
     images: tuple[SentImage, ...]
     damaged: int
     """Images that were taken again since the cameras were opened."""

@@ -32,9 +32,15 @@ static void set_text(camera *self, uint32_t address, const char *text) {
     memcpy(self->registers + address, text, size);
 }
 
+size_t camera_line_bytes(const camera *self) {
+    uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
+    size_t width = camera_u32(self, REG_WIDTH);
+    if (format == PFNC_MONO12_PACKED) return width / 2 * 3; /* widths are multiples of four */
+    return width * (format == PFNC_MONO12 ? 2 : 1) + LINE_PADDING;
+}
+
 size_t camera_payload(const camera *self) {
-    size_t bytes = camera_u32(self, REG_PIXEL_FORMAT) == PFNC_MONO12 ? 2 : 1;
-    return (size_t)camera_u32(self, REG_WIDTH) * camera_u32(self, REG_HEIGHT) * bytes;
+    return camera_line_bytes(self) * camera_u32(self, REG_HEIGHT);
 }
 
 void camera_power_up(camera *self, int index, camera_state *state) {
@@ -81,6 +87,13 @@ GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size) {
     return GC_ERR_SUCCESS;
 }
 
+/* Pulses on Line1 so far. */
+uint32_t camera_line(const camera *self) {
+    uint32_t wired_to = self->state->wired_to;
+    if (!wired_to) return self->state->pulses;
+    return (self->state - self->index + (wired_to - 1))->strobes;
+}
+
 static bool is(uint64_t address, size_t size, uint32_t place) { return address == place && size == 4; }
 
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size) {
@@ -99,13 +112,14 @@ GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t s
         self->acquiring = true;
         self->starts++;
         self->triggers = 0;
+        self->line_seen = camera_line(self);
     } else if (is(address, size, REG_STOP)) {
         self->acquiring = false;
     } else if (is(address, size, REG_TRIGGER_SOFTWARE)) {
         /* A trigger that comes before the acquisition is started is overheard, as by real cameras. */
         if (self->state->drop)
             self->state->drop--;
-        else if (self->acquiring)
+        else if (self->acquiring && camera_u32(self, REG_TRIGGER_SOURCE) == SOURCE_SOFTWARE)
             self->triggers++;
     }
     pthread_cond_broadcast(&self->changed);

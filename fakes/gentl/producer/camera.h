@@ -27,7 +27,10 @@ typedef struct {
     volatile uint32_t busy;       /* 1: another program has the camera */
     volatile uint32_t opened;     /* process that has it, 0 for none */
     volatile uint32_t buffers;    /* announced now */
-    volatile uint32_t reserved[17];
+    volatile uint32_t pulses;     /* on Line1, so far; whoever maps the file counts up */
+    volatile uint32_t wired_to;   /* Line1 is the exposure output of this camera, counted from 1; 0: none */
+    volatile uint32_t strobes;    /* exposures begun, each a pulse on the exposure output */
+    volatile uint32_t reserved[14];
     char serial[TEXT_BYTES], user_id[TEXT_BYTES];
 } camera_state;
 
@@ -45,7 +48,14 @@ enum {
     REG_EXPOSURE_US = 0x40, REG_GAIN_DB = 0x48, REG_WIDTH_MAX = 0x50, REG_HEIGHT_MAX = 0x54, REG_PACKET_SIZE = 0x58,
     REG_PACKET_DELAY = 0x5C, REG_VENDOR = 0x80, REG_MODEL = 0xC0, REG_SERIAL = 0x100, REG_USER_ID = 0x140,
 };
-enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_BAYER_RG8 = 0x01080009 };
+enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009 };
+
+/* Bytes that a producer leaves at the end of each line; a packed image has none. */
+#ifndef LINE_PADDING
+#define LINE_PADDING 0
+#endif
+
+enum { SOURCE_SOFTWARE, SOURCE_LINE1 };
 
 typedef enum { FREE, INPUT, OUTPUT, OUT } place; /* of a buffer: nowhere, waiting, filled, with the user */
 
@@ -56,7 +66,7 @@ typedef struct {
     bool announced, owned, new_data, incomplete;
     place where;
     uint64_t order, time_ns, frame_id;
-    uint32_t width, height, offset_x, offset_y, pixel_format;
+    uint32_t width, height, offset_x, offset_y, pixel_format, padding;
 } frame_buffer;
 
 typedef struct camera {
@@ -64,7 +74,7 @@ typedef struct camera {
     camera_state *state;
     uint8_t registers[REGISTER_BYTES];
     bool is_open, stream_open, acquiring, stream_running, ending, event_killed, event_registered;
-    uint32_t triggers, starts;
+    uint32_t triggers, starts, line_seen;
     uint64_t frame_id, order, delivered, last_time_ns;
     frame_buffer buffers[MAX_BUFFERS];
     pthread_t thread;
@@ -75,7 +85,9 @@ typedef struct camera {
 void camera_power_up(camera *self, int index, camera_state *state);
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size);
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size);
+size_t camera_line_bytes(const camera *self);
 size_t camera_payload(const camera *self);
+uint32_t camera_line(const camera *self);
 uint32_t camera_u32(const camera *self, uint32_t address);
 
 GC_ERROR stream_open(camera *self);

@@ -195,8 +195,13 @@ GC_API DSGetBufferInfo(DS_HANDLE stream, BUFFER_HANDLE handle, int32_t what, INF
         case BUFFER_INFO_BASE: return answer_pointer(one->base, type, out, size);
         case BUFFER_INFO_SIZE: return answer_size(one->size, type, out, size);
         case BUFFER_INFO_USER_PTR: return answer_pointer(one->user, type, out, size);
+#ifdef TICKS_PER_S /* of a camera that counts ticks, and a producer that does not convert them */
+        case BUFFER_INFO_TIMESTAMP:
+            return answer_u64((uint64_t)((double)one->time_ns * 1e-9 * TICKS_PER_S), type, out, size);
+#else
         case BUFFER_INFO_TIMESTAMP:
         case BUFFER_INFO_TIMESTAMP_NS: return answer_u64(one->time_ns, type, out, size);
+#endif
         case BUFFER_INFO_NEW_DATA: return answer_bool(one->new_data, type, out, size);
         case BUFFER_INFO_IS_QUEUED: return answer_bool(one->where == INPUT || one->where == OUTPUT, type, out, size);
         case BUFFER_INFO_IS_ACQUIRING: return answer_bool(0, type, out, size);
@@ -209,7 +214,7 @@ GC_API DSGetBufferInfo(DS_HANDLE stream, BUFFER_HANDLE handle, int32_t what, INF
         case BUFFER_INFO_DELIVERED_IMAGEHEIGHT: return answer_size(one->height, type, out, size);
         case BUFFER_INFO_XOFFSET: return answer_size(one->offset_x, type, out, size);
         case BUFFER_INFO_YOFFSET: return answer_size(one->offset_y, type, out, size);
-        case BUFFER_INFO_XPADDING:
+        case BUFFER_INFO_XPADDING: return answer_size(one->padding, type, out, size);
         case BUFFER_INFO_YPADDING:
         case BUFFER_INFO_IMAGEOFFSET:
         case BUFFER_INFO_DELIVERED_CHUNKPAYLOADSIZE: return answer_size(0, type, out, size);

@@ -221,7 +221,11 @@ static GC_ERROR device_info(int index, int32_t what, INFO_DATATYPE *type, void *
         case DEVICE_INFO_USER_DEFINED_NAME: return answer_text(one->user_id, type, out, size);
         case DEVICE_INFO_SERIAL_NUMBER: return answer_text(one->serial, type, out, size);
         case DEVICE_INFO_VERSION: return answer_text("1.0", type, out, size);
+#ifdef TICKS_PER_S
+        case DEVICE_INFO_TIMESTAMP_FREQUENCY: return answer_u64(TICKS_PER_S, type, out, size);
+#else
         case DEVICE_INFO_TIMESTAMP_FREQUENCY: return answer_u64(1000000000u, type, out, size);
+#endif
         default: return fail(GC_ERR_NOT_IMPLEMENTED, "information about the camera");
     }
 }

@@ -5,23 +5,46 @@
 
 #include "camera.h"
 
+static uint16_t deep_value(uint32_t level) { return (uint16_t)((16 * level + 5) & 0x0FFF); }
+
+static void draw_8(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x++) line[x] = (uint8_t)(level + x);
+}
+
+static void draw_16(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x++) {
+        uint16_t value = deep_value(level + x);
+        memcpy(line + 2 * x, &value, sizeof value);
+    }
+}
+
+/* Two pixels in three bytes, their low nibbles in the middle one. */
+static void draw_packed(uint8_t *line, uint32_t width, uint32_t level) {
+    for (uint32_t x = 0; x < width; x += 2) {
+        uint16_t one = deep_value(level + x), two = deep_value(level + x + 1);
+        uint8_t *triple = line + x / 2 * 3;
+        triple[0] = (uint8_t)(one >> 4);
+        triple[1] = (uint8_t)((one & 15) | (two & 15) << 4);
+        triple[2] = (uint8_t)(two >> 4);
+    }
+}
+
 /* Any image tells its camera and its frame number, so that a test knows every pixel: see fakes/gentl/cameras.py. */
 static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
     uint32_t width = camera_u32(self, REG_WIDTH), height = camera_u32(self, REG_HEIGHT);
     uint32_t left = camera_u32(self, REG_OFFSET_X), top = camera_u32(self, REG_OFFSET_Y);
-    bool deep = camera_u32(self, REG_PIXEL_FORMAT) == PFNC_MONO12;
-    uint8_t *bytes = buffer->base;
-    for (uint32_t y = 0; y < height; y++)
-        for (uint32_t x = 0; x < width; x++) {
-            uint32_t level = (x + left) + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
-            size_t at = (size_t)y * width + x;
-            if (deep) {
-                uint16_t value = (uint16_t)((16 * level + 5) & 0x0FFF);
-                memcpy(bytes + 2 * at, &value, sizeof value);
-            } else {
-                bytes[at] = (uint8_t)level;
-            }
-        }
+    uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
+    size_t line_bytes = camera_line_bytes(self);
+    for (uint32_t y = 0; y < height; y++) {
+        uint8_t *line = buffer->base + y * line_bytes;
+        uint32_t level = left + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
+        if (format == PFNC_MONO12)
+            draw_16(line, width, level);
+        else if (format == PFNC_MONO12_PACKED)
+            draw_packed(line, width, level);
+        else
+            draw_8(line, width, level);
+    }
 }
 
 static frame_buffer *first(camera *self, place where) {
@@ -51,6 +74,7 @@ static void take(camera *self) {
     memcpy(&exposure_us, self->registers + REG_EXPOSURE_US, sizeof exposure_us);
     /* A free-running camera of 50 images a second. */
     uint32_t starts = self->starts;
+    self->state->strobes++;
     uint64_t took_us = triggered ? (uint64_t)exposure_us : 20000;
     pause_us(self, took_us + 1000ull * self->state->slow_ms);
     /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
@@ -77,6 +101,7 @@ static void take(camera *self) {
     buffer->offset_x = camera_u32(self, REG_OFFSET_X);
     buffer->offset_y = camera_u32(self, REG_OFFSET_Y);
     buffer->pixel_format = camera_u32(self, REG_PIXEL_FORMAT);
+    buffer->padding = buffer->pixel_format == PFNC_MONO12_PACKED ? 0 : LINE_PADDING;
     buffer->frame_id = self->frame_id;
     buffer->time_ns = self->last_time_ns;
     buffer->new_data = true;
@@ -86,12 +111,34 @@ static void take(camera *self) {
     pthread_cond_broadcast(&self->changed);
 }
 
+static bool by_wire(const camera *self) {
+    return camera_u32(self, REG_TRIGGER_MODE) && camera_u32(self, REG_TRIGGER_SOURCE) == SOURCE_LINE1;
+}
+
+/* A wire wakes nobody in another process, so it is looked at each millisecond. */
+static void watch_line(camera *self) {
+    uint32_t now = camera_line(self);
+    if (self->acquiring && self->stream_running) self->triggers += now - self->line_seen;
+    self->line_seen = now;
+    if (self->triggers) return;
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    until.tv_nsec += 1000000;
+    if (until.tv_nsec >= 1000000000) {
+        until.tv_sec++;
+        until.tv_nsec -= 1000000000;
+    }
+    pthread_cond_timedwait(&self->changed, &self->mutex, &until);
+}
+
 static void *run(void *argument) {
     camera *self = argument;
     pthread_mutex_lock(&self->mutex);
     while (!self->ending) {
         if (due(self))
             take(self);
+        else if (by_wire(self))
+            watch_line(self);
         else
             pthread_cond_wait(&self->changed, &self->mutex);
     }

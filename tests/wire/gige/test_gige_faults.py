@@ -79,7 +79,7 @@ async def test_without_a_producer_the_variable_is_named(
 @pytest.mark.parametrize(
     ("settings", "words"),
     [
-        ({"pixel_format": "Mono14"}, "Mono8, Mono12, BayerRG8"),
+        ({"pixel_format": "Mono14"}, "Mono8, Mono12, Mono12Packed, BayerRG8"),
         ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
         ({"region": Region(width=20, height=4000)}, "16 to 48"),
         ({"features": {"Gain": 99.0}}, "0.0 to 24.0"),

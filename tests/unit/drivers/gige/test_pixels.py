@@ -22,6 +22,8 @@ def test_golden_bytes_of_packed_formats() -> None:
     assert (pixels.tolist(), kind) == ([[0x123, 0x456]], PixelFormat.MONO16)
     pixels, _ = decoded(raw(0x12, 0x63, 0x45), "Mono12Packed", 2, 1)
     assert pixels.tolist() == [[0x123, 0x456]]
+    pixels, _ = decoded(raw(0x48, 0x23, 0x15), "Mono10Packed", 2, 1)
+    assert pixels.tolist() == [[0x48 << 2 | 3, 0x15 << 2 | 2]]
     pixels, _ = decoded(raw(0x01, 0x08, 0x30, 0x00, 0x01), "Mono10p", 4, 1)
     assert pixels.tolist() == [[1, 2, 3, 4]]
     pixels, _ = decoded(raw(0x34, 0x02), "Mono10", 1, 1)

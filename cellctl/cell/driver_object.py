@@ -1,0 +1,15 @@
+"""Builds the driver of one device of a cell file."""
+
+from typing import Any
+
+from cellctl import plugins
+from cellctl.config.devices import GROUPS, DeviceConfig
+
+
+def driver_object(section: str, name: str, device: DeviceConfig) -> Any:
+    """The driver, not connected; its settings were validated when the cell file was loaded.
+
+    ``section`` is that of the cell file, such as ``cameras``. Raises ``UnknownDriver``.
+    """
+    driver: Any = plugins.load(GROUPS[section], device.driver)
+    return driver(name, driver.Config.model_validate(device.settings))

@@ -1,0 +1,80 @@
+"""`cellctl focus`: live figures of a camera or head while a person sets it up."""
+
+import asyncio
+import json
+from contextlib import suppress
+from dataclasses import asdict
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.live import Live
+
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.cli.cameras.focus_screen import screen
+from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
+from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen
+from cellctl.clock import now_s
+
+
+def focus(
+    cell_file: CellFile,
+    *,
+    head: HeadName = None,
+    camera: CameraName = None,
+    board: Annotated[
+        str | None, typer.Option(help="Look for a chessboard: inner corners, such as 9x6.")
+    ] = None,
+    hole_px: Annotated[
+        tuple[float, float] | None,
+        typer.Option(help="Look for dark round holes: least and greatest radius, px."),
+    ] = None,
+    once: Annotated[bool, typer.Option("--once", help="One exposure, one table.")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="One exposure, as JSON.")] = False,
+) -> None:
+    """Show sharpness, light, overlap and what is found, live until Ctrl-C; moves nothing."""
+    pattern = None if board is None else _board(board)
+    device = chosen(cell_file, head, camera)
+    if as_json:
+        seen = asyncio.run(_one(device, pattern, hole_px))
+        typer.echo(json.dumps(asdict(seen), indent=2))
+    elif once:
+        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px))))
+    else:
+        # Ctrl-C is how this command ends; the camera is let go on the way out.
+        with suppress(KeyboardInterrupt):
+            asyncio.run(_follow(device, pattern, hole_px))
+
+
+async def _one(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> FocusView:
+    async with device.device:
+        return await _look(device, board, holes)
+
+
+async def _follow(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> None:
+    sharpest: dict[str, float] = {}
+    async with device.device:
+        with Live(auto_refresh=False) as live:
+            while True:
+                seen = await _look(device, board, holes)
+                for one in seen.sides:
+                    if one.figures.blur_px is not None:
+                        before = sharpest.get(one.side, one.figures.blur_px)
+                        sharpest[one.side] = min(before, one.figures.blur_px)
+                live.update(screen(device.name, seen, sharpest), refresh=True)
+
+
+async def _look(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> FocusView:
+    began_s = now_s()
+    exposed = await device.expose()
+    took_s = now_s() - began_s
+    return await asyncio.to_thread(looked_at, exposed, took_s, board, holes)
+
+
+def _board(corners: str) -> CalibrationBoard:
+    try:
+        columns, rows = (int(part) for part in corners.lower().split("x"))
+        # The size of the squares does not matter for finding them.
+        return CalibrationBoard(columns, rows, square_m=1.0)
+    except ValueError as error:
+        raise typer.BadParameter(f"--board {corners}: inner corners such as 9x6") from error

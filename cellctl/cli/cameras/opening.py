@@ -1,0 +1,101 @@
+"""Finds the camera or the stereo head that a command names, and takes exposures of it."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Annotated, Any
+
+import cv2
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from cellctl.cell.driver_object import driver_object
+from cellctl.config import CellConfig, load_cell
+from cellctl.errors.config import DeviceNotInCell
+from cellctl.interfaces.camera import CameraImage, PixelFormat
+from cellctl.interfaces.exposure import ExposureRecord
+from cellctl.interfaces.stereo_camera import Image, StereoPair
+
+CellFile = Annotated[Path, typer.Argument(help="The cell's TOML file.")]
+HeadName = Annotated[str | None, typer.Option(help="A stereo head of the cell file.")]
+CameraName = Annotated[str | None, typer.Option(help="A single camera of the cell file.")]
+_HEADS, _CAMERAS = "stereo_cameras", "cameras"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class View:
+    """One image of an exposure."""
+
+    side: str
+    """``left`` or ``right`` of a head; empty for a single camera."""
+    pixels: NDArray[Any]
+    """As the driver hands it on; red first where it is coloured."""
+    pixel_format: PixelFormat
+    exposure: ExposureRecord | None
+
+    @property
+    def grey(self) -> Image:
+        """Reduced to 8 bit grey, shape (height, width)."""
+        if self.pixel_format is PixelFormat.RGB8:
+            return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
+        if self.pixel_format is PixelFormat.MONO16:
+            bits = 16 if self.exposure is None else self.exposure.bits
+            return np.asarray(self.pixels >> (bits - 8), dtype=np.uint8)
+        return np.asarray(self.pixels, dtype=np.uint8)
+
+
+@dataclass(frozen=True, slots=True)
+class Exposed:
+    """One exposure of a head or a camera."""
+
+    views: tuple[View, ...]
+    time_s: float
+    """Monotonic."""
+    frame_id: int
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The device of a command, not connected."""
+
+    name: str
+    driver: str
+    device: Any
+    """A ``StereoCamera`` or a ``Camera``."""
+
+    async def expose(self) -> Exposed:
+        """Take one exposure; raises what the driver raises."""
+        taken = await self.device.grab()
+        views = _pair(taken) if isinstance(taken, StereoPair) else _single(taken)
+        return Exposed(views, taken.time_s, taken.frame_id)
+
+
+def chosen(cell_file: Path, head: str | None, camera: str | None) -> Chosen:
+    """The device that a command names; raises ``DeviceNotInCell`` or a fault of the cell file."""
+    if (head is None) == (camera is None):
+        raise typer.BadParameter("give one of --head NAME and --camera NAME")
+    cell = load_cell(cell_file)
+    section, name = (_HEADS, head) if head is not None else (_CAMERAS, camera or "")
+    found = cell.section(section).get(name)
+    if found is None:
+        raise DeviceNotInCell(f"{cell_file} has no {section}.{name}; {_there_is(cell)}")
+    return Chosen(name, found.driver, driver_object(section, name, found))
+
+
+def _there_is(cell: CellConfig) -> str:
+    names = {option: cell.section(section) for option, section in _OPTIONS.items()}
+    there = [f"{option} {', '.join(found)}" for option, found in names.items() if found]
+    return "it has " + ("; ".join(there) or "no camera")
+
+
+_OPTIONS = {"--head": _HEADS, "--camera": _CAMERAS}
+
+
+def _single(image: CameraImage) -> tuple[View, ...]:
+    return (View("", image.pixels, image.pixel_format, image.exposure),)
+
+
+def _pair(pair: StereoPair) -> tuple[View, ...]:
+    left, right = pair.exposures or (None, None)
+    one = View("left", pair.left, PixelFormat.MONO8, left)
+    return one, replace(one, side="right", pixels=pair.right, exposure=right)

@@ -1,0 +1,150 @@
+"""Cameras that lack features, name them by another edition of the standard, or were left set up."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellctl.clock import now_s
+from cellctl.errors.camera import CameraFeatureRefused
+from drivers.camera.gige.config import GigeCameraConfig, Selection
+from drivers.camera.gige.features import Features
+from fakes.gentl.build import SOURCES, build_producer
+from fakes.gentl.cameras import FakeCameras, Format, expected_image
+from tests.wire.gige.conftest import LEFT, camera
+
+AUTOMATIC = """
+  <Enumeration Name="ExposureAuto" NameSpace="Standard">
+    <EnumEntry Name="Off" NameSpace="Standard"><Value>0</Value></EnumEntry>
+    <EnumEntry Name="Continuous" NameSpace="Standard"><Value>1</Value></EnumEntry>
+    <pValue>ExposureAutoReg</pValue>
+  </Enumeration>
+  <IntReg Name="ExposureAutoReg"><Address>0x60</Address><Length>4</Length>
+    <AccessMode>RW</AccessMode><pPort>Device</pPort><Sign>Unsigned</Sign>
+    <Endianess>LittleEndian</Endianess></IntReg>
+"""
+
+
+def producer_of(folder: Path, description: str) -> Path:
+    path = folder / "camera.xml"
+    path.write_text(description, encoding="utf-8")
+    return build_producer(folder, camera_xml=path)
+
+
+def description() -> str:
+    return (SOURCES / "camera.xml").read_text(encoding="utf-8")
+
+
+def without(name: str, text: str) -> str:
+    """The description without a feature, and without its place in a category."""
+    text = text.replace(f"    <pFeature>{name}</pFeature>\n", "")
+    found = re.subn(rf'  <(\w+) Name="{name}" .*?</\1>\n', "", text, flags=re.DOTALL)
+    assert found[1] == 1
+    return found[0]
+
+
+async def test_no_software_trigger(tmp_path: Path, fakes: FakeCameras) -> None:
+    producer = producer_of(tmp_path, without("TriggerSoftware", description()))
+    with pytest.raises(CameraFeatureRefused, match="no software trigger"):
+        await camera(producer).connect()
+    assert fakes.opened(LEFT) == 0
+    async with camera(producer, trigger="none") as eye:
+        assert (await eye.grab()).pixels.shape == (48, 64)
+
+
+async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCameras) -> None:
+    text = description()
+    for name in ("TriggerSelector", "Gain", "DeviceSerialNumber", "AcquisitionMode"):
+        text = without(name, text)
+    async with camera(producer_of(tmp_path, text)) as eye:
+        image = await eye.grab()
+        assert LEFT in await eye.serial_number()
+    assert image.exposure is not None
+    assert image.exposure.gain_db is None
+    assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
+
+
+async def test_the_exposure_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) -> None:
+    text = description().replace('"ExposureTime"', '"ExposureTimeAbs"')
+    text = text.replace("<pFeature>ExposureTime<", "<pFeature>ExposureTimeAbs<")
+    async with camera(producer_of(tmp_path, text), exposure_s=0.002) as eye:
+        image = await eye.grab()
+    assert image.exposure is not None
+    assert image.exposure.exposure_s == pytest.approx(0.002)
+
+
+async def test_an_automatic_exposure_is_switched_off_first(
+    tmp_path: Path, fakes: FakeCameras
+) -> None:
+    """As long as it is on the exposure is read-only, as in many cameras."""
+    listed, opening = "    <pFeature>ExposureTime</pFeature>\n", '<Float Name="ExposureTime" '
+    text = description().replace(listed, listed + listed.replace("Time", "Auto"))
+    lock = "<pIsLocked>ExposureAutoReg</pIsLocked>"
+    head = f'{opening}NameSpace="Standard">'
+    assert head in text
+    text = text.replace(f"  {head}", f"{AUTOMATIC}  {head}{lock}")
+    producer = producer_of(tmp_path, text)
+    automatic = {"ExposureAuto": "Continuous"}
+    async with camera(producer, exposure_s=None, features=automatic) as eye:
+        image = await eye.grab()
+        assert image.exposure is not None
+        assert image.exposure.exposure_s is None
+    async with camera(producer, exposure_s=0.003) as eye:
+        image = await eye.grab()
+        assert image.exposure is not None
+        assert image.exposure.exposure_s == pytest.approx(0.003)
+
+
+@pytest.mark.parametrize("pixel_format", ["Mono8", "Mono12", "Mono12Packed"])
+async def test_padded_lines_and_packed_samples(
+    tmp_path: Path, fakes: FakeCameras, pixel_format: Format
+) -> None:
+    producer = build_producer(tmp_path, "-DLINE_PADDING=12")
+    async with camera(producer, pixel_format=pixel_format) as eye:
+        image = await eye.grab()
+    assert np.array_equal(image.pixels, expected_image(1, 64, 48, pixel_format))
+
+
+async def test_a_clock_of_ticks(tmp_path: Path, fakes: FakeCameras) -> None:
+    producer = build_producer(tmp_path, "-DTICKS_PER_S=125000000")
+    async with camera(producer) as eye:
+        before_s = now_s()
+        image = await eye.grab()
+        after_s = now_s()
+    assert image.exposure is not None
+    assert image.exposure.device_time_ns is not None
+    assert before_s <= image.exposure.device_time_ns * 1e-9 <= after_s
+
+
+class Node:
+    """A feature with a value, and with one for each entry of a selector."""
+
+    def __init__(self, value: object, symbolics: list[str] | None = None) -> None:
+        self.value = value
+        self.symbolics = symbolics
+
+
+class TriggerNodes:
+    """The triggers of a camera: TriggerMode belongs to what TriggerSelector selects."""
+
+    def __init__(self) -> None:
+        self.modes = {"AcquisitionStart": Node("On"), "FrameStart": Node("Off")}
+        self.TriggerSelector = Node("AcquisitionStart", list(self.modes))
+        self.TriggerSource = Node("Line1")
+        self.TriggerSoftware = Node(None)
+
+    @property
+    def TriggerMode(self) -> Node:
+        return self.modes[str(self.TriggerSelector.value)]
+
+
+def test_another_trigger_that_was_left_on_is_switched_off() -> None:
+    nodes = TriggerNodes()
+    settings = GigeCameraConfig(camera=Selection(serial_number=LEFT))
+    Features(nodes, "eye").set_up(settings)
+    assert {name: mode.value for name, mode in nodes.modes.items()} == {
+        "AcquisitionStart": "Off",
+        "FrameStart": "On",
+    }
+    assert nodes.TriggerSource.value == "Software"
