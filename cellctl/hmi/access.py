@@ -107,3 +107,5 @@ def visitor(request: Request) -> Visitor:
 
 
 Asked = Annotated[Visitor, Depends(visitor)]
+OWN_PAGE = [Depends(require_own_page)]
+"""For routes that change something. As a dependency it comes before the body is judged."""

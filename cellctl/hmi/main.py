@@ -1,6 +1,8 @@
 """`cellctl-hmi`: serve the operator page and the HTTP API of one cell."""
 
 import asyncio
+import contextlib
+import json
 import socket
 import sys
 from pathlib import Path
@@ -60,6 +62,16 @@ def secret() -> None:
 
 def run(settings: PageSettings) -> None:
     """Serve until a signal; raises ``PageCannotServe``."""
+    server, listener = page_server(settings)
+    # For whoever started it: with port 0 nobody else knows the address.
+    typer.echo(json.dumps({"ready": True, "url": url_of(listener)}))
+    sys.stdout.flush()
+    with contextlib.suppress(KeyboardInterrupt):  # how uvicorn ends after a Ctrl-C
+        asyncio.run(server.serve(sockets=[listener]))
+
+
+def page_server(settings: PageSettings) -> tuple[uvicorn.Server, socket.socket]:
+    """The server, and its socket, which takes connections already; raises ``PageCannotServe``."""
     listener = _listener(settings)
     config = uvicorn.Config(
         hmi_app(settings),
@@ -71,11 +83,13 @@ def run(settings: PageSettings) -> None:
         # What a proxy on this PC says of its clients is believed; nobody else's word is.
         forwarded_allow_ips="127.0.0.1",
     )
+    return uvicorn.Server(config), listener
+
+
+def url_of(listener: socket.socket) -> str:
+    """The address of the page."""
     host, port = listener.getsockname()[:2]
-    # For whoever started it: with port 0 nobody else knows the address.
-    typer.echo(f'{{"ready": true, "url": "http://{host}:{port}/"}}')
-    sys.stdout.flush()
-    asyncio.run(uvicorn.Server(config).serve(sockets=[listener]))
+    return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
 
 
 def _listener(settings: PageSettings) -> socket.socket:
@@ -88,6 +102,7 @@ def _listener(settings: PageSettings) -> socket.socket:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
         listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, TAKE_TIMEOUT_MS)
         listener.bind((settings.host, settings.port))
+        listener.listen(CONNECTIONS)
     except OSError as error:
         listener.close()
         raise PageCannotServe(f"{settings.host}:{settings.port}: {error.strerror}") from error

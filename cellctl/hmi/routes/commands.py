@@ -16,7 +16,7 @@ from cellctl.api.local.messages import (
 )
 from cellctl.clock import now_s
 from cellctl.errors.local import DaemonNotReached
-from cellctl.hmi.access import Asked, Visitor, require_own_page
+from cellctl.hmi.access import OWN_PAGE, Asked, Visitor
 from cellctl.hmi.daemon_link import AnswerMissing
 from cellctl.hmi.problems import Problem
 from cellctl.packml.reject import RejectCode
@@ -45,14 +45,13 @@ class CommandBody(BaseModel):
 Key = Annotated[str, Header(alias="Idempotency-Key", pattern=r"^[A-Za-z0-9-]{8,64}$")]
 
 
-@router.post("/commands", status_code=202)
+@router.post("/commands", status_code=202, dependencies=OWN_PAGE)
 async def command(request: Request, body: CommandBody, key: Key, visitor: Asked) -> dict[str, Any]:
     """Have a command obeyed; the same key again gives the same answer, and obeys nothing twice.
 
     403 for the role or the place, 409 when the cell refuses, 412 when it has changed since it was
     looked at, 503 when the daemon is away, 504 when nobody knows whether it was taken.
     """
-    require_own_page(request)
     parts = request.app.state.parts
     name = body.command.request
     if name not in UNLIMITED:

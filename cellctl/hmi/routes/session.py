@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
-from cellctl.hmi.access import COOKIE, Asked, address_of, require_own_page
+from cellctl.hmi.access import COOKIE, OWN_PAGE, Asked, address_of
 from cellctl.hmi.problems import Problem
 
 router = APIRouter(tags=["session"])
@@ -28,10 +28,9 @@ async def who(visitor: Asked) -> dict[str, Any]:
     return {"person": visitor.person, "role": visitor.role, "panel": visitor.panel}
 
 
-@router.post("/session")
+@router.post("/session", dependencies=OWN_PAGE)
 async def sign_in(request: Request, response: Response, body: SignIn) -> dict[str, Any]:
     """Sign in; the answer sets a cookie that scripts cannot read."""
-    require_own_page(request)
     parts = request.app.state.parts
     address = address_of(request)
     wait_s = parts.sign_ins.wait_s(address)
@@ -48,10 +47,9 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> dict[st
     return {"person": person.name, "role": person.role, "panel": panel}
 
 
-@router.delete("/session")
+@router.delete("/session", dependencies=OWN_PAGE)
 async def sign_out(request: Request, response: Response) -> dict[str, Any]:
     """Sign out; also for somebody who is not signed in."""
-    require_own_page(request)
     parts = request.app.state.parts
     parts.sessions.close(request.cookies.get(COOKIE, ""))
     response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
