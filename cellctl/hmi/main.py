@@ -1,7 +1,6 @@
 """`cellctl-hmi`: serve the operator page and the HTTP API of one cell."""
 
 import asyncio
-import contextlib
 import json
 import socket
 import sys
@@ -66,8 +65,7 @@ def run(settings: PageSettings) -> None:
     # For whoever started it: with port 0 nobody else knows the address.
     typer.echo(json.dumps({"ready": True, "url": url_of(listener)}))
     sys.stdout.flush()
-    with contextlib.suppress(KeyboardInterrupt):  # how uvicorn ends after a Ctrl-C
-        asyncio.run(server.serve(sockets=[listener]))
+    asyncio.run(server.serve(sockets=[listener]))
 
 
 def page_server(settings: PageSettings) -> tuple[uvicorn.Server, socket.socket]:

@@ -142,7 +142,7 @@ def test_another_page_cannot_make_the_browser_command_the_cell(
     page: Client, paper: PaperDaemon, headers: dict[str, str], status: int
 ) -> None:
     page.sign_in("anna")
-    assert page.command(RESET, **headers).status == status
+    assert page.command(RESET, 7, **headers).status == status
     assert paper.asked == []
 
 

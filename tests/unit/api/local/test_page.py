@@ -48,14 +48,14 @@ class Page:
 
     def wanted(self, command: CommandRequest, **by: Any) -> PageCommand:
         self._keys += 1
-        by = {
+        given: dict[str, Any] = {
             "person": "anna",
             "role": "operate",
             "panel": "panel-1",
             "decision": self.view.look(),
             "key": f"key-{self._keys:05d}",
         } | by
-        request = PageCommand(on_behalf=OnBehalf(**by), command=command)
+        request = PageCommand(on_behalf=OnBehalf(**given), command=command)
         assert parse_request(to_line(request)) == request, "survives the wire"
         return request
 
