@@ -78,7 +78,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.push_async_callback(unit.background.drain)
         await unit.open()
         arbiter, plc = await _command_path(config.plc, unit, archive)
-        local = local_api(cell, unit, arbiter, archive, data_dir)
+        local = local_api(cell, unit, arbiter, archive, data_dir, registers=plc.shown)
         publisher = StatusPublisher(unit, partial(_show, plc, local.feed))
         stack.push_async_callback(plc.stop)
         await plc.start()  # first of all: a second daemon must not take over the robots

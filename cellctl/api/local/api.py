@@ -1,7 +1,9 @@
 """Wires up the local API of one daemon."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from cellctl.api.local.live_feed import LiveFeed
 from cellctl.api.local.live_view import LiveView
@@ -30,13 +32,22 @@ def local_api(
     arbiter: CommandArbiter,
     archive: AsyncRunStore,
     data_dir: Path,
+    *,
+    registers: Callable[[], list[dict[str, Any]]],
 ) -> LocalApiParts:
-    """``data_dir`` has the socket unless cell file or systemd say otherwise."""
+    """``data_dir`` has the socket unless cell file or systemd say otherwise.
+
+    ``registers`` gives what the line PLC and the cell show each other.
+    """
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
     reporter = Reporter(cell, unit, arbiter, archive)
     view = LiveView(cell, unit, arbiter)
-    feed = LiveFeed(view, reporter.description)
+
+    async def describe() -> dict[str, Any]:
+        return {**await reporter.description(), "registers": registers()}
+
+    feed = LiveFeed(view, describe)
     # The terminal is given the way to submit a command and nothing else of the arbiter, so that it
     # cannot pass by the validation.
     terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter, view.look)

@@ -7,11 +7,12 @@ import * as calibration from "./calibration.js";
 import { h, shown } from "./dom.js";
 import * as health from "./health.js";
 import * as history from "./history.js";
+import * as line from "./line.js";
 import { ageS, cell, open, stale, start, watch } from "./live.js";
 import * as run from "./run.js";
 import { change, load, other, t } from "./texts.js";
 
-const SCREENS = { run, alarms, history, calibration, health };
+const SCREENS = { run, alarms, history, calibration, line, health };
 const $ = (id) => document.getElementById(id);
 let since = performance.now();
 

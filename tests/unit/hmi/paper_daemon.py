@@ -94,6 +94,16 @@ class PaperDaemon:
             ],
             "recipes": [{"number": 1, "name": "a part"}],
             "procedures": [{"number": 101, "name": "calibrate head"}],
+            "registers": [
+                {
+                    "address": 2,
+                    "name": "state",
+                    "text": "PackML StateCurrent",
+                    "unit": "",
+                    "writer": "cell",
+                    "value": 4,
+                }
+            ],
             "last_run": None,
             "records": "",
         }

@@ -238,6 +238,7 @@ def test_all_screens_show_what_there_is(screen: Screen) -> None:
     for name, words in {
         "history": "SAT-2",
         "calibration": "calibrate head",
+        "line": "PackML StateCurrent",
         "health": "shift begins",
         "alarms": "No alarms",
     }.items():
