@@ -33,7 +33,7 @@ class Client:
     def request(self, method: str, path: str, body: Any = None, **headers: str) -> Reply:
         """Headers with underscores for dashes; an empty one is left out."""
         address = urlsplit(self.url).netloc
-        connection = http.client.HTTPConnection(address, timeout=20)
+        connection = http.client.HTTPConnection(address, timeout=60)
         sent = {"Origin": f"http://{address}", "Content-Type": "application/json"} | self.always
         if self.cookie:
             sent["Cookie"] = self.cookie

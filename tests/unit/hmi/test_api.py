@@ -222,6 +222,14 @@ def test_files_of_a_run_cannot_become_a_page_of_ours(page: Client, tmp_path: Pat
     assert page.get("runs/1/artefacts/look.png").status == 410
 
 
+def test_the_report_of_a_run_is_a_file_to_keep(page: Client) -> None:
+    report = page.get("runs/1/report")
+    assert (report.status, report.headers["content-type"]) == (200, "text/html; charset=utf-8")
+    assert "attachment" in report.headers["content-disposition"]
+    assert b"SAT-1" in report.body
+    problem(page.get("runs/99/report"), 404, "fault-804")
+
+
 def test_the_audit_log_is_for_those_who_maintain(page: Client) -> None:
     page.sign_in("anna")
     problem(page.get("audit"), 403, "role")
