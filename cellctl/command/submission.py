@@ -24,7 +24,7 @@ class Submission:
     command: UnitCommand
 
     @property
-    def reference(self) -> Mapping[str, int]:
+    def reference(self) -> Mapping[str, int | str]:
         """How the client itself identifies the command; goes into the audit log."""
         return {}
 

@@ -72,6 +72,9 @@ class LocalApi(Section):
     directory of the service, else in data_dir."""
     group: str = ""
     """Whose members may command the cell; empty for the group of the daemon."""
+    page_user: str = "cellctl-hmi"
+    """The user of the operator page's process; it may say which person asks. The daemon's own user
+    may, too."""
 
 
 class CellConfig(Section):

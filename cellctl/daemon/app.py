@@ -13,7 +13,8 @@ from types import TracebackType
 from typing import Any
 
 from cellctl import log
-from cellctl.api.local.api import local_server
+from cellctl.api.local.api import local_api
+from cellctl.api.local.live_feed import LiveFeed
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
@@ -27,6 +28,7 @@ from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
+from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.unit import UnitController
 
 _log = log.get(__name__)
@@ -76,12 +78,12 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.push_async_callback(unit.background.drain)
         await unit.open()
         arbiter, plc = await _command_path(config.plc, unit, archive)
-        publisher = StatusPublisher(unit, plc.publish)
+        local = local_api(cell, unit, arbiter, archive, data_dir, registers=plc.shown)
+        publisher = StatusPublisher(unit, partial(_show, plc, local.feed))
         stack.push_async_callback(plc.stop)
         await plc.start()  # first of all: a second daemon must not take over the robots
-        local = local_server(cell, unit, arbiter, archive, data_dir)
-        stack.push_async_callback(local.stop)
-        await local.start()
+        stack.push_async_callback(local.server.stop)
+        await local.server.start()
         stack.push_async_callback(cell.disconnect)
         stack.push_async_exit(partial(_end, unit))
         await until_told(
@@ -111,6 +113,12 @@ async def _command_path(
         previous_seq=await archive.do(RunStore.line_seq),
     )
     return arbiter, plc
+
+
+def _show(plc: PlcInterface, feed: LiveFeed, status: CellStatus) -> None:
+    """Line and pages are shown the same snapshot: it is built once."""
+    plc.publish(status)
+    feed.publish(status)
 
 
 async def until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:

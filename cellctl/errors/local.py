@@ -67,3 +67,31 @@ class CommandMissedItsGoal(LocalError):
     cause = "A fault, another command, or a state that takes longer than the command waits."
     remedy = "Look at `cellctl status`: a fault is shown there with its remedy."
     reaction = Reaction.WARN
+
+
+class NotThePage(LocalError):
+    """A command on behalf of a person that this user may not bring, or not in this way."""
+
+    number = 717
+    text = "A command on behalf of a person is not accepted"
+    cause = "Its sender is not the user of the operator page's process, or its key was used before."
+    remedy = "Set local_api.page_user in the cell file to the user that cellctl-hmi runs as."
+    reaction = Reaction.WARN
+
+
+class PageSettingsWrong(LocalError):
+    """The settings of the operator page cannot be used."""
+
+    number = 718
+    text = "The settings of the operator page cannot be used"
+    cause = "The file is missing, not TOML, or a value in it is wrong; see the detail."
+    remedy = "Correct the file; docs/operator-page.md lists its keys."
+
+
+class PageCannotServe(LocalError):
+    """The page's process cannot listen."""
+
+    number = 719
+    text = "The operator page cannot be served"
+    cause = "Its port is taken by another program, or the address is not of this PC."
+    remedy = "Give another port or address in the settings of the page."

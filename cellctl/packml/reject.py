@@ -25,6 +25,8 @@ class RejectCode(IntEnum):
     ALARM_UNKNOWN = 0x109
     SUPERSEDED = 0x10A
     LINE_IN_CONTROL = 0x10B
+    ROLE_MISSING = 0x10C
+    NOT_AT_A_PANEL = 0x10D
 
     @property
     def text(self) -> str:
@@ -51,5 +53,7 @@ _TEXT = {
     RejectCode.RECORDS_NOT_READY: "the run store cannot take a run",
     RejectCode.ALARM_UNKNOWN: "no active alarm with this number",
     RejectCode.SUPERSEDED: "a newer command arrived before this one was taken",
-    RejectCode.LINE_IN_CONTROL: "to the terminal only: the line PLC is in control",
+    RejectCode.LINE_IN_CONTROL: "to terminal and page only: the line PLC is in control",
+    RejectCode.ROLE_MISSING: "to the page only: the person does not have the role for it",
+    RejectCode.NOT_AT_A_PANEL: "to the page only: what may move the cell needs a panel at the cell",
 }

@@ -14,6 +14,8 @@ class Source(StrEnum):
     """The line PLC. It alone commands motion while it is alive and the unit is in Production."""
     TERMINAL = "terminal"
     """An operator at the cell's own PC."""
+    PAGE = "page"
+    """A person who has signed in on the operator page."""
 
 
 class Options(IntFlag):

@@ -1,6 +1,10 @@
 """The active alarms: each stays active, over restarts too, until somebody acknowledges it."""
 
+from dataclasses import dataclass
+from datetime import datetime
+
 from cellctl import log
+from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
@@ -9,23 +13,41 @@ from cellctl.runtime.background import Background
 _log = log.get(__name__)
 
 
+@dataclass(frozen=True, slots=True)
+class ActiveAlarm:
+    """The first occurrence of a fault since its number was acknowledged last."""
+
+    number: int
+    text: str
+    """With the facts of this occurrence."""
+    since: datetime
+    """UTC."""
+    run: int | None
+
+
 class Alarms:
     """The active alarms by number, the oldest first; the store has every single one."""
 
     def __init__(self, archive: AsyncRunStore, background: Background) -> None:
         self._archive = archive
         self._background = background
-        self._active: dict[int, None] = {}
+        self._active: dict[int, ActiveAlarm] = {}
 
     @property
     def numbers(self) -> tuple[int, ...]:
         """Each fault number once."""
         return tuple(self._active)
 
+    @property
+    def active(self) -> tuple[ActiveAlarm, ...]:
+        """One for each number, the oldest first."""
+        return tuple(self._active.values())
+
     async def open(self) -> None:
         """Take over what was active before the restart."""
         for alarm in await self._archive.do(RunStore.active_alarms):
-            self._active.setdefault(alarm.number)
+            known = ActiveAlarm(alarm.number, alarm.text, alarm.time, alarm.run)
+            self._active.setdefault(alarm.number, known)
         if self._active:
             _log.warning("alarms not yet acknowledged", numbers=self.numbers)
 
@@ -33,8 +55,8 @@ class Alarms:
         """A fault has come; written to the store in the background."""
         # The list changes at once and the store later: the line must see the alarm also when the
         # disk is what has failed.
-        self._active.setdefault(error.number)
         text = "; ".join([str(error), *getattr(error, "__notes__", ())])
+        self._active.setdefault(error.number, ActiveAlarm(error.number, text, utc_now(), run))
         self._background.start(self._archive.do(RunStore.add_alarm, run, error.number, text))
 
     async def acknowledge(self, number: int, who: str) -> bool:

@@ -17,6 +17,8 @@ class Progress:
     iteration: int = 0
     error_mm_deg: tuple[float, ...] = (math.nan,) * 6
     """x, y, z in mm, rx, ry, rz in degrees of the part against its target."""
+    error_limits_mm_deg: tuple[float, ...] = (math.nan,) * 6
+    """What the magnitude of each component may be at most."""
     force_peaks: tuple[float, ...] = (math.nan,) * 6
     """Greatest magnitude per component in the frame of the part, N and N·m."""
     force_limit_n: float = math.nan

@@ -124,6 +124,7 @@ def _run(shown: Demo, files: Files, job: Job, console: Console, complaint: Conso
             session.start_fake()
             session.inject(job.faults)
             session.start_daemon()
+            session.start_page()
             code = session.run(calibrate=job.calibrate, stay=job.stay)
         except KeyboardInterrupt:
             console.print("\nstopping the cell …")

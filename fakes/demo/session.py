@@ -1,4 +1,4 @@
-"""One demonstration while it runs: fake cell, daemon, line PLC."""
+"""One demonstration while it runs: fake cell, daemon, operator page, line PLC."""
 
 import time
 from collections.abc import Mapping, Sequence
@@ -13,6 +13,7 @@ from fakes.demo.control import Control
 from fakes.demo.demo import Demo
 from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
+from fakes.demo.page import DemoPage, write_settings
 from fakes.demo.safety import own_calibrations
 from fakes.demo.verdict import why_not_good
 from fakes.sections import Controller
@@ -94,6 +95,13 @@ class Session:
         self._daemon = self._spawn("daemon", command)
         self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
         self._console.print(f"both are up; record and logs in {self._folder}/")
+
+    def start_page(self) -> None:
+        """The operator page, before anything moves: its start takes a second of a processor."""
+        settings, pin = write_settings(self._folder)
+        arguments = ["-m", "cellctl.hmi", "serve", "--settings", str(settings)]
+        url = str(self._spawn("page", arguments).wait_ready()["url"])
+        self._console.print(DemoPage(url, pin).words)
 
     def inject(self, items: Sequence[str]) -> None:
         """Faults of the fake cell, given as device:name."""

@@ -407,3 +407,14 @@ async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
     await line.command(client, 8, Command.UNDEFINED, mode=2)
     assert (await until(client, lambda b: b[DONE] == 8))[RESULT] == Result.GOOD
     await machine.close()
+
+
+async def test_people_are_shown_what_a_plc_reads_and_has_written(line: Line) -> None:
+    port, client = await line.open()
+    await line.command(client, 7, Command.START, serial="SAT-0042")
+    block = await until(client, lambda registers: registers[ACK] == 7)
+    shown = {entry["name"]: entry for entry in port.shown()}
+    for name, address in (("ack_seq", ACK), ("state", STATE), ("reject_code", REJECT)):
+        assert (shown[name]["address"], shown[name]["value"]) == (address, block[address])
+    assert (shown["cmd_seq"]["writer"], shown["cmd_seq"]["value"]) == ("line", "7")
+    assert shown["test_text"]["value"] == "ABCDEF"

@@ -1,7 +1,12 @@
 """Wires up the local API of one daemon."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
+from cellctl.api.local.live_feed import LiveFeed
+from cellctl.api.local.live_view import LiveView
 from cellctl.api.local.reporter import Reporter
 from cellctl.api.local.server import LocalServer
 from cellctl.api.local.socket_file import SocketFile, default_path
@@ -12,18 +17,39 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.runtime.unit import UnitController
 
 
-def local_server(
+@dataclass(frozen=True, slots=True)
+class LocalApiParts:
+    """What the daemon keeps of the local API."""
+
+    server: LocalServer
+    """Not yet listening."""
+    feed: LiveFeed
+
+
+def local_api(
     cell: Cell,
     unit: UnitController,
     arbiter: CommandArbiter,
     archive: AsyncRunStore,
     data_dir: Path,
-) -> LocalServer:
-    """Not yet listening; ``data_dir`` has the socket unless cell file or systemd say otherwise."""
+    *,
+    registers: Callable[[], list[dict[str, Any]]],
+) -> LocalApiParts:
+    """``data_dir`` has the socket unless cell file or systemd say otherwise.
+
+    ``registers`` gives what the line PLC and the cell show each other.
+    """
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
     reporter = Reporter(cell, unit, arbiter, archive)
+    view = LiveView(cell, unit, arbiter)
+
+    async def describe() -> dict[str, Any]:
+        return {**await reporter.description(), "registers": registers()}
+
+    feed = LiveFeed(view, describe)
     # The terminal is given the way to submit a command and nothing else of the arbiter, so that it
     # cannot pass by the validation.
-    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter)
-    return LocalServer(SocketFile(path, settings.group), terminal.handle)
+    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter, view.look)
+    server = LocalServer(SocketFile(path, settings.group), terminal.handle, feed.follow)
+    return LocalApiParts(server, feed)

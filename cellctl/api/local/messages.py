@@ -77,7 +77,42 @@ class AcknowledgeCommand(Message):
 
 
 CommandRequest = PlainCommand | StartCommand | ProcedureCommand | ModeCommand | AcknowledgeCommand
-Request = StatusRequest | CommandRequest
+Role = Literal["view", "operate", "maintain"]
+"""What a person may do on the page; each one includes those before it."""
+Word = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,32}$")]
+"""Goes into the audit log as it is."""
+
+
+class OnBehalf(Message):
+    """The person at a page, as the page's process has identified them."""
+
+    person: Word
+    role: Role
+    panel: Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{0,32}$")] = ""
+    """Name of the panel at the cell; empty for a page elsewhere."""
+    reason: Annotated[str, Field(max_length=200)] = ""
+    """In the person's words, for the audit log."""
+    decision: Annotated[int, Field(ge=0)] | None = None
+    """``decision`` of the newest snapshot that the person has seen."""
+    key: Annotated[str, Field(pattern=r"^[A-Za-z0-9-]{8,64}$")]
+    """The same command twice has the same key, and is obeyed once."""
+
+
+class PageCommand(Message):
+    """A command of a person at a page; only the page's process may send it."""
+
+    request: Literal["page"] = "page"
+    on_behalf: OnBehalf
+    command: Annotated[CommandRequest, Field(discriminator="request")]
+
+
+class FollowRequest(Message):
+    """From now on the daemon pushes the live view, one JSON object a line."""
+
+    request: Literal["follow"] = "follow"
+
+
+Request = StatusRequest | FollowRequest | PageCommand | CommandRequest
 
 
 class Taken(Message):

@@ -1,6 +1,7 @@
 """Compiles the status of the cell for operators, in words; changes nothing."""
 
 import asyncio
+from typing import Any
 
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
 from cellctl.calibration.store.inventory import inventory
@@ -58,6 +59,19 @@ class Reporter:
             good_parts=unit.parts,
             records=records,
         )
+
+    async def description(self) -> dict[str, Any]:
+        """What pages show besides the live values: calibrations, lists to choose from, records."""
+        calibrations = await asyncio.to_thread(self._calibrations)
+        _, last_run, records = await self._from_store()
+        procedures = self._unit.factory.procedures.values()
+        return {
+            "calibrations": [item.model_dump(mode="json") for item in calibrations],
+            "recipes": [{"number": r.id, "name": r.name} for r in self._cell.config.recipes],
+            "procedures": [{"number": one.number, "name": one.label} for one in procedures],
+            "last_run": None if last_run is None else last_run.model_dump(mode="json"),
+            "records": records,
+        }
 
     async def _from_store(self) -> tuple[dict[int, str], RunReport | None, str]:
         """Texts of the alarms, the newest run, and what is wrong with the store."""

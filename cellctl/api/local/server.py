@@ -9,6 +9,7 @@ from cellctl.api.local.messages import (
     REQUEST_LIMIT,
     Answer,
     Failed,
+    FollowRequest,
     Request,
     parse_request,
     to_line,
@@ -21,6 +22,9 @@ from cellctl.errors.local import MessageMalformed
 
 Handle = Callable[[Request, int], Awaitable[Answer]]
 """Answers a request; the second argument is the number of the user who asks."""
+
+Follow = Callable[[asyncio.StreamWriter], Awaitable[None]]
+"""Pushes the live view to a connection until that ends."""
 
 _log = log.get(__name__)
 
@@ -38,13 +42,21 @@ class LocalLimits:
 class LocalServer:
     """Answers the requests of each connection one by one."""
 
-    def __init__(self, file: SocketFile, handle: Handle, limits: LocalLimits | None = None) -> None:
+    def __init__(
+        self,
+        file: SocketFile,
+        handle: Handle,
+        follow: Follow,
+        limits: LocalLimits | None = None,
+    ) -> None:
         self._file = file
         self._handle = handle
+        self._follow = follow
         self._limits = limits or LocalLimits()
         self._server: asyncio.Server | None = None
         self._clients: dict[asyncio.Task[None], None] = {}
         self._handling: set[asyncio.Task[Answer]] = set()
+        self._followers: set[asyncio.Task[None]] = set()
 
     async def start(self) -> None:
         """Listen; raises ``LocalApiInUse`` or ``CannotServeLocally``."""
@@ -63,7 +75,7 @@ class LocalServer:
             self._file.remove()
         # Commands that were begun are awaited, not cancelled: an Abort that has been accepted is
         # carried out.
-        clients = tuple(self._clients)
+        clients = (*self._clients, *self._followers)
         for client in clients:
             client.cancel()
         await asyncio.gather(*clients, *self._handling, return_exceptions=True)
@@ -83,6 +95,7 @@ class LocalServer:
             _log.info("local client dropped", reason=type(error).__name__)
         finally:
             self._clients.pop(task, None)
+            self._followers.discard(task)
             writer.transport.abort()
 
     async def _serve(
@@ -92,7 +105,11 @@ class LocalServer:
         while goes_on:
             try:
                 line = await self._line(reader)
-                answer = await self._answer(line, uid)
+                request = _parsed(line, uid)
+                if isinstance(request, FollowRequest):
+                    await self._push(writer)
+                    return
+                answer = await self._answer(request, uid)
             except EOFError:
                 return
             except asyncio.LimitOverrunError:
@@ -114,13 +131,18 @@ class LocalServer:
         async with asyncio.timeout(self._limits.request_s):
             return first + await reader.readuntil()
 
-    async def _answer(self, line: bytes, uid: int) -> Answer:
-        """The answer to one line. A command that was begun ends even when its client is gone."""
-        try:
-            request = parse_request(line)
-        except MessageMalformed as fault:
-            _log.warning("local request malformed", uid=uid, fault=str(fault))
-            return Failed(number=fault.number, text=str(fault))
+    async def _push(self, writer: asyncio.StreamWriter) -> None:
+        """Push until the connection ends. A follower is no client: newer ones do not drop it."""
+        task = asyncio.current_task()
+        assert task is not None
+        self._clients.pop(task, None)
+        self._followers.add(task)
+        await self._follow(writer)
+
+    async def _answer(self, request: Request | Failed, uid: int) -> Answer:
+        """The answer to a request. A command that was begun ends even when its client is gone."""
+        if isinstance(request, Failed):
+            return request
         task = asyncio.create_task(_run(self._handle, request, uid))
         self._handling.add(task)
         task.add_done_callback(self._handling.discard)
@@ -133,6 +155,14 @@ class LocalServer:
         _log.error("local request failed", uid=uid, fault=str(error), exc_info=error)
         known = error if isinstance(error, CellError) else _unexpected(error)
         return Failed(number=known.number, text=str(known))
+
+
+def _parsed(line: bytes, uid: int) -> Request | Failed:
+    try:
+        return parse_request(line)
+    except MessageMalformed as fault:
+        _log.warning("local request malformed", uid=uid, fault=str(fault))
+        return Failed(number=fault.number, text=str(fault))
 
 
 def _unexpected(error: BaseException) -> CellError:

@@ -1,5 +1,6 @@
 """Turns the requests of operators into commands, which are validated like those of the line PLC."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from cellctl import log
@@ -7,7 +8,9 @@ from cellctl.api.local.messages import (
     AcknowledgeCommand,
     Answer,
     CommandRequest,
+    FollowRequest,
     ModeCommand,
+    PageCommand,
     PlainCommand,
     ProcedureCommand,
     Refused,
@@ -17,6 +20,7 @@ from cellctl.api.local.messages import (
     StatusRequest,
     Taken,
 )
+from cellctl.api.local.page_desk import PageDesk
 from cellctl.api.local.reporter import Reporter
 from cellctl.api.local.users import Users
 from cellctl.command.submission import Submission, Submit
@@ -35,8 +39,15 @@ class TerminalSubmission(Submission):
     """Remembers the state that its command has led to."""
 
     machine: PackMLMachine
+    details: Mapping[str, str] = field(default_factory=dict)
+    """What the audit log is told besides the command."""
     state: list[str] = field(default_factory=list)
     """Empty until the command is being executed."""
+
+    @property
+    def reference(self) -> Mapping[str, int | str]:
+        """Nothing for a terminal."""
+        return self.details
 
     def taken(self) -> None:
         """Before the answer waits for its record: a short state may have ended until then."""
@@ -47,13 +58,20 @@ class Terminal:
     """Handles the requests of the local API. Belongs to one event loop."""
 
     def __init__(
-        self, config: CellConfig, machine: PackMLMachine, submit: Submit, reporter: Reporter
+        self,
+        config: CellConfig,
+        machine: PackMLMachine,
+        submit: Submit,
+        reporter: Reporter,
+        decision: Callable[[], int],
     ) -> None:
+        """``decision``: count of what a person decides upon, see ``LiveView``."""
         self._config = config
         self._machine = machine
         self._submit = submit
         self._reporter = reporter
         self._users = Users()
+        self._desk = PageDesk(config.local_api.page_user, self._users, decision, self._obey)
 
     async def handle(self, request: Request, uid: int) -> Answer:
         """Answer a request of the user with this number.
@@ -62,17 +80,30 @@ class Terminal:
         """
         if isinstance(request, StatusRequest):
             return Status(report=await self._reporter.report())
+        if isinstance(request, PageCommand):
+            return await self._desk.handle(request, uid)
+        assert not isinstance(request, FollowRequest), "the server sees to those who follow"
         # Before the user is looked up, because the time of a command is that at which it was given.
         command = self._command(request)
         if not command.ends_motion:
             # A directory service may take a second, which a Stop cannot wait.
             await self._users.look_up(uid)
-        command = replace(command, person=self._users.name(uid))
-        # The same validator and queue as for the line; the terminal decides nothing by itself.
-        submission = TerminalSubmission(command, self._machine)
+        return await self._submitted(replace(command, person=self._users.name(uid)), {})
+
+    async def _obey(
+        self, request: CommandRequest, person: str, details: Mapping[str, str]
+    ) -> Taken | Refused:
+        """A command of a page, whose person is known."""
+        command = replace(self._command(request), source=Source.PAGE, person=person)
+        return await self._submitted(command, details)
+
+    async def _submitted(self, command: UnitCommand, details: Mapping[str, str]) -> Taken | Refused:
+        # The same validator and queue as for the line; nothing is decided here.
+        submission = TerminalSubmission(command, self._machine, details)
         code = await self._submit(submission)
         state = (submission.state or [self._machine.state.name])[0]
-        _log.info("local command", who=command.who, cmd=request.request, reject=code.text)
+        name = Command(command.cntrl_cmd).name.lower()
+        _log.info("local command", who=command.who, cmd=name, reject=code.text)
         if code is RejectCode.NONE:
             return Taken(state=state)
         return Refused(code=code, text=code.text, state=state)

@@ -4,12 +4,14 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from functools import partial
 from importlib.metadata import version
+from typing import Any
 
 from cellctl import log
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
-from cellctl.api.modbus.register_values import input_block
+from cellctl.api.modbus.register_map import HOLDING, INPUT, Item
+from cellctl.api.modbus.register_values import Value, input_block
 from cellctl.api.modbus.registers import RegisterFile
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values
@@ -79,6 +81,19 @@ class PlcInterface:
     def counters(self) -> dict[str, int]:
         """Connections, requests and why connections ended, for the log."""
         return dict(self._server.counters)
+
+    def shown(self) -> list[dict[str, Any]]:
+        """Every item of the map as it lies there now, for people.
+
+        Items that the line writes have their words, which nobody has understood yet.
+        """
+        now, holding = self._values(), self._registers.holding
+        to_line = [_described(item, "cell", now[item.name]) for item in INPUT]
+        from_line = [
+            _described(item, "line", " ".join(str(holding[one]) for one in item.addresses))
+            for item in HOLDING
+        ]
+        return [*to_line, *from_line]
 
     async def start(self) -> None:
         """Listen and submit commands; raises ``PortInUse`` or ``CannotListen``."""
@@ -189,6 +204,9 @@ class PlcInterface:
     def _refresh(self) -> None:
         # The same number at both ends of the block: a PLC that reads it in slices sees a tear.
         self._seq = (self._seq + 1) & 0xFFFF
+        self._registers.publish(input_block(self._values(), self._config.word_order))
+
+    def _values(self) -> dict[str, Value]:
         latch = self._latch
         handshake = Handshake(
             ack_seq=latch.ack_seq,
@@ -198,5 +216,15 @@ class PlcInterface:
             cell_heartbeat=self._beats,
             heartbeat_lost=self._line_heartbeat.lost,
         )
-        block = input_block(values(self._status, handshake, self._seq), self._config.word_order)
-        self._registers.publish(block)
+        return values(self._status, handshake, self._seq)
+
+
+def _described(item: Item, writer: str, value: Value) -> dict[str, Any]:
+    return {
+        "address": item.address,
+        "name": item.name,
+        "text": item.text,
+        "unit": item.unit,
+        "writer": writer,
+        "value": int(value) if isinstance(value, int) else value,
+    }

@@ -49,8 +49,18 @@ class JobFactory:
 
     def ready(self, mode: Mode) -> bool:
         """Whether some Start in this mode would be taken; cheap."""
-        allowed = mode is not Mode.PRODUCTION or self._some_recipe_is_calibrated()
-        return allowed and self._validate_cell()[0] is RejectCode.NONE
+        return self.refusal(mode) is RejectCode.NONE
+
+    def refusal(self, mode: Mode) -> RejectCode:
+        """Why no Start in this mode would be taken, whatever it asks for; cheap."""
+        if mode is Mode.PRODUCTION and not self._some_recipe_is_calibrated():
+            return RejectCode.CALIBRATION_INVALID
+        return self._validate_cell()[0]
+
+    @property
+    def procedures(self) -> Mapping[int, Procedure]:
+        """All procedures of the cell by number."""
+        return self._procedures
 
     def accept(self, command: UnitCommand, mode: Mode) -> None:
         """Remember a Start that was found good, right before the unit starts."""

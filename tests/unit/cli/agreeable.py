@@ -59,6 +59,9 @@ class Agreeable:
     on_its_way_to: str = ""
     """Another state than it shows, where it never arrives."""
 
+    async def follow(self, _writer: asyncio.StreamWriter) -> None:
+        raise AssertionError("no command of the terminal follows")
+
     async def handle(self, request: Request, _uid: int) -> Answer:
         if isinstance(request, StatusRequest):
             return Status(report=StatusReport(**self.shows))
@@ -77,7 +80,7 @@ def listening(path: Path, daemon: Agreeable) -> Iterator[None]:
     loop = asyncio.new_event_loop()
 
     async def serve() -> None:
-        server = LocalServer(SocketFile(path, ""), daemon.handle)
+        server = LocalServer(SocketFile(path, ""), daemon.handle, daemon.follow)
         await server.start()
         up.set()
         await down.wait()

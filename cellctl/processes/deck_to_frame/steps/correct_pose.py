@@ -71,7 +71,11 @@ async def _measure(
     measurement = await run.measure(run.facts.deck_features, predicted)
     M_T_D = run.measurer.deck_in_frame(stand_off.frame, measurement.pose).part_1_T_part_2
     judgement = judge(run.target_M_T_D, M_T_D, run.thresholds)
-    run.board.update(iteration=iteration, error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()))
+    run.board.update(
+        iteration=iteration,
+        error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()),
+        error_limits_mm_deg=tuple(in_mm_deg(run.thresholds.vector).tolist()),
+    )
     return judgement, measurement, M_T_D
 
 

@@ -16,6 +16,12 @@ from cellctl.api.local.socket_file import SocketFile
 from cellctl.errors.link import LinkLost
 
 WAIT_S = 5.0
+
+
+async def nobody_follows(_writer: asyncio.StreamWriter) -> None:
+    raise AssertionError("nobody has asked to follow")
+
+
 QUICK = LocalLimits(clients=3, idle_s=0.3, request_s=0.2)
 ABORT = b'{"request": "abort"}\n'
 
@@ -46,7 +52,7 @@ def desk() -> Desk:
 
 @pytest.fixture
 async def server(desk: Desk, tmp_path: Path) -> AsyncIterator[LocalServer]:
-    server = LocalServer(SocketFile(tmp_path / "s", ""), desk, QUICK)
+    server = LocalServer(SocketFile(tmp_path / "s", ""), desk, nobody_follows, QUICK)
     await server.start()
     yield server
     desk.may_end.set()

@@ -6,6 +6,7 @@ from datetime import timedelta
 
 import pytest
 
+from cellctl.api.local.live_view import LiveView
 from cellctl.api.local.messages import (
     AcknowledgeCommand,
     ModeCommand,
@@ -42,7 +43,10 @@ class Operator:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
         reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive)
-        self._terminal = Terminal(cell.config, rig.unit.machine, rig.arbiter.submit, reporter)
+        self._view = LiveView(cell, rig.unit, rig.arbiter)
+        self._terminal = Terminal(
+            cell.config, rig.unit.machine, rig.arbiter.submit, reporter, self._view.look
+        )
 
     async def ask(self, request: Request, uid: int = UID) -> Taken | Refused:
         answer = await self._terminal.handle(request, uid)

@@ -1,0 +1,173 @@
+"""The cell at this moment, as the daemon pushes it to whoever shows it to people.
+
+Two messages, each one JSON object. ``snapshot`` is what changes by itself, built from memory alone.
+``description`` is what files and the store say; it is built in threads, and sent when it changes.
+No number is NaN: a value that is missing is null.
+"""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from cellctl.cell.devices import Cell
+from cellctl.clock import now_s
+from cellctl.command.arbiter import CommandArbiter
+from cellctl.command.permitted import permitted
+from cellctl.command.validator import line_in_control
+from cellctl.errors import CellError, catalogue
+from cellctl.runtime.alarms import ActiveAlarm
+from cellctl.runtime.cell_status import CellStatus
+from cellctl.runtime.unit import UnitController
+
+Object = dict[str, Any]
+SLOW_PERIOD_S = 0.5
+"""Of what costs more to ask: links of devices and what is permitted."""
+_POSE = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
+_WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N·m"), ("My", "N·m"), ("Mz", "N·m"))
+
+
+class LiveView:
+    """Builds snapshots. Belongs to the event loop, changes nothing and does not raise."""
+
+    def __init__(self, cell: Cell, unit: UnitController, arbiter: CommandArbiter) -> None:
+        self._cell = cell
+        self._unit = unit
+        self._arbiter = arbiter
+        self._remedies = {fault.number: fault for fault in catalogue()}
+        self._slow: Object = {}
+        self._slow_s = -math.inf
+        self._decided_on: tuple[object, ...] = ()
+        self.decision = 0
+        """Counts what a person decides upon: state, mode, faults, links. A command says which
+        count its person has seen."""
+
+    def look(self) -> int:
+        """Count a change of what a person decides upon; the count by now."""
+        machine = self._unit.machine
+        faults = tuple(map(id, machine.faults))
+        seen = (
+            machine.state,
+            machine.mode,
+            faults,
+            self._arbiter.line_alive,
+            self._unit.live,
+        )
+        if seen != self._decided_on:
+            self._decided_on = seen
+            self.decision += 1
+            self._slow_s = -math.inf  # what is permitted has changed as well
+        return self.decision
+
+    def snapshot(self, status: CellStatus) -> Object:
+        """The message ``snapshot``; ``status`` is what the line is shown at the same moment."""
+        decision, time_s = self.look(), now_s()
+        if time_s - self._slow_s >= SLOW_PERIOD_S:
+            self._slow_s, self._slow = time_s, self._slowly()
+        machine, alive = self._unit.machine, self._arbiter.line_alive
+        progress = self._unit.board.current
+        return {
+            "kind": "snapshot",
+            "mono_s": time_s,
+            "decision": decision,
+            "cell": self._cell.config.name,
+            "simulated": status.simulation,
+            "state": status.state.name,
+            "state_requested": status.state_requested.name,
+            "state_s": status.state_time_s,
+            "mode": status.mode.name,
+            "control": "line" if line_in_control(machine.mode, line_alive=alive) else "shared",
+            "line_alive": alive,
+            "connected": self._unit.live,
+            "ready": status.ready,
+            "hold_requested": status.hold_requested,
+            "stop_not_confirmed": status.stop_not_confirmed,
+            "step": {"number": status.step, "label": status.step_label, "text": progress.message},
+            "pass": status.iteration,
+            "run": {
+                "number": status.run_number,
+                "serial": status.serial,
+                "recipe": status.recipe_active,
+                "result": status.run_result.name.lower(),
+                "good_parts": status.cycle_counter,
+            },
+            "errors": _limited(_POSE, status.error_mm_deg, progress.error_limits_mm_deg),
+            "forces": [self._force(name, time_s, status) for name in self._cell.guards],
+            "faults": [_fault(fault) for fault in machine.faults],
+            "alarms": [self._alarm(alarm) for alarm in self._unit.alarms.active],
+            **self._slow,
+        }
+
+    def _slowly(self) -> Object:
+        codes = permitted(
+            self._unit.machine, self._unit.factory, line_alive=self._arbiter.line_alive
+        )
+        links = {name: _problem(check) for name, check in self._cell.health_checks().items()}
+        return {
+            "permitted": {
+                name: {"code": int(code), "reason": code.text if code else ""}
+                for name, code in codes.items()
+            },
+            "links": links,
+        }
+
+    def _force(self, name: str, time_s: float, status: CellStatus) -> Object:
+        guard = self._cell.guards[name]
+        sample = guard.newest()
+        # A wrench with the part's weight still in it is no contact force: better none than that.
+        weighed = sample is not None and guard.gravity_compensated
+        wrench = sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
+        return {
+            "sensor": name,
+            "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
+            "compensated": weighed,
+            "limit_n": number(status.force_limit_n),
+            "trip": "" if guard.trip is None else str(guard.trip),
+            "wrench": _limited(_WRENCH, wrench),
+            "peaks": [number(value) for value in status.force_peaks],
+        }
+
+    def _alarm(self, alarm: ActiveAlarm) -> Object:
+        # The alarm may come from an older store, or from a process that is not installed any more.
+        known = self._remedies.get(alarm.number, CellError)
+        return {
+            "number": alarm.number,
+            "text": alarm.text,
+            "cause": known.cause,
+            "remedy": known.remedy,
+            "reaction": known.reaction.name.lower(),
+            "since": alarm.since.isoformat(timespec="milliseconds"),
+            "run": alarm.run,
+        }
+
+
+def number(value: float) -> float | None:
+    """JSON knows neither NaN nor infinity."""
+    return value if math.isfinite(value) else None
+
+
+def _limited(
+    axes: Iterable[tuple[str, str]], values: Iterable[float], limits: Iterable[float] = ()
+) -> list[Object]:
+    limits = tuple(limits) or (math.nan,) * 6
+    return [
+        {"axis": axis, "unit": unit, "value": number(value), "limit": number(limit)}
+        for (axis, unit), value, limit in zip(axes, values, limits, strict=True)
+    ]
+
+
+def _fault(error: CellError) -> Object:
+    return {
+        "number": error.number,
+        "text": str(error),
+        "cause": error.cause,
+        "remedy": error.remedy,
+        "reaction": error.reaction.name.lower(),
+    }
+
+
+def _problem(check: Any) -> str:
+    try:
+        check()
+    except CellError as error:
+        return str(error)
+    return ""

@@ -1,0 +1,102 @@
+"""Commands of persons at the operator page: who may bring them, which of them, and each once."""
+
+import asyncio
+import os
+from collections import OrderedDict
+from collections.abc import Awaitable, Callable, Mapping
+
+from cellctl.api.local.messages import (
+    Answer,
+    CommandRequest,
+    Failed,
+    OnBehalf,
+    PageCommand,
+    Refused,
+    Role,
+    Taken,
+)
+from cellctl.api.local.users import Users
+from cellctl.errors.local import NotThePage
+from cellctl.packml.reject import RejectCode
+
+Obey = Callable[[CommandRequest, str, Mapping[str, str]], Awaitable[Taken | Refused]]
+"""Submits a command of a person, with what the audit log is told besides."""
+
+KEYS_KEPT = 1000
+ROLES: tuple[Role, ...] = ("view", "operate", "maintain")
+"""In rising order."""
+NEEDS: Mapping[str, Role] = {"mode": "maintain", "procedure": "maintain"}
+"""Role by request; all others need ``operate``."""
+AT_A_PANEL = frozenset({"start", "reset", "unhold", "mode", "procedure"})
+"""What may move the cell, or leads to it, needs somebody who sees the cell."""
+ENDS_MOTION = frozenset({"stop", "abort"})
+
+
+def refusal(request: str, on_behalf: OnBehalf, decision: int) -> RejectCode:
+    """Why this person may not ask for it, here and now; NONE when they may.
+
+    ``decision`` is the count of ``LiveView`` by now: whoever decided upon an older state might
+    have decided otherwise. Stop and Abort are never too late.
+    """
+    abort_at_panel = request == "abort" and bool(on_behalf.panel)
+    needed = ROLES.index(NEEDS.get(request, "operate"))
+    if ROLES.index(on_behalf.role) < needed and not abort_at_panel:
+        return RejectCode.ROLE_MISSING
+    if request in AT_A_PANEL and not on_behalf.panel:
+        return RejectCode.NOT_AT_A_PANEL
+    if request not in ENDS_MOTION and on_behalf.decision != decision:
+        return RejectCode.SUPERSEDED
+    return RejectCode.NONE
+
+
+class PageDesk:
+    """Belongs to one event loop."""
+
+    def __init__(
+        self, page_user: str, users: Users, decision: Callable[[], int], obey: Obey
+    ) -> None:
+        self._page_user = page_user
+        self._users = users
+        self._decision = decision
+        self._obey = obey
+        self._answers: OrderedDict[str, tuple[PageCommand, asyncio.Future[Answer]]] = OrderedDict()
+
+    async def handle(self, request: PageCommand, uid: int) -> Answer:
+        """The answer to a command; the same one again when the command comes again.
+
+        Raises ``NotThePage`` for a key that was used for another command, and for a user who is
+        not the page's: everybody else speaks for themselves alone.
+        """
+        if uid != os.getuid() and self._users.name(uid) != self._page_user:
+            raise NotThePage(f"user {self._users.name(uid)}")
+        key = request.on_behalf.key
+        known = self._answers.get(key)
+        if known is not None:
+            before, answer = known
+            if _meant(before) != _meant(request):
+                raise NotThePage(f"key {key} was used for another command")
+            return await asyncio.shield(answer)
+        answer = asyncio.get_running_loop().create_future()
+        self._answers[key] = request, answer
+        while len(self._answers) > KEYS_KEPT:
+            self._answers.popitem(last=False)
+        try:
+            answer.set_result(await self._judged(request))
+        finally:
+            if not answer.done():  # a device broke: whoever asks again learns that it was begun
+                answer.set_result(Failed(number=NotThePage.number, text="the command failed"))
+        return answer.result()
+
+    async def _judged(self, request: PageCommand) -> Answer:
+        person = request.on_behalf
+        name = request.command.request
+        code = refusal(name, person, self._decision())
+        if code is not RejectCode.NONE:
+            return Refused(code=code, text=code.text, state="")
+        who = f"{person.person}@{person.panel}" if person.panel else person.person
+        details = {"role": person.role, "key": person.key, "reason": person.reason}
+        return await self._obey(request.command, who, details)
+
+
+def _meant(request: PageCommand) -> tuple[str, CommandRequest]:
+    return request.on_behalf.person, request.command

@@ -1,0 +1,5 @@
+"""`python -m cellctl.hmi`."""
+
+from cellctl.hmi.main import main
+
+main()

@@ -1,0 +1,111 @@
+"""Who asks, from where, and whether their browser was made to ask by somebody else."""
+
+import ipaddress
+from dataclasses import dataclass
+from typing import Annotated
+
+from fastapi import Depends, Request
+
+from cellctl.api.local.messages import Role
+from cellctl.hmi.hosts import host_name
+from cellctl.hmi.people import People
+from cellctl.hmi.problems import Problem
+from cellctl.hmi.sessions import Session, Sessions
+from cellctl.hmi.settings import LOOPBACK, PageSettings
+
+COOKIE = "__Host-cellctl"
+
+
+@dataclass(frozen=True, slots=True)
+class Visitor:
+    """Whoever asks."""
+
+    person: str
+    """Empty for somebody who has not signed in."""
+    role: Role
+    panel: str
+    """Name of the panel; empty for a page elsewhere."""
+    key: str
+    """Of the session, the token or the address: what limits count by."""
+    session: Session | None = None
+
+
+class Gatekeeper:
+    """Tells visitors apart. Belongs to one event loop."""
+
+    def __init__(self, settings: PageSettings, people: People, sessions: Sessions) -> None:
+        self._settings = settings
+        self._people = people
+        self._sessions = sessions
+
+    def visitor(self, request: Request) -> Visitor:
+        """Raises ``Problem`` 401 for somebody elsewhere who has not signed in."""
+        panel = self.panel(request)
+        bearer = request.headers.get("authorization", "")
+        if bearer:
+            program = self._people.program(bearer.removeprefix("Bearer "))
+            if program is None:
+                raise Problem(401, "token", "the token is unknown or has expired")
+            # A program is at no panel, wherever it runs: nobody sees the cell there.
+            return Visitor(program.name, program.role, "", f"token:{program.name}")
+        secret = request.cookies.get(COOKIE, "")
+        session = self._sessions.find(secret)
+        if session is not None:
+            role = self._sessions.role(session)
+            return Visitor(session.person, role, panel, f"session:{secret}", session)
+        if not panel:
+            raise Problem(401, "sign-in", "sign in first")
+        return Visitor("", "view", panel, f"panel:{panel}")
+
+    def panel(self, request: Request) -> str:
+        """Name of the panel that asks; empty for everybody else."""
+        address = address_of(request)
+        name = self._settings.panels.get(address, "")
+        # What comes through a proxy on this PC has the loopback address, but asks for the name of
+        # the proxy. It is no panel.
+        asked_for = host_name(request.headers.get("host", ""))
+        if name and _is_loopback(address) and asked_for not in LOOPBACK:
+            return ""
+        if name and request.headers.get("x-forwarded-for"):
+            return ""
+        return name
+
+
+def require_own_page(request: Request) -> None:
+    """Only our own page, or a program with a token, may ask for a change.
+
+    Raises ``Problem`` 403 or 415. A browser sends cookies along whoever's page makes it ask.
+    """
+    if request.headers.get("content-type", "").split(";")[0] != "application/json":
+        raise Problem(415, "media-type", "send application/json")
+    if request.headers.get("authorization"):
+        return
+    origin = request.headers.get("origin")
+    same = request.headers.get("sec-fetch-site") == "same-origin"
+    if origin is not None:
+        same = origin.partition("://")[2] == request.headers.get("host", "")
+    if not same:
+        raise Problem(403, "origin", "only this page may ask for that")
+
+
+def address_of(request: Request) -> str:
+    """Address of the client; empty when there is none."""
+    return request.client.host if request.client else ""
+
+
+def _is_loopback(address: str) -> bool:
+    try:
+        return ipaddress.ip_address(address).is_loopback
+    except ValueError:
+        return False
+
+
+def visitor(request: Request) -> Visitor:
+    """For the routes: who asks."""
+    gatekeeper: Gatekeeper = request.app.state.parts.gatekeeper
+    return gatekeeper.visitor(request)
+
+
+Asked = Annotated[Visitor, Depends(visitor)]
+OWN_PAGE = [Depends(require_own_page)]
+"""For routes that change something. As a dependency it comes before the body is judged."""

@@ -1,0 +1,85 @@
+"""Puts the page's process together."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from fastapi import FastAPI
+from starlette.types import ASGIApp
+
+from cellctl.hmi.access import Gatekeeper
+from cellctl.hmi.archive import ArchiveReader
+from cellctl.hmi.daemon_link import DaemonLink
+from cellctl.hmi.event_stream import Streams
+from cellctl.hmi.hub import Hub
+from cellctl.hmi.people import People
+from cellctl.hmi.problems import RESPONSES, add_handlers
+from cellctl.hmi.rates import RateLimit
+from cellctl.hmi.routes import commands, files, live, records, session
+from cellctl.hmi.sessions import Sessions
+from cellctl.hmi.settings import LOOPBACK, PageSettings
+from cellctl.hmi.shell import Shell
+from cellctl.version import software
+
+COMMANDS_A_MINUTE = 20
+SIGN_INS_A_MINUTE = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What the routes work with."""
+
+    hub: Hub
+    link: DaemonLink
+    streams: Streams
+    gatekeeper: Gatekeeper
+    people: People
+    sessions: Sessions
+    archive: ArchiveReader
+    commands: RateLimit
+    sign_ins: RateLimit
+
+
+def hmi_app(settings: PageSettings) -> ASGIApp:
+    """The application; it follows the daemon while it is up."""
+    hub = Hub()
+    people, sessions = People(settings.people, settings.tokens), Sessions(settings.idle_s)
+    parts = Parts(
+        hub=hub,
+        link=DaemonLink(Path(settings.socket), hub),
+        streams=Streams(hub),
+        gatekeeper=Gatekeeper(settings, people, sessions),
+        people=people,
+        sessions=sessions,
+        archive=ArchiveReader(Path(settings.data_dir)),
+        commands=RateLimit(COMMANDS_A_MINUTE, 60.0),
+        sign_ins=RateLimit(SIGN_INS_A_MINUTE, 60.0),
+    )
+
+    @asynccontextmanager
+    async def following(_app: FastAPI) -> AsyncIterator[None]:
+        task = asyncio.create_task(parts.link.follow(), name="follow the daemon")
+        try:
+            yield
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+    # The pages that FastAPI makes of the API load scripts from elsewhere; its document stays.
+    app = FastAPI(
+        title="cellctl",
+        version=software(),
+        openapi_url="/api/v1/openapi.json",
+        docs_url=None,
+        redoc_url=None,
+        lifespan=following,
+        responses=RESPONSES,
+    )
+    app.state.parts = parts
+    add_handlers(app)
+    for one in (session, live, commands, records):
+        app.include_router(one.router, prefix="/api/v1")
+    app.include_router(files.router)
+    return Shell(app, LOOPBACK | frozenset(settings.hosts))

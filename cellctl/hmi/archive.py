@@ -1,0 +1,120 @@
+"""Reads the run store for the page, in threads; never writes to it."""
+
+import asyncio
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import asdict
+from datetime import datetime
+from pathlib import Path
+from typing import Any, TypeVar
+
+from cellctl.records.entries import Artefact, RunHead
+from cellctl.records.gauges import judge_gauge, part_verdict
+from cellctl.records.store import RunStore
+
+T = TypeVar("T")
+READERS = 4
+SEARCHED = 20_000
+"""Runs that a search looks through, the newest first."""
+
+
+class ArchiveReader:
+    """Opens the store for each question, so that a store that is replaced or away is noticed."""
+
+    def __init__(self, data_dir: Path) -> None:
+        self.data_dir = data_dir
+        self._readers = asyncio.Semaphore(READERS)
+
+    async def runs(
+        self,
+        *,
+        limit: int,
+        before: int | None = None,
+        serial: str = "",
+        result: str = "",
+        calibration: str = "",
+    ) -> list[dict[str, Any]]:
+        """Heads of the newest runs, newest first; the serial number by its beginning.
+
+        ``before``: only runs with a lower number. ``calibration``: identity of a calibration that
+        they used. Raises ``StoreUnavailable``.
+        """
+
+        def wanted(head: RunHead) -> bool:
+            return (
+                (before is None or head.number < before)
+                and head.serial.startswith(serial)
+                and result in ("", head.result or "open")
+                and (not calibration or calibration in head.calibration_ids.values())
+            )
+
+        def read(store: RunStore) -> list[dict[str, Any]]:
+            found = [head for head in store.runs(SEARCHED) if wanted(head)]
+            return [_head(head) for head in found[:limit]]
+
+        return await self._ask(read)
+
+    async def run(self, number: int) -> dict[str, Any]:
+        """One run with figures, passes, phases, alarms, gauges and names of its files.
+
+        Raises ``RunUnknown`` or ``StoreUnavailable``.
+        """
+
+        def read(store: RunStore) -> dict[str, Any]:
+            record = store.run(number)
+            gauges = [
+                _plain(asdict(gauge))
+                | {"verdict": str(judge_gauge(record, gauge)), "counts": gauge in record.gauges}
+                for gauge in record.gauge_history
+            ]
+            return {
+                "head": _head(record.head),
+                "part": part_verdict(record),
+                "figures": [_plain(asdict(one)) for one in record.newest_figures.values()],
+                "passes": [_plain(asdict(one)) for one in record.passes],
+                "phases": [_plain(asdict(one)) for one in record.phases],
+                "alarms": [_plain(asdict(one)) for one in record.alarms],
+                "gauges": gauges,
+                "files": [_plain(asdict(one)) for one in record.artefacts],
+                "sealed": record.seal is not None,
+            }
+
+        return await self._ask(read)
+
+    async def file(self, number: int, name: str) -> tuple[Artefact, bytes] | None:
+        """A file of a run, checked against its hash; None when the run has none of this name.
+
+        Raises ``RunUnknown``, ``ArtefactDamaged`` or ``StoreUnavailable``.
+        """
+
+        def read(store: RunStore) -> tuple[Artefact, bytes] | None:
+            files = [one for one in store.run(number).artefacts if one.name == name]
+            return (files[-1], store.artefacts.get(files[-1].sha256)) if files else None
+
+        return await self._ask(read)
+
+    async def audit(self, limit: int) -> list[dict[str, Any]]:
+        """The newest entries of the audit log, newest first; raises ``StoreUnavailable``."""
+        return await self._ask(
+            lambda store: [_plain(asdict(one)) for one in store.audit_log()[: -limit - 1 : -1]]
+        )
+
+    async def _ask(self, read: Callable[[RunStore], T]) -> T:
+        def work() -> T:
+            with closing(RunStore(self.data_dir, create=False)) as store:
+                return read(store)
+
+        async with self._readers:
+            return await asyncio.to_thread(work)
+
+
+def _head(head: RunHead) -> dict[str, Any]:
+    return _plain(asdict(head))
+
+
+def _plain(fields: dict[str, Any]) -> dict[str, Any]:
+    """Times as text; all other values are JSON already."""
+    return {
+        name: value.isoformat(timespec="milliseconds") if isinstance(value, datetime) else value
+        for name, value in fields.items()
+    }

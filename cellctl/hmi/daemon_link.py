@@ -1,0 +1,78 @@
+"""The connections to the daemon: one that follows it, one for each command."""
+
+import asyncio
+from pathlib import Path
+
+from cellctl import log
+from cellctl.api.local.messages import (
+    ANSWER_LIMIT,
+    Answer,
+    FollowRequest,
+    PageCommand,
+    parse_answer,
+    to_line,
+)
+from cellctl.errors.local import DaemonNotReached
+from cellctl.hmi.hub import Hub
+
+RETRY_S = 0.5
+SILENT_S = 3.0
+"""The daemon sends ten snapshots a second; one that sends none is asked anew."""
+ANSWER_S = 10.0
+
+_log = log.get(__name__)
+
+
+class AnswerMissing(Exception):
+    """The command went out and no answer came: the cell may have taken it, or not."""
+
+
+class DaemonLink:
+    """Belongs to one event loop."""
+
+    def __init__(self, path: Path, hub: Hub) -> None:
+        self._path = path
+        self._hub = hub
+
+    async def follow(self) -> None:
+        """Feed the hub until cancelled; a daemon that is away is tried again and again."""
+        while True:
+            try:
+                await self._follow()
+            except (OSError, EOFError, TimeoutError, ValueError) as error:
+                if self._hub.linked:
+                    _log.warning("daemon lost", reason=type(error).__name__)
+            await self._hub.set_linked(linked=False)
+            await asyncio.sleep(RETRY_S)
+
+    async def _follow(self) -> None:
+        reader, writer = await asyncio.open_unix_connection(str(self._path), limit=ANSWER_LIMIT)
+        try:
+            writer.write(to_line(FollowRequest()))
+            while True:
+                async with asyncio.timeout(SILENT_S):
+                    line = await reader.readuntil()
+                await self._hub.take(line)
+                if not self._hub.linked:
+                    await self._hub.set_linked(linked=True)
+        finally:
+            writer.transport.abort()
+
+    async def ask(self, command: PageCommand) -> Answer:
+        """Bring a command; raises ``DaemonNotReached`` when it did not even go out.
+
+        Raises ``AnswerMissing`` when nobody knows whether it was taken. The same command with the
+        same key may then be sent again: the daemon obeys it once.
+        """
+        try:
+            reader, writer = await asyncio.open_unix_connection(str(self._path), limit=ANSWER_LIMIT)
+        except OSError as error:
+            raise DaemonNotReached(f"{self._path}: {error.strerror or error}") from error
+        try:
+            writer.write(to_line(command))
+            async with asyncio.timeout(ANSWER_S):
+                return parse_answer(await reader.readuntil())
+        except (OSError, EOFError, TimeoutError) as error:
+            raise AnswerMissing from error
+        finally:
+            writer.transport.abort()

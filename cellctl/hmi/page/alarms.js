@@ -1,0 +1,47 @@
+// Alarms: the first one on top, each with its cause and what to do.
+
+import { give, whyNot } from "./buttons.js";
+import { h, time } from "./dom.js";
+import { cell } from "./live.js";
+import { given, t } from "./texts.js";
+
+export const PRIORITY = { abort: 1, stop: 2, hold: 2, warn: 3 };
+export const MARKS = { 1: "■1", 2: "▲2", 3: "▼3" };
+
+export function priority(alarm) { return PRIORITY[alarm.reaction] || 1; }
+
+function remedy(number, english) { return given(`remedy_${number}`, english); }
+
+function one(alarm, first, firstSince) {
+  const level = priority(alarm);
+  const after = firstSince && alarm.since ? (new Date(alarm.since) - new Date(firstSince)) / 1000 : 0;
+  const latched = (cell.snapshot.faults || []).some((fault) => fault.number === alarm.number);
+  const reason = whyNot("acknowledge");
+  return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number },
+    h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${alarm.text}`),
+    h("p", { class: "dim" }, first ? t("first_out") : t("after_first", after.toFixed(1)), ` · ${time(alarm.since)}`,
+      alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${t("latched")}` : ""),
+    h("p", {}, `${t("cause")}: ${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}: ${remedy(alarm.number, alarm.remedy)}`),
+    h("div", { class: "row" }, h("button", { type: "button", disabled: Boolean(reason), onclick: () => give("acknowledge", { request: "acknowledge", number: alarm.number }) }, t("acknowledge")),
+      h("span", { class: "dim" }, reason || t("acknowledge_does"))));
+}
+
+let drawn = "";
+export function build(root) {
+  drawn = "";
+  root.replaceChildren(h("section", { id: "alarms" }));
+  update(root);
+}
+
+export function update(root) {
+  const s = cell.snapshot;
+  const place = root.querySelector("#alarms");
+  if (!s || !place) return;
+  const first = s.faults[0]?.number;
+  const alarms = [...s.alarms].sort((a, b) => (b.number === first) - (a.number === first));
+  const key = JSON.stringify([alarms, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
+  if (key === drawn) return;
+  drawn = key;
+  place.replaceChildren(h("h2", {}, t("alarms_active", alarms.length)),
+    ...(alarms.length ? alarms.map((alarm, i) => one(alarm, i === 0, alarms[0].since)) : [h("p", {}, t("no_alarms"))]));
+}

@@ -1,0 +1,113 @@
+// The frame of the page: navigation, band, sign-in; one screen at a time.
+
+import * as alarms from "./alarms.js";
+import { ask, send } from "./api.js";
+import { visitor } from "./buttons.js";
+import * as calibration from "./calibration.js";
+import { h, shown } from "./dom.js";
+import * as health from "./health.js";
+import * as history from "./history.js";
+import * as line from "./line.js";
+import { ageS, cell, open, stale, start, watch } from "./live.js";
+import * as run from "./run.js";
+import { change, load, other, t } from "./texts.js";
+
+const SCREENS = { run, alarms, history, calibration, line, health };
+const $ = (id) => document.getElementById(id);
+let since = performance.now();
+
+function place() {
+  const [name, detail] = location.hash.slice(1).split("/");
+  return [name in SCREENS ? name : "run", detail];
+}
+
+function head() {
+  const [name] = place();
+  $("nav").replaceChildren(...Object.keys(SCREENS).map((one) => h("a", { href: `#${one}`, "aria-current": one === name ? "page" : null }, t(`nav_${one}`))));
+  $("language").textContent = other();
+  $("simulated").textContent = t("simulated");
+  $("who").textContent = visitor.person ? `${visitor.person} · ${t(`role_${visitor.role}`)} · ${visitor.panel || t("elsewhere")}` : t("sign_in");
+}
+
+function band() {
+  const place = $("band");
+  const s = cell.snapshot;
+  let [kind, text] = ["", ""];
+  if (stale()) {
+    kind = "p1";
+    text = cell.refused ? t(cell.refused) : t("stale", Math.round(Number.isFinite(ageS()) ? ageS() : (performance.now() - since) / 1000));
+  } else if (s.alarms.length) {
+    const first = s.alarms.find((one) => one.number === s.faults[0]?.number) || s.alarms[0];
+    kind = `p${alarms.priority(first)}`;
+    text = `${alarms.MARKS[alarms.priority(first)]} ${first.text}${s.alarms.length > 1 ? ` (+${s.alarms.length - 1})` : ""}`;
+  } else if (s.stop_not_confirmed) [kind, text] = ["p1", t("stop_not_confirmed")];
+  if (place.dataset.text === text && place.className === kind) return;
+  place.className = kind;
+  place.dataset.text = text;
+  place.replaceChildren(text ? h("a", { href: "#alarms" }, text) : "");
+}
+
+function refresh() {
+  const s = cell.snapshot;
+  document.body.classList.toggle("stale", stale());
+  if (s) {
+    $("cell").textContent = s.cell;
+    $("simulated").hidden = !s.simulated;
+  }
+  $("age").textContent = stale() ? `○ ${t("old")}` : `● ${t("live")} ${shown(ageS(), 1)} s`;
+  band();
+  SCREENS[place()[0]].update($("main"));
+}
+
+function show() {
+  const [name, detail] = place();
+  head();
+  SCREENS[name].build($("main"), detail);
+  refresh();
+}
+
+async function who() {
+  try { Object.assign(visitor, await ask("session")); } catch { Object.assign(visitor, { person: "", role: "view", panel: "" }); }
+  head();
+}
+
+async function sign() {
+  if (visitor.person) {
+    await send("DELETE", "session", {});
+    await who();
+    open();
+    return;
+  }
+  const name = h("input", { id: "name", autocomplete: "username", maxlength: 32 });
+  const pin = h("input", { id: "pin", type: "password", inputmode: "numeric", autocomplete: "current-password", maxlength: 128 });
+  const said = h("p", { role: "alert" });
+  const dialog = h("dialog", { "aria-label": t("sign_in") });
+  const go = async (event) => {
+    event.preventDefault();
+    try {
+      Object.assign(visitor, await send("POST", "session", { name: name.value, pin: pin.value }));
+      dialog.close();
+      head();
+      open();
+    } catch (error) { said.textContent = error.status === 429 ? t("too_many_tries") : t("wrong_pin"); }
+  };
+  dialog.append(h("h2", {}, t("sign_in")), h("form", { onsubmit: go }, h("label", {}, t("name"), name), h("label", {}, t("pin"), pin),
+    h("button", {}, t("sign_in")), h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))), said);
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+await load();
+$("who").addEventListener("click", sign);
+$("language").addEventListener("click", async () => { await change(); show(); });
+addEventListener("hashchange", show);
+watch((what) => {
+  if (what === "snapshot") { since = performance.now(); run.note(cell.snapshot); }
+  refresh();
+});
+await who();
+setInterval(who, 30000);
+show();
+start();
+run.recall();

@@ -1,0 +1,111 @@
+// The commands of the cell. What is permitted, and why not, comes from the cell.
+
+import { command } from "./api.js";
+import { h } from "./dom.js";
+import { cell, stale } from "./live.js";
+import { given, t } from "./texts.js";
+
+const HOLD_MS = 1000;
+const NO_ANSWER_MS = 3000;
+const ALWAYS = new Set(["stop", "abort"]);
+const PRESSED_LONG = new Set(["reset", "unhold", "start", "procedure"]);
+const ORDER = ["start", "reset", "hold", "unhold", "clear", "stop", "abort"];
+const PANEL_ONLY = new Set(["start", "reset", "unhold", "mode", "procedure"]);
+const RANKS = { view: 0, operate: 1, maintain: 2 };
+const NEEDS = { mode: "maintain", procedure: "maintain" };
+const said = {};
+
+export const visitor = { person: "", role: "view", panel: "" };
+
+// The cell's answer, and before it what is known here: both only spare a vain press.
+export function whyNot(name) {
+  const needed = NEEDS[name] || "operate";
+  const abortAtPanel = name === "abort" && visitor.panel;
+  if (RANKS[visitor.role] < RANKS[needed] && !abortAtPanel) return t("needs_sign_in", t(`role_${needed}`));
+  if (PANEL_ONLY.has(name) && !visitor.panel) return t("panel_only");
+  if (ALWAYS.has(name)) return "";  // pressed on whatever is seen: the cell gives an honest answer
+  if (stale()) return t("stale_button");
+  if (name === "acknowledge") return "";
+  const permission = cell.snapshot?.permitted?.[name];
+  if (!permission) return t("unknown");
+  return permission.code ? given(`reject_${permission.code}`, permission.reason) : "";
+}
+
+export async function give(name, wanted, reason = "") {
+  const decision = cell.snapshot?.decision ?? null;
+  let waiting = true;
+  said[name] = t("asked");
+  setTimeout(() => { if (waiting) said[name] = t("no_answer"); }, NO_ANSWER_MS);
+  try {
+    await command(wanted, decision, reason);
+    said[name] = t("taken");
+    setTimeout(() => { if (said[name] === t("taken")) said[name] = ""; }, 4000);
+  } catch (error) {
+    const code = error.problem?.reject_code;
+    const unknown = !error.status || error.status === 504;
+    said[name] = unknown ? t("no_answer") : t("refused", given(`reject_${code}`, error.message));
+    setTimeout(() => { said[name] = ""; }, 8000);
+  } finally {
+    waiting = false;
+  }
+}
+
+// Pressed for a second, by finger, mouse or key: a glove that brushes the panel moves nothing.
+export function longPress(button, act) {
+  let timer = 0;
+  const end = () => { clearTimeout(timer); timer = 0; button.classList.remove("holding"); };
+  const begin = () => {
+    if (timer || button.disabled) return;
+    button.classList.add("holding");
+    timer = setTimeout(() => { end(); if (!button.disabled) act(); }, HOLD_MS);
+  };
+  button.addEventListener("pointerdown", begin);
+  for (const name of ["pointerup", "pointerleave", "pointercancel", "blur"]) button.addEventListener(name, end);
+  button.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" || event.key === " ") { event.preventDefault(); begin(); }
+  });
+  button.addEventListener("keyup", end);
+  return button;
+}
+
+function startDialog() {
+  const recipes = cell.description?.recipes || [];
+  const serial = h("input", { id: "serial", maxlength: 24, pattern: "[A-Z0-9._\\-]+", autocomplete: "off", required: true });
+  const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
+  const dry = h("input", { type: "checkbox", id: "dry" });
+  const dialog = h("dialog", { "aria-label": t("cmd_start") });
+  const go = longPress(h("button", { type: "button" }, t("start_hold")), () => {
+    if (!serial.reportValidity()) return;
+    dialog.close();
+    give("start", { request: "start", serial: serial.value, recipe: recipe.value, dry_run: dry.checked });
+  });
+  dialog.append(h("h2", {}, t("cmd_start")), h("form", { onsubmit: (event) => event.preventDefault() },
+    h("label", {}, t("serial"), serial), h("label", {}, t("recipe"), recipe), h("label", {}, t("dry_run"), dry)),
+  h("p", {}, t("does_start")), h("div", { class: "row" }, go,
+    h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))));
+  dialog.addEventListener("close", () => dialog.remove());
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+function made(name) {
+  const button = h("button", { type: "button", id: `cmd-${name}` }, t(`cmd_${name}`));
+  if (name === "start") button.addEventListener("click", startDialog);
+  else if (PRESSED_LONG.has(name)) longPress(button, () => give(name, { request: name }));
+  else button.addEventListener("click", () => give(name, { request: name }));
+  return h("div", { "data-command": name }, button, h("small", {}));
+}
+
+export function commands() {
+  return h("section", {}, h("h2", {}, t("commands")), h("div", { class: "buttons" }, ORDER.map(made)));
+}
+
+// A button that is forbidden stays in its place, with the reason below it.
+export function refresh(root) {
+  for (const place of root.querySelectorAll("[data-command]")) {
+    const name = place.dataset.command;
+    const reason = whyNot(name);
+    place.querySelector("button").disabled = Boolean(reason);
+    place.querySelector("small").textContent = said[name] || reason || t(`does_${name}`);
+  }
+}

@@ -1,0 +1,42 @@
+// Links of the devices, of the line and of this page; the mode; the audit log.
+
+import { ask } from "./api.js";
+import { give, visitor, whyNot } from "./buttons.js";
+import { h, num, shown, table, time } from "./dom.js";
+import { ageS, cell } from "./live.js";
+import { t } from "./texts.js";
+
+async function more(root) {
+  try {
+    const health = await ask("health");
+    const place = root.querySelector("#process");
+    if (place) place.replaceChildren(h("h2", {}, t("page_process")), table([], [[t("software"), health.software], [t("pages_open"), `${health.pages_open}`], [t("daemon_linked"), t(health.daemon_linked ? "yes" : "no")]]));
+  } catch { /* the band says that nothing answers */ }
+  if (visitor.role !== "maintain") return;
+  try {
+    const { entries } = await ask("audit?limit=50");
+    root.querySelector("#audit")?.replaceChildren(h("h2", {}, t("audit")), table([t("started"), t("who"), t("action"), t("reason")], entries.map((one) => [time(one.time), one.actor, one.action, one.detail.reason || ""])));
+  } catch { /* shown at the next visit */ }
+}
+
+export function build(root) {
+  const modes = ["production", "maintenance", "manual"].map((mode) => h("button", { type: "button", class: "mode", onclick: () => give("mode", { request: "mode", mode }) }, t(`mode_${mode.toUpperCase()}`)));
+  root.replaceChildren(h("section", { class: "half", id: "links" }), h("section", { class: "half", id: "process" }),
+    h("section", {}, h("h2", {}, t("mode")), h("div", { class: "row" }, modes), h("p", { class: "dim", id: "mode-why" })), h("section", { id: "audit" }, h("p", { class: "dim" }, t("audit_needs"))));
+  more(root);
+  update(root);
+}
+
+export function update(root) {
+  const s = cell.snapshot;
+  const place = root.querySelector("#links");
+  if (!s || !place) return;
+  const rows = Object.entries(s.links).map(([name, problem]) => [name, problem ? h("span", { class: "bad" }, `■ ${problem}`) : t("well"), ""]);
+  for (const force of s.forces) rows.push([force.sensor, t("sample_age"), num(`${shown(force.age_s === null ? null : force.age_s * 1000, 0)} ms`)]);
+  rows.push([t("line_plc"), t(s.line_alive ? "alive" : "not_there"), ""]);
+  rows.push([t("this_page"), t("sample_age"), num(`${shown(ageS() * 1000, 0)} ms`)]);
+  place.replaceChildren(h("h2", {}, t("links")), h("div", { class: "live" }, table([t("device"), t("state"), num(t("age"))], rows)));
+  const reason = whyNot("mode");
+  root.querySelector("#mode-why").textContent = reason;
+  for (const button of root.querySelectorAll("button.mode")) button.disabled = Boolean(reason);
+}

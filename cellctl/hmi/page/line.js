@@ -1,0 +1,28 @@
+// The registers of the line, as the daemon holds them. Nothing here can be written.
+
+import { h, num, table } from "./dom.js";
+import { cell } from "./live.js";
+import { t } from "./texts.js";
+
+function block(writer) {
+  const items = (cell.description?.registers || []).filter((one) => one.writer === writer);
+  const rows = items.map((one) => [num(`${one.address}`), one.name, num(`${one.value} ${one.unit}`), one.text]);
+  return [h("h2", {}, t(`registers_${writer}`)), table([num(t("address")), t("label"), num(t("value")), t("meaning")], rows)];
+}
+
+let drawn = null;
+export function build(root) {
+  drawn = null;
+  root.replaceChildren(h("section", {}, h("p", { class: "live", id: "line-alive" })), h("section", { class: "live", id: "from-cell" }), h("section", { class: "live", id: "from-line" }));
+  update(root);
+}
+
+export function update(root) {
+  const alive = root.querySelector("#line-alive");
+  if (!alive || !cell.snapshot) return;
+  alive.textContent = `${t("line_plc")}: ${t(cell.snapshot.line_alive ? "alive" : "not_there")} · ${t(`control_${cell.snapshot.control}`)}`;
+  if (drawn === cell.description) return;
+  drawn = cell.description;
+  root.querySelector("#from-cell").replaceChildren(...block("cell"));
+  root.querySelector("#from-line").replaceChildren(...block("line"));
+}

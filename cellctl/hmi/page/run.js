@@ -1,0 +1,106 @@
+// The run now.
+
+import { ask } from "./api.js";
+import { commands, refresh } from "./buttons.js";
+import { bar, h, num, shown, svg, table } from "./dom.js";
+import { cell } from "./live.js";
+import { given, t } from "./texts.js";
+
+const CURVE_S = 30;
+const curve = [];
+let pictures = { run: 0, files: [] };
+
+export async function recall() {
+  try {
+    const found = (await ask("curve")).points;
+    curve.unshift(...found.filter(([s]) => !curve.length || s < curve[0][0]));
+  } catch { /* the curve begins anew */ }
+}
+
+export function note(snapshot) {
+  curve.push([snapshot.mono_s, snapshot.forces.map((force) => force.wrench.find((one) => one.axis === "Fz")?.value ?? null)]);
+  while (curve.length && curve[0][0] < snapshot.mono_s - CURVE_S) curve.shift();
+}
+
+async function lookForPictures() {
+  const run = cell.snapshot?.run.number;
+  if (!run) return;
+  try {
+    const files = (await ask(`runs/${run}`)).files.filter((file) => file.media_type.startsWith("image/"));
+    pictures = { run, files: files.slice(-4).reverse() };
+  } catch { /* they come with the next look */ }
+}
+setInterval(() => { if (!document.hidden && location.hash.length < 2 || location.hash === "#run") lookForPictures(); }, 4000);
+
+function plot(index, limit) {
+  const points = curve.map(([s, values]) => [s, values[index]]);
+  const values = points.map((point) => point[1]).filter((value) => value !== null && value !== undefined);
+  const low = Math.min(0, ...values);
+  const high = Math.max(1, limit || 0, ...values) * 1.1;
+  const end = curve.length ? curve[curve.length - 1][0] : 0;
+  const x = (s) => (300 * (1 - (end - s) / CURVE_S)).toFixed(1);
+  const y = (value) => (100 - 100 * (value - low) / (high - low)).toFixed(1);
+  let path = "";
+  let pen = "M";
+  for (const [s, value] of points) {
+    if (value === null || value === undefined) { pen = "M"; continue; }
+    path += `${pen}${x(s)} ${y(value)}`;
+    pen = "L";
+  }
+  return svg("svg", { class: "curve", viewBox: "0 0 300 100", preserveAspectRatio: "none", role: "img", "aria-label": t("force_curve", CURVE_S) },
+    limit ? svg("line", { x1: 0, x2: 300, y1: y(limit), y2: y(limit) }) : null, svg("path", { d: path || "M0 0" }));
+}
+
+function state(s) {
+  const waiting = ["HELD", "SUSPENDED"].includes(s.state);
+  const word = given(`state_${s.state}`, s.state);
+  const to = s.state === s.state_requested ? "" : ` → ${given(`state_${s.state_requested}`, s.state_requested)}`;
+  const colour = s.state.startsWith("ABORT") ? " p1" : waiting ? " turn" : "";
+  const mark = s.state.startsWith("ABORT") ? "■ " : waiting ? "● " : "";
+  const run = s.run.number ? t("run_line", s.run.number, s.run.serial || "—", t(`result_${s.run.result}`)) : t("no_run");
+  return [h("div", { class: `state live${colour}`, id: "state", "data-state": s.state }, mark + word + to),
+    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, s.step.label, s.pass || "—") : t("no_step")),
+    h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, s.step.text) : null,
+    h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
+    h("p", { id: "next" }, t(`next_${s.state}`))];
+}
+
+function force(force, index) {
+  const fz = force.wrench.find((one) => one.axis === "Fz")?.value;
+  return [h("h2", {}, t("force", force.sensor)),
+    force.trip ? h("p", { class: "bad" }, `■ ${t("tripped")}: ${force.trip}`) : null,
+    h("div", { class: "value live" }, `${shown(fz, 1)} N`, h("span", { class: "dim" }, ` / ${shown(force.limit_n, 0)} N`)),
+    bar(fz, force.limit_n, true), plot(index, force.limit_n),
+    h("p", { class: "dim live" }, force.compensated ? force.wrench.map((one) => `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)}`).join("  ") : t("not_compensated"))];
+}
+
+function errors(s) {
+  const rows = s.errors.map((one) => [one.axis, num(`${shown(one.value, one.unit === "mm" ? 3 : 4)} ${one.unit}`), num(shown(one.limit)), bar(one.value, one.limit)]);
+  return [h("h2", {}, t("errors", s.pass || "—")), h("div", { class: "live", id: "errors" }, table([t("axis"), num(t("error")), num(t("limit")), t("bar")], rows))];
+}
+
+function shots() {
+  return [h("h2", {}, t("pictures", pictures.run || "—")), pictures.files.length ? h("div", { class: "pictures" }, pictures.files.map((file) =>
+    h("figure", {}, h("img", { src: `/api/v1/runs/${pictures.run}/artefacts/${file.name}`, alt: file.name }), h("figcaption", {}, file.name))))
+    : h("p", { class: "dim" }, t("no_pictures"))];
+}
+
+export function build(root) {
+  root.replaceChildren(h("section", { class: "third", id: "now" }), h("section", { class: "third", id: "forces" }),
+    h("section", { class: "third", id: "deviation" }), commands(), h("section", { id: "shots" }));
+  lookForPictures();
+  update(root);
+}
+
+let drawn = "";
+export function update(root) {
+  refresh(root);
+  const s = cell.snapshot;
+  if (!s || !root.querySelector("#now")) return;
+  root.querySelector("#now").replaceChildren(...state(s).filter(Boolean));
+  root.querySelector("#forces").replaceChildren(...(s.forces.length ? s.forces.flatMap(force) : [h("p", {}, t("no_sensor"))]).filter(Boolean));
+  root.querySelector("#deviation").replaceChildren(...errors(s));
+  const key = JSON.stringify([pictures, document.documentElement.lang]);
+  const place = root.querySelector("#shots");
+  if (key !== drawn || !place.childElementCount) { drawn = key; place.replaceChildren(...shots()); }
+}

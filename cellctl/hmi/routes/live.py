@@ -1,0 +1,94 @@
+"""The cell at this moment."""
+
+from typing import Any
+
+from fastapi import APIRouter, Request
+from fastapi.responses import StreamingResponse
+
+from cellctl.clock import now_s
+from cellctl.errors import catalogue
+from cellctl.hmi.access import Asked
+from cellctl.hmi.problems import Problem
+from cellctl.version import software
+
+router = APIRouter(tags=["live"])
+STALE_S = 1.5
+
+
+@router.get("/status")
+async def status(request: Request, _visitor: Asked) -> dict[str, Any]:
+    """The newest snapshot; 503 when there is none that is fresh."""
+    hub = request.app.state.parts.hub
+    if hub.age_s is None or hub.age_s > STALE_S:
+        raise Problem(503, "daemon-away", "the cell has not said anything lately").later(1)
+    return dict(hub.snapshot)
+
+
+@router.get("/description")
+async def description(request: Request, _visitor: Asked) -> dict[str, Any]:
+    """Calibrations, and the recipes and procedures to choose from."""
+    return dict(request.app.state.parts.hub.description)
+
+
+@router.get("/permitted")
+async def permitted(request: Request, visitor: Asked) -> dict[str, Any]:
+    """By command: code 0 if the cell would take it now, else why not."""
+    return dict((await status(request, visitor))["permitted"])
+
+
+@router.get("/health")
+async def health(request: Request, _visitor: Asked) -> dict[str, Any]:
+    """Links of the devices, and of this process to the daemon."""
+    parts = request.app.state.parts
+    return {
+        "daemon_linked": parts.hub.linked,
+        "snapshot_age_s": parts.hub.age_s,
+        "pages_open": parts.streams.count,
+        "links": parts.hub.snapshot.get("links", {}),
+        "software": software(),
+    }
+
+
+@router.get("/clock")
+async def clock(_visitor: Asked) -> dict[str, float]:
+    """The clock of the snapshots, for browsers that find out how old theirs are."""
+    return {"mono_s": now_s()}
+
+
+@router.get("/curve")
+async def curve(request: Request, _visitor: Asked) -> dict[str, Any]:
+    """Fz in N of each force sensor in the last minute, for a page that was reloaded."""
+    return {"points": request.app.state.parts.hub.curve}
+
+
+@router.get("/faults/{number}")
+async def fault(number: int, _visitor: Asked) -> dict[str, Any]:
+    """One fault of the catalogue."""
+    found = next((one for one in catalogue() if one.number == number), None)
+    if found is None:
+        raise Problem(404, "fault-unknown", f"there is no F{number:03d}")
+    return {
+        "number": found.number,
+        "text": found.text,
+        "cause": found.cause,
+        "remedy": found.remedy,
+        "reaction": found.reaction.name.lower(),
+    }
+
+
+@router.get("/version")
+async def version() -> dict[str, str]:
+    """Of the page's process."""
+    return {"version": software()}
+
+
+@router.get("/events", response_class=StreamingResponse)
+async def events(request: Request, visitor: Asked) -> StreamingResponse:
+    """Server-sent events ``snapshot``, ``description``, ``link`` and ``beat``."""
+    streams = request.app.state.parts.streams
+    streams.admit(visitor.key)
+    return StreamingResponse(
+        streams.events(visitor.key),
+        media_type="text/event-stream",
+        headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
+    )

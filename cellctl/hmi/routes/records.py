@@ -1,0 +1,111 @@
+"""What the cell did: runs, their files, the audit log."""
+
+import asyncio
+import sys
+import tempfile
+from pathlib import Path
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from cellctl.api.local.messages import Role
+from cellctl.hmi.access import Asked
+from cellctl.hmi.problems import Problem
+
+router = APIRouter(tags=["records"])
+REPORT_S = 60.0
+_SHOWN = frozenset({"image/png", "image/jpeg"})
+"""What a browser may show; everything else it may only keep."""
+
+
+class RunSearch(BaseModel):
+    """Which runs, and how many of them."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    limit: Annotated[int, Field(ge=1, le=200)] = 50
+    before: Annotated[int | None, Field(ge=1)] = None
+    """The last number of the page before."""
+    serial: Annotated[str, Field(max_length=24)] = ""
+    """Its beginning."""
+    result: Annotated[str, Field(max_length=16)] = ""
+    """Such as ``good``, or ``open``."""
+    calibration: Annotated[str, Field(max_length=80)] = ""
+    """Identity of a calibration that the runs used."""
+
+
+@router.get("/runs")
+async def runs(
+    request: Request, _visitor: Asked, search: Annotated[RunSearch, Query()]
+) -> dict[str, Any]:
+    """The newest runs, newest first."""
+    return {"runs": await request.app.state.parts.archive.runs(**search.model_dump())}
+
+
+@router.get("/runs/{number}")
+async def run(request: Request, number: int, _visitor: Asked) -> dict[str, Any]:
+    """One run with all its figures."""
+    return dict(await request.app.state.parts.archive.run(number))
+
+
+@router.get("/runs/{number}/artefacts/{name:path}", response_class=Response)
+async def artefact(request: Request, number: int, name: str, _visitor: Asked) -> Response:
+    """A file of a run; 410 when it is damaged."""
+    found = await request.app.state.parts.archive.file(number, name)
+    if found is None:
+        raise Problem(404, "file-unknown", f"run {number} has no file {name}")
+    file, data = found
+    etag = f'"{file.sha256}"'
+    headers = {"ETag": etag, "Cache-Control": "private, max-age=31536000, immutable"}
+    if request.headers.get("if-none-match") == etag:
+        return Response(status_code=304, headers=headers)
+    if file.media_type not in _SHOWN:
+        headers["Content-Disposition"] = f'attachment; filename="{file.sha256[:12]}"'
+    return Response(data, media_type=file.media_type, headers=headers)
+
+
+@router.get("/runs/{number}/report", response_class=Response)
+async def report(request: Request, number: int, _visitor: Asked) -> Response:
+    """The report as one file to keep, made now; a page of its own, not a part of this one."""
+    archive = request.app.state.parts.archive
+    await archive.run(number)
+    with tempfile.TemporaryDirectory() as folder:
+        data = await _made(archive.data_dir, number, Path(folder))
+    headers = {"Content-Disposition": f'attachment; filename="run-{number}.html"'}
+    return Response(data, media_type="text/html", headers=headers)
+
+
+async def _made(data_dir: Path, number: int, folder: Path) -> bytes:
+    # In a process of its own: it draws pictures, and the page would stand still meanwhile.
+    out = folder / "report"
+    arguments = ("runs", "export", str(number), "--single-file", "--out", str(out))
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-m", "cellctl", *arguments, "--data-dir", str(data_dir),
+        stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+    )  # fmt: skip
+    try:
+        async with asyncio.timeout(REPORT_S):
+            _, complaint = await process.communicate()
+    except TimeoutError:
+        raise Problem(504, "report", f"the report takes more than {REPORT_S:g} s") from None
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+    if process.returncode:
+        words = complaint.decode(errors="replace").strip().splitlines() or [""]
+        raise Problem(500, "report", words[0])
+    return (out / "report.html").read_bytes()
+
+
+@router.get("/audit")
+async def audit(
+    request: Request, visitor: Asked, limit: Annotated[int, Query(ge=1, le=500)] = 100
+) -> dict[str, Any]:
+    """Who did what, the newest first; for those who maintain the cell."""
+    role: Role = visitor.role
+    if role != "maintain":
+        raise Problem(403, "role", "needs the role maintain")
+    return {"entries": await request.app.state.parts.archive.audit(limit)}

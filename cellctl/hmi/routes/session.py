@@ -1,0 +1,60 @@
+"""Sign in and out."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, ConfigDict, Field
+
+from cellctl import log
+from cellctl.hmi.access import COOKIE, OWN_PAGE, Asked, address_of
+from cellctl.hmi.problems import Problem
+
+router = APIRouter(tags=["session"])
+_log = log.get(__name__)
+
+
+class SignIn(BaseModel):
+    """Name and PIN or password."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Annotated[str, Field(max_length=32)]
+    pin: Annotated[str, Field(max_length=128)]
+
+
+@router.get("/session")
+async def who(visitor: Asked) -> dict[str, Any]:
+    """Who asks, with which role, at which panel."""
+    return {"person": visitor.person, "role": visitor.role, "panel": visitor.panel}
+
+
+@router.post("/session", dependencies=OWN_PAGE)
+async def sign_in(request: Request, response: Response, body: SignIn) -> dict[str, Any]:
+    """Sign in; the answer sets a cookie that scripts cannot read."""
+    parts = request.app.state.parts
+    address = address_of(request)
+    wait_s = parts.sign_ins.wait_s(address)
+    if wait_s:
+        raise Problem(429, "sign-ins", "too many tries from here").later(wait_s)
+    person = await parts.people.person(body.name, body.pin)
+    if person is None:
+        _log.warning("sign-in refused", name=body.name, address=address)
+        raise Problem(401, "sign-in", "name or PIN is wrong")
+    _log.info("signed in", person=person.name, role=person.role, address=address)
+    secret = parts.sessions.open(person.name, person.role)
+    response.set_cookie(COOKIE, secret, path="/", secure=True, httponly=True, samesite="strict")
+    panel = parts.gatekeeper.panel(request)
+    return {"person": person.name, "role": person.role, "panel": panel}
+
+
+@router.delete("/session", dependencies=OWN_PAGE)
+async def sign_out(request: Request, response: Response) -> dict[str, Any]:
+    """Sign out; also for somebody who is not signed in."""
+    parts = request.app.state.parts
+    parts.sessions.close(request.cookies.get(COOKIE, ""))
+    response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
+    return {
+        "person": "",
+        "role": "view",
+        "panel": request.app.state.parts.gatekeeper.panel(request),
+    }

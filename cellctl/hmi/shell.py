@@ -1,0 +1,59 @@
+"""What every answer has around it: allowed hosts, a limit on bodies, headers for the browser."""
+
+from collections.abc import Set
+
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from cellctl.hmi.hosts import host_name
+
+BODY_LIMIT = 64 * 1024
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+HEADERS = (
+    (b"content-security-policy", POLICY.encode()),
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+
+
+class Shell:
+    """ASGI, and no ``BaseHTTPMiddleware``: that one queues the events of a slow client for ever."""
+
+    def __init__(self, app: ASGIApp, hosts: Set[str]) -> None:
+        self._app = app
+        self._hosts = hosts
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """One request."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        headers = dict(scope["headers"])
+        # Against DNS rebinding: a foreign name that leads here is not ours to answer.
+        if host_name(headers.get(b"host", b"").decode("latin-1")) not in self._hosts:
+            await _plain(send, 421, b"this name is not served here")
+            return
+        length = headers.get(b"content-length", b"0")
+        if not length.isdigit() or int(length) > BODY_LIMIT or b"transfer-encoding" in headers:
+            await _plain(send, 413, b"the body is too long")
+            return
+
+        async def with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                given = {name for name, _ in message["headers"]}
+                message["headers"] = [
+                    *message["headers"],
+                    *(pair for pair in HEADERS if pair[0] not in given),
+                ]
+            await send(message)
+
+        await self._app(scope, receive, with_headers)
+
+
+async def _plain(send: Send, status: int, text: bytes) -> None:
+    headers = [(b"content-type", b"text/plain"), (b"content-length", str(len(text)).encode())]
+    await send({"type": "http.response.start", "status": status, "headers": headers})
+    await send({"type": "http.response.body", "body": text})

@@ -1,0 +1,75 @@
+"""The page's process before a daemon made of paper and a store with two runs."""
+
+import hashlib
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cellctl.hmi.people import secret_of
+from cellctl.records.store import RunStore
+from tests.unit.hmi.http_client import Client
+from tests.unit.hmi.paper_daemon import PIN, PaperDaemon, page_thread, serving
+
+TOKEN = "a-token-of-a-program"
+
+
+def _store(folder: Path) -> None:
+    store = RunStore(folder)
+    opening: dict[str, Any] = {
+        "process": "deck-to-frame",
+        "recipe_id": 1,
+        "recipe_name": "a part",
+        "recipe_hash": "0" * 64,
+        "mode": "production",
+        "software": "test",
+        "config_hash": "1" * 64,
+        "simulated": True,
+    }
+    for serial, result in (("SAT-1", "good"), ("SAT-2", "aborted")):
+        number = store.start_run(serial=serial, calibration_ids={"head": f"id-{serial}"}, **opening)
+        store.begin_phase(number, 10, "measure")
+        store.add_artefact(number, "look.png", b"\x89PNG of " + serial.encode(), "image/png")
+        store.add_artefact(number, "page.html", b"<script>1</script>", "text/html")
+        store.close_run(number, result)
+    store.audit("page:anna", "reset", {"reason": "shift begins"})
+    store.close()
+
+
+@pytest.fixture
+def paper() -> PaperDaemon:
+    return PaperDaemon()
+
+
+@pytest.fixture(scope="session")
+def secret() -> str:
+    return secret_of(PIN)
+
+
+@pytest.fixture
+def settings(tmp_path: Path, secret: str) -> Path:
+    _store(tmp_path / "store")
+    day = (datetime.now(UTC) + timedelta(days=1)).date()
+    people = [
+        f'[[people]]\nname = "{name}"\nrole = "{role}"\nsecret = "{secret}"\n'
+        for name, role in (("anna", "operate"), ("boris", "maintain"), ("vera", "view"))
+    ]
+    tokens = [
+        f'[[tokens]]\nname = "{name}"\nrole = "operate"\nexpires = {expires}\n'
+        f'sha256 = "{hashlib.sha256((TOKEN + name).encode()).hexdigest()}"\n'
+        for name, expires in (("line", day), ("old", "2020-01-01"))
+    ]
+    file = tmp_path / "hmi.toml"
+    head = f'socket = "{tmp_path}/s"\ndata_dir = "{tmp_path}/store"\nport = 0\n'
+    file.write_text(f'{head}hosts = ["cell.example"]\n' + "".join(people + tokens))
+    return file
+
+
+@pytest.fixture
+def page(settings: Path, paper: PaperDaemon) -> Iterator[Client]:
+    with serving(settings.parent / "s", paper), page_thread(settings) as url:
+        client = Client(url)
+        client.until_live()
+        yield client

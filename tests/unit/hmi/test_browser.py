@@ -1,0 +1,251 @@
+"""The page in a real Chromium, before a daemon made of paper."""
+
+import os
+import shutil
+import signal
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cellctl.api.local.messages import PlainCommand, Refused, StartCommand
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import State
+from tests.unit.hmi.paper_daemon import (
+    NAMES,
+    PIN,
+    PaperDaemon,
+    alarm,
+    page_process,
+    page_thread,
+    serving,
+    snapshot,
+)
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
+expect = playwright.expect
+MOTION = ("start", "reset", "unhold")
+STATES = [state.name for state in State if state.name != "UNDEFINED"]
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
+    with playwright.sync_playwright() as started:
+        found = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield found
+        found.close()
+
+
+class Screen:
+    """One tab, and what went wrong in it."""
+
+    def __init__(self, browser: Any, url: str) -> None:
+        self.context = browser.new_context(
+            viewport={"width": 1280, "height": 800}, locale="en-GB", reduced_motion="reduce"
+        )
+        self.tab = self.context.new_page()
+        self.complaints: list[str] = []
+        self.requests: list[str] = []
+        self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
+        self.tab.on("request", lambda request: self.requests.append(request.url))
+        self.url = url
+        self.tab.goto(url)
+        expect(self.tab.locator("#age")).to_contain_text("live", timeout=15_000)
+
+    def sign_in(self, name: str = "anna") -> None:
+        self.tab.click("#who")
+        self.tab.fill("#name", name)
+        self.tab.fill("#pin", PIN)
+        self.tab.press("#pin", "Enter")
+        expect(self.tab.locator("#who")).to_contain_text(name)
+
+    def button(self, name: str) -> Any:
+        return self.tab.locator(f"#cmd-{name}")
+
+    def press(self, target: Any, seconds: float) -> None:
+        target.hover()
+        self.tab.mouse.down()
+        self.tab.wait_for_timeout(1000 * seconds)
+        self.tab.mouse.up()
+
+
+@pytest.fixture
+def screen(browser: Any, settings: Path, paper: PaperDaemon) -> Iterator[Screen]:
+    with serving(settings.parent / "s", paper), page_thread(settings) as url:
+        found = Screen(browser, url)
+        yield found
+        found.context.close()
+        assert found.complaints == []
+        assert [one for one in found.requests if not one.startswith(url)] == []
+
+
+def test_every_state_has_its_word_in_both_languages(screen: Screen, paper: PaperDaemon) -> None:
+    state = screen.tab.locator("#state")
+    for language in ("en", "zh"):
+        words = set()
+        for name in STATES:
+            paper.snapshot = snapshot(state=name, state_requested=name)
+            expect(state).to_have_attribute("data-state", name)
+            words.add(state.inner_text())
+        assert len(words) == len(STATES)
+        assert any(word.isascii() for word in words) == (language == "en")
+        screen.tab.click("#language")
+    paper.snapshot = snapshot(state="ABORTED", state_requested="ABORTED")
+    expect(state).to_contain_text("■")
+
+
+def test_buttons_are_what_the_cell_permits_with_its_reasons(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    expect(screen.button("start")).to_be_disabled()
+    expect(screen.button("abort")).to_be_enabled()
+    screen.sign_in()
+    for name in ("start", "reset", "hold", "unhold", "clear", "stop", "abort"):
+        expect(screen.button(name)).to_be_enabled()
+    code = RejectCode.LINE_IN_CONTROL
+    refused = {name: {"code": int(code), "reason": code.text} for name in NAMES}
+    paper.snapshot = snapshot(permitted=refused)
+    for name in (*MOTION, "hold", "clear"):
+        expect(screen.button(name)).to_be_disabled()
+        expect(screen.tab.locator(f"[data-command={name}] small")).to_contain_text("line PLC")
+    for name in ("stop", "abort"):
+        expect(screen.button(name)).to_be_enabled()
+
+
+def test_what_moves_the_cell_is_pressed_for_a_second(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    screen.press(screen.button("reset"), 0.4)
+    assert paper.asked == []
+    screen.press(screen.button("reset"), 1.4)
+    assert [asked.command for asked in paper.asked] == [PlainCommand(request="reset")]
+    screen.button("unhold").focus()
+    screen.tab.keyboard.down("Enter")
+    screen.tab.wait_for_timeout(1400)
+    screen.tab.keyboard.up("Enter")
+    assert paper.asked[-1].command == PlainCommand(request="unhold")
+    assert paper.asked[-1].on_behalf.decision == 7
+    screen.button("stop").focus()
+    screen.tab.keyboard.press("Enter")
+    expect(screen.tab.locator("[data-command=stop] small")).to_contain_text("taken")
+    assert paper.asked[-1].command == PlainCommand(request="stop"), "one press, no dialog"
+
+
+def test_a_start_names_serial_and_recipe(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    screen.button("start").click()
+    go = screen.tab.locator("dialog .row button").first
+    screen.press(go, 1.4)
+    assert paper.asked == [], "without a serial number nothing starts"
+    screen.tab.fill("#serial", "SAT-0042")
+    screen.press(go, 1.4)
+    expect(screen.tab.locator("[data-command=start] small")).to_contain_text("taken")
+    assert paper.asked[0].command == StartCommand(serial="SAT-0042", recipe="1")
+
+
+def test_a_refusal_and_a_missing_answer_are_told(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    code = RejectCode.SUPERSEDED
+    paper.answer = Refused(code=code, text=code.text, state="IDLE")
+    screen.button("hold").click()
+    said = screen.tab.locator("[data-command=hold] small")
+    expect(said).to_contain_text("the cell has changed")
+    paper.holds_back = True
+    screen.button("abort").click()
+    expect(screen.tab.locator("[data-command=abort] small")).to_contain_text("asked")
+    expect(screen.tab.locator("[data-command=abort] small")).to_contain_text("NO ANSWER")
+    assert screen.tab.locator("#state").get_attribute("data-state") == "IDLE"
+    assert len(paper.asked) == 2, "never repeated by itself"
+
+
+def test_a_silent_daemon_makes_the_page_stale_and_it_comes_back(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    screen.sign_in()
+    paper.silent = True
+    expect(screen.tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
+    for name in MOTION:
+        expect(screen.button(name)).to_be_disabled()
+    for name in ("stop", "abort"):
+        expect(screen.button(name)).to_be_enabled()
+    struck = "getComputedStyle(document.querySelector('.live')).textDecorationLine"
+    assert screen.tab.evaluate(struck) == "line-through"
+    paper.silent = False
+    expect(screen.tab.locator("#band")).to_be_empty()
+    expect(screen.button("reset")).to_be_enabled()
+
+
+def test_a_frozen_page_process_makes_the_page_stale(
+    browser: Any, settings: Path, paper: PaperDaemon
+) -> None:
+    with serving(settings.parent / "s", paper), page_process(settings) as (process, url):
+        screen = Screen(browser, url)
+        process.send_signal(signal.SIGSTOP)
+        try:
+            expect(screen.tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
+        finally:
+            process.send_signal(signal.SIGCONT)
+        expect(screen.tab.locator("#age")).to_contain_text("live", timeout=10_000)
+        screen.context.close()
+
+
+def test_an_alarm_moves_no_button_and_is_acknowledged(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    before = screen.button("abort").bounding_box()
+    first, later = alarm(512, "force limit"), alarm(635, "invalidated", "warn")
+    paper.snapshot = snapshot(faults=[first], alarms=[later, first])
+    expect(screen.tab.locator("#band")).to_contain_text("■1 F512")
+    assert screen.button("abort").bounding_box() == before
+    screen.tab.click("nav a[href='#alarms']")
+    alarms = screen.tab.locator(".alarm")
+    expect(alarms).to_have_count(2)
+    expect(alarms.first).to_contain_text("F512")
+    expect(alarms.first).to_contain_text("a remedy")
+    alarms.first.get_by_role("button").click()
+    screen.tab.wait_for_timeout(300)
+    assert paper.asked[-1].command.request == "acknowledge"
+
+
+def test_a_missing_value_is_a_dash(screen: Screen, paper: PaperDaemon) -> None:
+    bare = snapshot()
+    bare["forces"][0]["wrench"] = []
+    bare["forces"][0]["limit_n"] = None
+    paper.snapshot = bare
+    expect(screen.tab.locator("#forces .value")).to_have_text("— N / — N")
+    expect(screen.tab.locator("#errors td.num").first).to_have_text("— mm")
+
+
+def test_gloves_find_every_control_of_the_run_screen(screen: Screen) -> None:
+    screen.sign_in()
+    sizes = screen.tab.evaluate(
+        "[...document.querySelectorAll('a, button, input, select')].map((one) => "
+        "[one.textContent, one.getBoundingClientRect()]).map(([t, r]) => [t, r.width, r.height])"
+    )
+    assert len(sizes) >= 14
+    assert [one for one in sizes if one[1] < 64 or one[2] < 64] == []
+    heights = screen.tab.evaluate(
+        "[document.querySelector('.buttons button').getBoundingClientRect().bottom]"
+    )
+    assert heights[0] < 800, "the commands are seen without scrolling"
+
+
+def test_all_screens_show_what_there_is(screen: Screen) -> None:
+    screen.sign_in("boris")
+    tab = screen.tab
+    for name, words in {
+        "history": "SAT-2",
+        "calibration": "calibrate head",
+        "line": "PackML StateCurrent",
+        "health": "shift begins",
+        "alarms": "No alarms",
+    }.items():
+        tab.click(f"nav a[href='#{name}']")
+        expect(tab.locator("main")).to_contain_text(words)
+    tab.goto(f"{screen.url}#history/1")
+    expect(tab.locator("main")).to_contain_text("measure")
+    tab.reload()
+    expect(tab.locator("main")).to_contain_text("measure")
+    expect(tab.locator("#who")).to_contain_text("boris")

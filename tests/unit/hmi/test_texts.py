@@ -1,0 +1,58 @@
+"""The words of the page: complete in each language, and without a claim that is not ours."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import STATES
+
+PAGE = Path(__file__).parents[3] / "cellctl/hmi/page"
+LANGUAGES = ("en", "zh")
+FORBIDDEN = {
+    "en": ("emergency", "safe", "e-stop", "guarantee"),
+    "zh": ("急停", "安全", "紧急"),
+}
+
+
+def texts(language: str) -> dict[str, str]:
+    found: dict[str, str] = json.loads((PAGE / f"texts.{language}.json").read_text("utf-8"))
+    return found
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_every_state_and_every_refusal_has_words(language: str) -> None:
+    words = texts(language)
+    wanted = {f"state_{state.name}" for state in STATES} | {f"next_{s.name}" for s in STATES}
+    wanted |= {f"reject_{int(code)}" for code in RejectCode if code}
+    assert wanted - set(words) == set()
+
+
+def test_the_languages_have_the_same_words_with_the_same_places() -> None:
+    english, chinese = texts("en"), texts("zh")
+    assert set(english) == set(chinese)
+    for key, text in english.items():
+        assert sorted(re.findall(r"{\d}", text)) == sorted(re.findall(r"{\d}", chinese[key])), key
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_no_control_is_called_a_safety_function(language: str) -> None:
+    for key, text in texts(language).items():
+        if key != "stale":  # which sends people to the device at the cell
+            assert [word for word in FORBIDDEN[language] if word in text.lower()] == [], key
+
+
+def test_every_word_that_the_page_asks_for_is_there() -> None:
+    words = texts("en")
+    code = "".join(path.read_text("utf-8") for path in PAGE.glob("*.js"))
+    asked = set(re.findall(r'\bt\("(\w+)"', code))
+    assert len(asked) > 80
+    assert asked - set(words) == set()
+
+
+def test_the_page_names_no_process_and_no_device() -> None:
+    code = "".join(path.read_text("utf-8") for path in PAGE.iterdir()).lower()
+    for word in ("deck", "antenna", "frame_", "peg", "siasun", "head_1", "pin hole"):
+        assert word not in code
