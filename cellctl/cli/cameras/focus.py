@@ -2,6 +2,8 @@
 
 import asyncio
 import json
+import signal
+from collections.abc import Coroutine
 from contextlib import suppress
 from dataclasses import asdict
 from typing import Annotated
@@ -53,15 +55,31 @@ async def _one(device: Chosen, board: CalibrationBoard | None, holes: HolesWante
 
 async def _follow(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> None:
     sharpest: dict[str, float] = {}
+    ended = asyncio.Event()
+    # Not by the cancellation that a Ctrl-C is otherwise: one that meets a finished wait is lost on
+    # Python 3.11, and the command would go on for ever.
+    asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
     async with device.device:
         with Live(auto_refresh=False) as live:
-            while True:
-                seen = await _look(device, board, holes)
+            while seen := await _unless(ended, _look(device, board, holes)):
                 for one in seen.sides:
                     if one.figures.blur_px is not None:
                         before = sharpest.get(one.side, one.figures.blur_px)
                         sharpest[one.side] = min(before, one.figures.blur_px)
                 live.update(screen(device.name, seen, sharpest), refresh=True)
+
+
+async def _unless(ended: asyncio.Event, look: Coroutine[None, None, FocusView]) -> FocusView | None:
+    """The next view; None as soon as the command is to end."""
+    looking = asyncio.ensure_future(look)
+    ending = asyncio.ensure_future(ended.wait())
+    try:
+        await asyncio.wait({looking, ending}, return_when=asyncio.FIRST_COMPLETED)
+        return None if ended.is_set() else await looking
+    finally:
+        looking.cancel()
+        ending.cancel()
+        await asyncio.wait({looking, ending})
 
 
 async def _look(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> FocusView:

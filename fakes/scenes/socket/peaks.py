@@ -9,7 +9,7 @@ from fakes.world.frames import Array
 WINDOWS_MS = (1, 3, 20)
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class ForcePeaks:
     """Fed once a millisecond; a mean is that of the vectors, not of their lengths."""
 

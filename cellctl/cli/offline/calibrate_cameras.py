@@ -1,0 +1,188 @@
+"""``cellctl calibrate stereo`` and ``cellctl calibrate camera``: from images of a board."""
+
+import glob
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import typer
+from rich.console import Console
+
+from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charuco
+from cellctl.calibration.boards.board_images import (
+    BoardImage,
+    BoardImages,
+    detect_camera_views,
+    detect_views,
+)
+from cellctl.calibration.solvers.shape_choice import with_chosen_shape
+from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
+    calibrate_single_camera,
+)
+from cellctl.calibration.solvers.single_camera.single_camera_picture import single_camera_picture
+from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
+from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
+from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
+from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
+from cellctl.cli.offline.measure import read_image
+from cellctl.errors.config import FileInvalid
+from cellctl.geometry.pose import MM
+
+BoardSize = Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")]
+SquareSide = Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)]
+Shape = Annotated[
+    BoardShape | None,
+    typer.Option(help="What may deviate from the drawing of the board; else the data decide."),
+]
+KnownBaseline = Annotated[
+    float | None, typer.Option(help="Distance of the cameras by the drawing, within 5 %.", min=1.0)
+]
+KnownDistance = Annotated[
+    float | None, typer.Option(help="Typical distance of the board, within 5 %.", min=1.0)
+]
+KnownFocal = Annotated[
+    float | None,
+    typer.Option(help="Focal length over size of a pixel, by the data sheets.", min=1.0),
+]
+
+
+def stereo(
+    *,
+    left: Annotated[str, typer.Option(help="Left images, a pattern such as 'left-*.png'.")],
+    right: Annotated[str, typer.Option(help="Right images, in the same order by name.")],
+    board: BoardSize,
+    square_mm: SquareSide,
+    out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
+    charuco: Annotated[
+        str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")
+    ] = None,
+    marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
+    board_shape: Shape = None,
+    baseline_mm: KnownBaseline = None,
+    distance_mm: KnownDistance = None,
+    focal_px: KnownFocal = None,
+    picture: Picture = None,
+) -> None:
+    """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board.
+
+    What is known of the head is compared with the result: the images alone cannot tell the size of
+    the squares.
+    """
+    pattern = _board(board, square_mm, charuco, marker_mm)
+    found = detect_views(_pairs(left, right), pattern)
+    console = console_of_figures()
+    _say_left_out(console, found.not_found)
+    known = KnownGeometry(_metres(baseline_mm), _metres(distance_mm), focal_px)
+    limits = StereoLimits(known=known)
+
+    def calibrated(shape: BoardShape) -> StereoResult:
+        return calibrate_stereo(found.views, pattern, found.image_size, shape=shape, limits=limits)
+
+    result = (
+        with_chosen_shape(calibrated, lambda one: one.held_out_m)
+        if board_shape is None
+        else calibrated(board_shape)
+    )
+    console.print(result.method, markup=False)
+    for view in result.views:
+        rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
+        console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", markup=False)
+    baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
+    console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
+    unchecked = f"nothing tells whether squares of {square_mm:g} mm are right: give "
+    unchecked += "--baseline-mm or --distance-mm"
+    warnings = result.warnings if known.tells_scale else (*result.warnings, unchecked)
+    finish(result, warnings, out, picture, lambda: stereo_picture(result))
+
+
+def camera(
+    *,
+    images: Annotated[str, typer.Option(help="Images, a pattern such as 'c2-*.png'.")],
+    board: BoardSize,
+    square_mm: SquareSide,
+    out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
+    board_shape: Shape = None,
+    picture: Picture = None,
+) -> None:
+    """Calibrate a single camera from images of a chessboard."""
+    pattern = _board(board, square_mm, None, None)
+    named = [BoardImage(path.stem, read_image(path)) for path in _matching(images)]
+    found = detect_camera_views(named, pattern)
+    console = console_of_figures()
+    _say_left_out(console, found.not_found)
+
+    def calibrated(shape: BoardShape) -> SingleCameraResult:
+        return calibrate_single_camera(found.views, pattern, found.image_size, shape=shape)
+
+    result = (
+        with_chosen_shape(calibrated, lambda one: one.held_out_px)
+        if board_shape is None
+        else calibrated(board_shape)
+    )
+    console.print(result.method, markup=False)
+    for view in result.views:
+        weight = _weight(view.shift_sigmas)
+        console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}", markup=False)
+    matrix, sigma = result.camera.model.camera_matrix, result.sigma
+    for name, value, one in (
+        ("focal length", (matrix[0, 0], matrix[1, 1]), sigma[:2]),
+        ("principal point", (matrix[0, 2], matrix[1, 2]), sigma[2:4]),
+    ):
+        console.print(
+            f"{name} {value[0]:.2f}, {value[1]:.2f} px, sigma {one[0]:.2f}, {one[1]:.2f} px"
+        )
+    console.print(f"board flat to {result.flatness_m / MM:.4f} mm; id {result.camera.id}")
+    finish(result, result.warnings, out, picture, lambda: single_camera_picture(result))
+
+
+def _metres(length_mm: float | None) -> float | None:
+    return None if length_mm is None else length_mm * MM
+
+
+def _weight(shift_sigmas: float | None) -> str:
+    """What a view counts in the result."""
+    if shift_sigmas is None:
+        return "  LEFT OUT"
+    return f", without it the result moves by {shift_sigmas:.2f} sigma"
+
+
+def _board(
+    corners: str, square_mm: float, charuco: str | None, marker_mm: float | None
+) -> CalibrationBoard:
+    try:
+        columns, rows = (int(part) for part in corners.lower().split("x"))
+        markers = None
+        if charuco is not None:
+            if marker_mm is None or not 0 < marker_mm < square_mm:
+                raise ValueError("--charuco needs --marker-mm below --square-mm")  # noqa: TRY301
+            markers = Charuco(charuco.upper().removeprefix("DICT_"), marker_mm * MM)
+        return CalibrationBoard(columns, rows, square_mm * MM, markers)
+    except ValueError as error:
+        raise typer.BadParameter(f"board {corners!r}: {error}") from error
+
+
+def _pairs(left: str, right: str) -> list[BoardImages]:
+    names = [_matching(pattern) for pattern in (left, right)]
+    # One missing image would shift every later pair by one.
+    if len(names[0]) != len(names[1]):
+        raise FileInvalid(f"{len(names[0])} left but {len(names[1])} right images")
+    return [
+        BoardImages(one.stem, read_image(one), read_image(other))
+        for one, other in zip(*names, strict=True)
+    ]
+
+
+def _matching(pattern: str) -> list[Path]:
+    # Expanded here, not by the shell: one option takes one value, and lists must be in one order.
+    found = sorted(glob.glob(pattern))
+    if not found:
+        raise FileInvalid(f"no file matches {pattern}")
+    return [Path(one) for one in found]
+
+
+def _say_left_out(console: Console, not_found: Sequence[str]) -> None:
+    if not_found:
+        console.print(f"board not found, left out: {', '.join(not_found)}", markup=False)
