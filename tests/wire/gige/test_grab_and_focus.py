@@ -158,11 +158,14 @@ def test_ctrl_c_ends_focus_and_lets_the_cameras_go(cell: Path, fakes: FakeCamera
         env=os.environ | {"COLUMNS": "120"},
         text=True,
     )
-    until_s = time.monotonic() + 60.0
-    while fakes.exposures(RIGHT) < 3 and time.monotonic() < until_s and live.poll() is None:
-        time.sleep(0.05)
-    live.send_signal(signal.SIGINT)
-    out, err = live.communicate(timeout=30.0)
+    try:
+        until_s = time.monotonic() + 60.0
+        while fakes.exposures(RIGHT) < 3 and time.monotonic() < until_s and live.poll() is None:
+            time.sleep(0.05)
+        live.send_signal(signal.SIGINT)
+        out, err = live.communicate(timeout=30.0)
+    finally:
+        live.kill()
     assert (live.returncode, err) == (0, "")
     assert "blur" in out
     assert (fakes.opened(LEFT), fakes.opened(RIGHT)) == (0, 0)
