@@ -2,7 +2,7 @@
 
 ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
-├── HoleAbsent, SearchGaveUp, SearchLostFace        547–549  the search
+├── HoleAbsent, SearchGaveUp                        547–548  the search
 └── PegNotInserted and its signatures               590–597  the insertion
 """
 
@@ -52,12 +52,3 @@ class SearchGaveUp(ByTouchError):
     text = "The hole was not found in time"
     cause = "The place was more uncertain than stated, or touches were not recognised."
     remedy = "Look at the search path in the report; locate the part again."
-
-
-class SearchLostFace(ByTouchError):
-    """A motion of the search met nothing where the face should be."""
-
-    number = 549
-    text = "The face was lost during the search"
-    cause = "The part has moved, its face ends here, or the peg has slipped in the gripper."
-    remedy = "Check part and grip, then begin with the touches of the face again."

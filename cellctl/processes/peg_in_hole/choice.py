@@ -14,6 +14,8 @@ from cellctl.processes.peg_in_hole.derived import Derived
 from cellctl.processes.peg_in_hole.parameters import SearchParameters, search_parameters
 from cellctl.processes.peg_in_hole.task import SearchTask
 
+ARC_TOUCHES = 9
+"""Touches along the outer face of a plug."""
 _GREATEST_LOOP_N_S_M = 7e4
 _LEAST_DIP_SIGMAS = 14.0
 
@@ -174,13 +176,13 @@ def _particle_map(_task: SearchTask, parameters: SearchParameters) -> Derived:
 
 def _arc(task: SearchTask, parameters: SearchParameters) -> Derived:
     rim_m = task.fit.rim_m or 0.0
-    speed, touch = parameters.arc_speed.value, parameters.touch_speed.value
+    speed = parameters.touch_speed.value
     return Derived(
         SearchName.ARC,
-        8 + 1.2 * rim_m / 5e-3 + 2.1 * rim_m / speed + 1e-3 / touch,
+        8 + 1.2 * rim_m / 5e-3 + ARC_TOUCHES * (0.8 + 0.3e-3 / speed) + 1e-3 / speed,
         "s",
-        "8 s + 1.2 ρ / (5 mm/s) + 2.1 ρ / v_arc + 1 mm / v_t",
-        {"ρ": rim_m, "v_arc": speed, "v_t": touch},
+        "8 s + 1.2 ρ / (5 mm/s) + n (0.8 s + 0.3 mm / v_t) + 1 mm / v_t",
+        {"ρ": rim_m, "n": ARC_TOUCHES, "v_t": speed},
     )
 
 

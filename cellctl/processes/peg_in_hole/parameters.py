@@ -16,8 +16,6 @@ DETECTION_S = 0.03
 _TOUCH_N = 8.0
 _FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
-_TANGENT_ERROR_RAD = 0.03
-"""Of a tangent predicted from points already touched on a circle of known radius."""
 _SIDE_N = 5.0
 
 
@@ -30,7 +28,6 @@ class SearchParameters:
     catch: Derived
     pitch: Derived
     slide_speed: Derived
-    arc_speed: Derived
     side_force: Derived
     tilt: Derived
     tilted_dip: Derived
@@ -81,13 +78,6 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "m/s",
             "min(5 mm/s, 0.96 C / (t_det + θ / 2))",
             {"C": catch_m, "θ": dead_s, "t_det": DETECTION_S},
-        ),
-        Derived(
-            "arc speed",
-            min(_FASTEST_SLIDE_M_S, _SIDE_N / (1.5 * cell.loop_n_s_m * _TANGENT_ERROR_RAD)),
-            "m/s",
-            "min(5 mm/s, F_side / (1.5 k θ ε_t))",
-            {"F_side": _SIDE_N, "k": stiffness, "θ": dead_s, "ε_t": _TANGENT_ERROR_RAD},
         ),
         Derived("side force", _SIDE_N, "N", "5 N", {}),
         Derived("tilt", tilt_rad, "rad", "clamp(max(0.4 mm, 28 σ_z) / r, 4°, 12°)", heights),
