@@ -218,7 +218,7 @@ class KinematicMotions(ContactMotions):
             return np.zeros(len(offsets), dtype=bool)
         free, rim_m = np.hypot(*offsets.T), self.task.fit.rim_m
         lost = free < self.task.fit.catch_radius_m
-        return lost if rim_m is None else lost | (free > rim_m)
+        return np.asarray(lost if rim_m is None else lost | (free > rim_m))
 
     def _side_gap_m(self, direction: Array) -> float:
         """Way along a unit vector (2,) until the peg stands at the outer face of the plug."""

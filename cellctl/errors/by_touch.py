@@ -3,7 +3,9 @@
 ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
 ├── HoleAbsent, SearchGaveUp                        547–548  the search
-└── PegNotInserted and its signatures               590–597  the insertion
+└── PegNotInserted
+    └── SensorDead, PegSlipped, NotSeated, FalseSeat,
+        HoleTooWide, PegNotHeld                     590–595  the verdict
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -52,3 +54,61 @@ class SearchGaveUp(ByTouchError):
     text = "The hole was not found in time"
     cause = "The place was more uncertain than stated, or touches were not recognised."
     remedy = "Look at the search path in the report; locate the part again."
+
+
+class PegNotInserted(ByTouchError):
+    """A peg that is not known to be inserted. Subclasses say which evidence is missing."""
+
+
+class SensorDead(PegNotInserted):
+    """The force did not change while the peg was pushed."""
+
+    number = 590
+    text = "The force sensor did not feel the peg being pushed"
+    cause = "The sensor repeats an old value, its cable is loose, or nothing holds the peg."
+    remedy = "Do not pull the peg out by the robot before the sensor answers; check the sensor."
+
+
+class PegSlipped(PegNotInserted):
+    """The part may have slipped in the gripper, so depths mean nothing."""
+
+    number = 591
+    text = "The part has slipped in the gripper, or nobody can tell"
+    cause = "A force above 60 % of the grip force, or a rear that is not where the drawing has it."
+    remedy = "Take the part out by hand; check jaws and grip pressure; measure the grip force."
+
+
+class NotSeated(PegNotInserted):
+    """Depth or force at the end is not that of the seat."""
+
+    number = 592
+    text = "The peg is not at its seat"
+    cause = "A blocked or wrong hole, a jam, or a face whose height was not touched right."
+    remedy = "Look at the forces over depth in the report; look into the hole."
+
+
+class FalseSeat(PegNotInserted):
+    """The depth is right, but the peg gives way sideways."""
+
+    number = 593
+    text = "The peg gives way sideways: it stands beside the hole or on its edge"
+    cause = "The part has slipped in the gripper while it stood on the face or on a chamfer."
+    remedy = "Take the part out by hand and look at both; grip it again."
+
+
+class HoleTooWide(PegNotInserted):
+    """More play than the drawing has."""
+
+    number = 594
+    text = "The peg has too much play: this is another hole"
+    cause = "A neighbouring hole, a hole of another size, or the wrong part."
+    remedy = "Compare part and place with the recipe; locate the hole better if others are near."
+
+
+class PegNotHeld(PegNotInserted):
+    """Key or lock does not hold."""
+
+    number = 595
+    text = "The part can be turned or pulled out"
+    cause = "The key has not engaged, or the lock of the connector is open."
+    remedy = "Plug the part by hand and compare; check keys and lock."
