@@ -3,6 +3,7 @@
 ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
 ├── HoleAbsent, SearchGaveUp                        547–548  the search
+├── FaceAbsent, FaceUneven, FaceTilted              549–551  the face
 └── PegNotInserted
     └── SensorDead, PegSlipped, NotSeated, FalseSeat,
         HoleTooWide, PegNotHeld                     590–595  the verdict
@@ -54,6 +55,33 @@ class SearchGaveUp(ByTouchError):
     text = "The hole was not found in time"
     cause = "The place was more uncertain than stated, or touches were not recognised."
     remedy = "Look at the search path in the report; locate the part again."
+
+
+class FaceAbsent(ByTouchError):
+    """No face was touched where vision reports one."""
+
+    number = 549
+    text = "The face of the hole was not met"
+    cause = "The part is missing or elsewhere, or its height is more uncertain than stated."
+    remedy = "Look at the part; compare its place with what vision reported."
+
+
+class FaceUneven(ByTouchError):
+    """Four touches do not lie in a plane."""
+
+    number = 550
+    text = "The face of the hole is not even"
+    cause = "A chip or burr under one touch, a touch beside the face, or a part that gives way."
+    remedy = "Clean the face; choose a radius of the touches that stays on it."
+
+
+class FaceTilted(ByTouchError):
+    """The face stands at another angle than vision reports."""
+
+    number = 551
+    text = "The face is tilted more than vision may be wrong"
+    cause = "The part lies askew, or its orientation was measured wrong."
+    remedy = "Locate the part again; check how it is fixed."
 
 
 class PegNotInserted(ByTouchError):
