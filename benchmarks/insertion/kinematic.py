@@ -155,12 +155,9 @@ class KinematicMotions(ContactMotions):
         return self._ended(ended, press_n)
 
     async def turn(
-        self,
-        task_rotation_tip_rad: Array,
-        hold_force_n: Array,
-        speed_rad_s: float,  # noqa: ARG002 - a turn costs the same at any speed
+        self, task_rotation_tip_rad: Array, hold_force_n: Array, speed_rad_s: float
     ) -> ContactMotion:
-        self._turned(task_rotation_tip_rad)
+        self._turned(task_rotation_tip_rad, speed_rad_s)
         return self._ended(Ended.TRAVEL, float(hold_force_n[2]))
 
     async def give_way(self, press_n: float, hold_s: float) -> ContactMotion:
@@ -170,20 +167,30 @@ class KinematicMotions(ContactMotions):
     async def feed(
         self, depth_m: float, force_limit_n: float, until: Condition | None = None
     ) -> ContactMotion:
-        deepest_m = min(self._depth_m(), depth_m)
-        self.time_s += max(deepest_m - self.position_m[2], 0.0) / self._touch_speed
-        self.position_m[2] = deepest_m
-        ended = Ended.TRAVEL if deepest_m == depth_m else Ended.FORCE
-        if until is not None and until(self._sample(0.0)):
-            ended = Ended.CONDITION
-        return self._ended(ended, force_limit_n if ended is Ended.FORCE else 0.0)
+        rests_m = self._depth_m()
+        # Against a stop the force rises with the way of the arm.
+        yields_m = force_limit_n / self.task.cell.stiffness_n_m
+        samples: list[ContactSample] = []
+        ended = Ended.TRAVEL
+        for at_m in (rests_m, rests_m + yields_m / 2, rests_m + yields_m):
+            reached_m = min(at_m, depth_m)
+            self.time_s += max(reached_m - self.position_m[2], 0.0) / self._touch_speed
+            self.position_m[2] = reached_m
+            press_n = max(reached_m - rests_m, 0.0) * self.task.cell.stiffness_n_m
+            samples.append(self._sample(press_n))
+            if until is not None and until(samples[-1]):
+                return ContactMotion(Ended.CONDITION, tuple(samples))
+            ended = Ended.TRAVEL if at_m > depth_m else Ended.FORCE
+        return ContactMotion(ended, tuple(samples))
 
     async def back_out(self, height_m: float) -> ContactMotion:
         self.position_m[2] = -height_m
         return self._ended(Ended.TRAVEL, 0.0)
 
-    def _turned(self, rotation_rad: Array) -> None:
-        self.time_s += _TURN_S
+    def _turned(self, rotation_rad: Array, speed_rad_s: float = 0.0) -> None:
+        """A large turn costs what the reference counts for it, a small one its own time."""
+        angle_rad = float(np.linalg.norm(rotation_rad - self.rotation_rad))
+        self.time_s += min(_TURN_S, angle_rad / speed_rad_s) if speed_rad_s else _TURN_S
         self.rotation_rad = np.asarray(rotation_rad, dtype=float).copy()
         self._approach()
         self._offset_m = self._offset_m + self._rng.normal(0, _TURN_SIGMA_M, 2)

@@ -4,6 +4,7 @@ ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
 ├── HoleAbsent, SearchGaveUp                        547–548  the search
 ├── FaceAbsent, FaceUneven, FaceTilted              549–551  the face
+├── PegJammed, PegWedged, HoleBlocked               552–554  the insertion
 └── PegNotInserted
     └── SensorDead, PegSlipped, NotSeated, FalseSeat,
         HoleTooWide, PegNotHeld                     590–595  the verdict
@@ -82,6 +83,33 @@ class FaceTilted(ByTouchError):
     text = "The face is tilted more than vision may be wrong"
     cause = "The part lies askew, or its orientation was measured wrong."
     remedy = "Locate the part again; check how it is fixed."
+
+
+class PegJammed(ByTouchError):
+    """The peg stands short of its seat, and nothing has helped."""
+
+    number = 552
+    text = "The peg is jammed in its hole"
+    cause = "The axes of peg and hole stand at an angle, or friction is greater than stated."
+    remedy = "Compare grip and face in the report; clean both parts; check the angle of the grip."
+
+
+class PegWedged(ByTouchError):
+    """Side force and moment stay although nothing pushes any more."""
+
+    number = 553
+    text = "The peg is wedged in its hole"
+    cause = "It entered at too great an angle; after an aligned entry something else is wrong."
+    remedy = "Free the part by hand; do not let the robot pull harder. Look for damage."
+
+
+class HoleBlocked(ByTouchError):
+    """A straight peg meets the same resistance twice at the same depth."""
+
+    number = 554
+    text = "The hole is blocked or too shallow"
+    cause = "A foreign body, the wrong part, or another depth than the drawing has."
+    remedy = "Look into the hole; compare part and recipe."
 
 
 class PegNotInserted(ByTouchError):
