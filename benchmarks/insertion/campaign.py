@@ -1,7 +1,7 @@
 """Search strategies side by side on identical seeds, next to the figures of the reference.
 
-Run with ``make campaign-insertion``, ``QUICK=1`` for few seeds. Exit code 1 when a search says that
-the peg has entered where it has not.
+Then pegs that are not inserted, which the verdict must not accept. Run with ``make campaign-insertion``, ``QUICK=1`` for few seeds. Exit code 1 when a search says
+that the peg has entered where it has not, or the verdict accepts a trap.
 """
 
 import argparse
@@ -16,6 +16,7 @@ from rich.progress import track
 from rich.table import Table
 
 from benchmarks.insertion.cases import CASES, SearchCase
+from benchmarks.insertion.traps import PegState, TrapOutcome, run_trap
 from benchmarks.insertion.trials import SearchTrialOutcome, run_search
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.processes.peg_in_hole.choice import SearchName
@@ -24,6 +25,9 @@ WORKERS = 2
 TRIALS, QUICK_TRIALS = 300, 10
 NEAR_POINTS = 8.0
 """A rate farther from the reference than this is marked (R6); ten searches scatter by more."""
+
+_TRAP_TASKS = (CASES[4].task, CASES[8].task, CASES[13].task)
+"""A tight pin at a stiff and at a soft cell, and the plug."""
 
 Job = tuple[int, SearchName, int, int]
 """Case, strategy, first seed, number of seeds."""
@@ -42,15 +46,34 @@ def main() -> int:
     ]
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
         results = list(track(pool.map(_run, jobs), "searches", len(jobs)))
-    Console(width=150).print(_table(jobs, results))
+    console = Console(width=160)
+    console.print(_table(jobs, results))
     false = sum(one.false_entry for outcomes in results for one in outcomes)
     print(f"{len(jobs) * trials} searches, falsely entered: {false}")
-    return 1 if false else 0
+    traps = [
+        run_trap(task, state, arguments.seed + n)
+        for state in PegState
+        for task in _TRAP_TASKS
+        for n in range(trials // 5)
+    ]
+    console.print(_trap_table(traps))
+    trapped = sum(one.judgement.inserted for one in traps if one.state is not PegState.INSERTED)
+    return 1 if false or trapped else 0
 
 
 def _run(job: Job) -> list[SearchTrialOutcome]:
     index, name, seed, trials = job
     return [run_search(CASES[index].task, name, seed + n) for n in range(trials)]
+
+
+def _trap_table(traps: Sequence[TrapOutcome]) -> Table:
+    table = Table("state", "trials", "called inserted", "captured by pushes alone", title="Verdict")
+    for state in PegState:
+        some = [one for one in traps if one.state is state]
+        inserted = sum(one.judgement.inserted for one in some)
+        captured = sum(one.captured for one in some)
+        table.add_row(state.value, str(len(some)), str(inserted), str(captured))
+    return table
 
 
 def _table(jobs: Sequence[Job], results: Sequence[Sequence[SearchTrialOutcome]]) -> Table:

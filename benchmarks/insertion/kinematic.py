@@ -100,14 +100,16 @@ class KinematicMotions(ContactMotions):
         if abs(direction[2]) > 0.5:
             gap_m = self._depth_m() - self.position_m[2]
         else:
-            gap_m = self._side_gap_m(direction[:2])
+            gap_m = self._side_gap_m(direction[:2], force_n)
         way_m = min(max(gap_m, 0.0), travel_m)
         self.time_s += _TOUCH_S + way_m / speed
         self.position_m = self.position_m + way_m * direction
         if way_m == gap_m:
             noise_m = float(self._rng.normal(0, self.task.cell.height_sigma_m))
             self.position_m = self.position_m + noise_m * direction
-            return self._ended(Ended.FORCE, force_n)
+            sample = self._sample(0.0)
+            sample.force_n[:] -= force_n * direction
+            return ContactMotion(Ended.FORCE, (sample,))
         return self._ended(Ended.TRAVEL, 0.0)
 
     async def press(
@@ -168,6 +170,9 @@ class KinematicMotions(ContactMotions):
         self, depth_m: float, force_limit_n: float, until: Condition | None = None
     ) -> ContactMotion:
         rests_m = self._depth_m()
+        if rests_m > self.task.fit.entry_depth_m:
+            # The peg gives way sideways until it stands free between the walls.
+            self.position_m[:2] -= self.true_offset_m
         # Against a stop the force rises with the way of the arm.
         yields_m = force_limit_n / self.task.cell.stiffness_n_m
         samples: list[ContactSample] = []
@@ -227,9 +232,13 @@ class KinematicMotions(ContactMotions):
         lost = free < self.task.fit.catch_radius_m
         return np.asarray(lost if rim_m is None else lost | (free > rim_m))
 
-    def _side_gap_m(self, direction: Array) -> float:
-        """Way along a unit vector (2,) until the peg stands at the outer face of the plug."""
+    def _side_gap_m(self, direction: Array, force_n: float) -> float:
+        """Way along a unit vector (2,) to the face of the plug, or to the wall of the hole."""
         offset, rim_m = self.true_offset_m, self.task.fit.rim_m
+        near = float(np.hypot(*offset)) < self.task.fit.peg_radius_m
+        if near and self.position_m[2] > self.task.fit.entry_depth_m:
+            wall_m = self.task.fit.clearance_m - float(offset @ direction)
+            return wall_m + force_n / self.task.cell.stiffness_n_m
         if rim_m is None:
             return np.inf
         along = float(offset @ direction)

@@ -14,6 +14,7 @@ from cellctl.cell.by_touch.motions import ContactSample
 _OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
 _STAYS = 0.7
+_FOOT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,14 +53,18 @@ class Standing:
         )
 
 
-def seat_slope_n_m(samples: Sequence[ContactSample], within_m: float = 0.05e-3) -> float | None:
-    """Rise of the axial force over the last part of a feed, N/m; None where it cannot be told."""
+def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
+    """Rise of the axial force over depth at the end of a feed, N/m; None where it cannot be told.
+
+    From the samples since the force last passed a fifth of what it came to.
+    """
     depth_m = np.array([sample.task_position_tip_m[2] for sample in samples])
     axial_n = np.array([-sample.force_n[2] for sample in samples])
-    last = depth_m >= depth_m[-1] - within_m
-    if np.count_nonzero(last) < 2 or np.ptp(depth_m[last]) == 0:
+    below = np.flatnonzero(axial_n < _FOOT * axial_n[-1])
+    begin = int(below[-1]) + 1 if below.size else 0
+    if len(samples) - begin < 2 or np.ptp(depth_m[begin:]) == 0:
         return None
-    return float(np.polyfit(depth_m[last], axial_n[last], 1)[0])
+    return float(np.polyfit(depth_m[begin:], axial_n[begin:], 1)[0])
 
 
 def greatest_axial_n(samples: Sequence[ContactSample]) -> float:

@@ -5,7 +5,12 @@ A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the reference
 
 from dataclasses import dataclass
 
-from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, ContactSample, Ended
+from cellctl.cell.by_touch.motions import (
+    ContactMotion,
+    ContactMotions,
+    ContactSample,
+    Ended,
+)
 from cellctl.errors.by_touch import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
@@ -67,8 +72,10 @@ class _Feed:
 
     async def on(self) -> ContactMotion:
         """A little beyond the seat, so that only a force ends it there."""
-        target_m = self._task.fit.depth_m + SEAT_TOLERANCE_M
-        motion = await self._motions.feed(target_m, self._task.limits.insertion_n)
+        limit_n = self._task.limits.insertion_n
+        yields_m = limit_n / self._task.cell.stiffness_n_m
+        target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
+        motion = await self._motions.feed(target_m, limit_n)
         self._samples += motion.samples
         return motion
 
@@ -76,7 +83,7 @@ class _Feed:
         """What is known at the end of the last feed."""
         end = Standing.of(motion.last)
         return Fed(
-            depth_m=end.depth_m - end.axial_n / self._task.cell.stiffness_n_m,
+            depth_m=_unloaded_m(end, self._task),
             seat_force_n=end.axial_n,
             seat_slope_n_m=seat_slope_n_m(motion.samples),
             greatest_force_n=greatest_axial_n(self._samples),
@@ -86,7 +93,12 @@ class _Feed:
 
 
 def _short_of_seat(motion: ContactMotion, task: SearchTask) -> bool:
-    return bool(motion.last.task_position_tip_m[2] < task.fit.depth_m - SEAT_TOLERANCE_M)
+    return _unloaded_m(Standing.of(motion.last), task) < task.fit.depth_m - SEAT_TOLERANCE_M
+
+
+def _unloaded_m(standing: Standing, task: SearchTask) -> float:
+    """Depth of the tip, which arm and contact have yielded under the force to get beyond."""
+    return standing.depth_m - standing.axial_n / task.cell.stiffness_n_m
 
 
 async def _help(
