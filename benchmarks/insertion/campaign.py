@@ -1,7 +1,8 @@
 """Search strategies side by side on identical seeds, next to the figures of the reference.
 
-Then pegs that are not inserted, which the verdict must not accept. Run with ``make campaign-insertion``, ``QUICK=1`` for few seeds. Exit code 1 when a search says
-that the peg has entered where it has not, or the verdict accepts a trap.
+Then pegs that are not inserted, which the verdict must not accept. Run with
+``make campaign-insertion``, ``QUICK=1`` for few seeds. Exit code 1 when a search says that the peg
+has entered where it has not, or the verdict accepts a trap.
 """
 
 import argparse

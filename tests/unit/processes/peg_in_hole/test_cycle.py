@@ -34,9 +34,12 @@ def test_a_peg_is_brought_to_its_seat_and_judged(task: SearchTask) -> None:
         motions = over(task, seed)
         result = asyncio.run(run_cycle(motions, planned(task, grip_force_n=200.0)))
         assert result.judgement.fault is None
-        # The truth says the same; the arm still pushes at one wall along each axis.
+        # The truth says the same; the arm still pushes at one wall along each axis, and where each
+        # touch ended is known no better than to its noise.
         yields_m = push_force_n(task.cell) / task.cell.stiffness_n_m
-        assert np.hypot(*motions.true_offset_m) <= 2 * (task.fit.clearance_m + yields_m)
+        noise_m = 4 * task.cell.height_sigma_m
+        off_m = float(np.max(np.abs(motions.true_offset_m)))
+        assert off_m <= task.fit.clearance_m + yields_m + noise_m
         assert motions.position_m[2] > task.fit.depth_m - 0.3e-3
         json.dumps(result.to_record())
 
