@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -64,6 +64,10 @@ campaign-tornado: venv
 campaign-antenna: venv
 	$(BIN)/python -m benchmarks.antenna.chain.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.antenna.insertion.campaign $(if $(QUICK),--quick)
+
+# Takes twenty minutes; QUICK=1 draws few holes, in two minutes.
+campaign-insertion: venv
+	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
 
 bench: bench-metrology bench-looks bench-guard
 

@@ -10,6 +10,7 @@ CellError
 ├── VisionError       4xx   errors.vision       images, holes, part poses
 │   └── ConnectorError 46x  errors.connector    connectors and their contacts in one image
 ├── ForceError        5xx   errors.force        sensor, guard, mating
+├── ByTouchError      54x   errors.by_touch     holes that are found by touch
 ├── PluggingError     56x   errors.plugging     plan and insertion of a plug
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 │   └── ReferenceMoved 64x  errors.plug_calibration  plugging by two cameras
@@ -20,6 +21,7 @@ CellError
 """
 
 from cellctl.errors import (
+    by_touch,
     calibration,
     camera,
     config,
@@ -42,6 +44,7 @@ from cellctl.errors.base import CellError, Reaction, catalogue
 __all__ = [
     "CellError",
     "Reaction",
+    "by_touch",
     "calibration",
     "camera",
     "catalogue",

@@ -1,0 +1,1 @@
+"""Searches and insertions by touch over many seeds."""

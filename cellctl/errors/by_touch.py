@@ -1,0 +1,170 @@
+"""54x–55x and 59x: finding a hole by touch, and judging what went into it.
+
+ByTouchError
+├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
+├── HoleAbsent, SearchGaveUp                        547–548  the search
+├── FaceAbsent, FaceUneven, FaceTilted              549–551  the face
+├── PegJammed, PegWedged, HoleBlocked               552–554  the insertion
+└── PegNotInserted
+    └── SensorDead, PegSlipped, NotSeated, FalseSeat,
+        HoleTooWide, PegNotHeld                     590–595  the verdict
+"""
+
+from cellctl.errors.base import CellError, Reaction
+
+
+class ByTouchError(CellError):
+    """A hole may not be searched by touch, was not found, or the peg did not go in."""
+
+    reaction = Reaction.STOP
+
+
+class SearchImpossible(ByTouchError):
+    """No strategy finds this hole in the time that it is given."""
+
+    number = 545
+    text = "No search by touch fits this hole and this cell"
+    cause = "Stiffness times dead time of the cell is too great for so tight a hole."
+    remedy = (
+        "Put a compliance of at most 2e5 N/m at the wrist, shorten the dead time of the stream, or "
+        "locate the hole better."
+    )
+
+
+class HeightTooNoisy(ByTouchError):
+    """A tilted touch could not tell a hole from the noise of the height."""
+
+    number = 546
+    text = "Heights in contact are too uncertain for tilted touches"
+    cause = "Noise of force or position makes the height of a touch uncertain."
+    remedy = "Average longer, press harder, or use a strategy without tilted touches."
+
+
+class HoleAbsent(ByTouchError):
+    """The whole map was searched and holds no hole."""
+
+    number = 547
+    text = "There is no hole where one was expected"
+    cause = "Wrong part, wrong place, a closed hole, or an uncertainty that is stated too small."
+    remedy = "Look at the part; compare its place with what vision reported."
+
+
+class SearchGaveUp(ByTouchError):
+    """A search came to its time limit."""
+
+    number = 548
+    text = "The hole was not found in time"
+    cause = "The place was more uncertain than stated, or touches were not recognised."
+    remedy = "Look at the search path in the report; locate the part again."
+
+
+class FaceAbsent(ByTouchError):
+    """No face was touched where vision reports one."""
+
+    number = 549
+    text = "The face of the hole was not met"
+    cause = "The part is missing or elsewhere, or its height is more uncertain than stated."
+    remedy = "Look at the part; compare its place with what vision reported."
+
+
+class FaceUneven(ByTouchError):
+    """Four touches do not lie in a plane."""
+
+    number = 550
+    text = "The face of the hole is not even"
+    cause = "A chip or burr under one touch, a touch beside the face, or a part that gives way."
+    remedy = "Clean the face; choose a radius of the touches that stays on it."
+
+
+class FaceTilted(ByTouchError):
+    """The face stands at another angle than vision reports."""
+
+    number = 551
+    text = "The face is tilted more than vision may be wrong"
+    cause = "The part lies askew, or its orientation was measured wrong."
+    remedy = "Locate the part again; check how it is fixed."
+
+
+class PegJammed(ByTouchError):
+    """The peg stands short of its seat, and nothing has helped."""
+
+    number = 552
+    text = "The peg is jammed in its hole"
+    cause = "The axes of peg and hole stand at an angle, or friction is greater than stated."
+    remedy = "Compare grip and face in the report; clean both parts; check the angle of the grip."
+
+
+class PegWedged(ByTouchError):
+    """Side force and moment stay although nothing pushes any more."""
+
+    number = 553
+    text = "The peg is wedged in its hole"
+    cause = "It entered at too great an angle; after an aligned entry something else is wrong."
+    remedy = "Free the part by hand; do not let the robot pull harder. Look for damage."
+
+
+class HoleBlocked(ByTouchError):
+    """A straight peg meets the same resistance twice at the same depth."""
+
+    number = 554
+    text = "The hole is blocked or too shallow"
+    cause = "A foreign body, the wrong part, or another depth than the drawing has."
+    remedy = "Look into the hole; compare part and recipe."
+
+
+class PegNotInserted(ByTouchError):
+    """A peg that is not known to be inserted. Subclasses say which evidence is missing."""
+
+
+class SensorDead(PegNotInserted):
+    """The force did not change while the peg was pushed."""
+
+    number = 590
+    text = "The force sensor did not feel the peg being pushed"
+    cause = "The sensor repeats an old value, its cable is loose, or nothing holds the peg."
+    remedy = "Do not pull the peg out by the robot before the sensor answers; check the sensor."
+
+
+class PegSlipped(PegNotInserted):
+    """The part may have slipped in the gripper, so depths mean nothing."""
+
+    number = 591
+    text = "The part has slipped in the gripper, or nobody can tell"
+    cause = "A force above 60 % of the grip force, or a rear that is not where the drawing has it."
+    remedy = "Take the part out by hand; check jaws and grip pressure; measure the grip force."
+
+
+class NotSeated(PegNotInserted):
+    """Depth or force at the end is not that of the seat."""
+
+    number = 592
+    text = "The peg is not at its seat"
+    cause = "A blocked or wrong hole, a jam, or a face whose height was not touched right."
+    remedy = "Look at the forces over depth in the report; look into the hole."
+
+
+class FalseSeat(PegNotInserted):
+    """The depth is right, but the peg gives way sideways."""
+
+    number = 593
+    text = "The peg gives way sideways: it stands beside the hole or on its edge"
+    cause = "The part has slipped in the gripper while it stood on the face or on a chamfer."
+    remedy = "Take the part out by hand and look at both; grip it again."
+
+
+class HoleTooWide(PegNotInserted):
+    """More play than the drawing has."""
+
+    number = 594
+    text = "The peg has too much play: this is another hole"
+    cause = "A neighbouring hole, a hole of another size, or the wrong part."
+    remedy = "Compare part and place with the recipe; locate the hole better if others are near."
+
+
+class PegNotHeld(PegNotInserted):
+    """Key or lock does not hold."""
+
+    number = 595
+    text = "The part can be turned or pulled out"
+    cause = "The key has not engaged, or the lock of the connector is open."
+    remedy = "Plug the part by hand and compare; check keys and lock."

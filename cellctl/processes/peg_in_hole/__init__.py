@@ -1,0 +1,1 @@
+"""System C: a pin or a connector finds its hole by touch."""

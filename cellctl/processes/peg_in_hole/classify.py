@@ -1,0 +1,89 @@
+"""Where a first contact lies: end face, side, edge, or already between the walls.
+
+Forces tell a direction first, then light touches along and against it. Forces alone never say that
+a peg is aligned: pressed hard enough, friction resists every light touch. Source: section 2 (S3) of
+the reference of issue 15, which corrects the printed test of seed 003.
+"""
+
+from enum import StrEnum
+from math import atan, radians, tan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
+from cellctl.processes.peg_in_hole.task import CellFigures, SearchTask
+
+Array = NDArray[np.float64]
+
+_PRESS_N = 2.5
+_LEAST_THRESHOLD_N = 1.0
+_FACE_MARGIN_RAD = radians(8)
+_SIDE_RATIO = 1.5
+_TRAVEL_M = 0.2e-3
+_SETTLE_S = 0.3
+
+
+class ContactClass(StrEnum):
+    """What the peg has met."""
+
+    END_FACE = "end face"
+    SIDE = "side"
+    EDGE = "edge"
+    ALIGNED = "aligned"
+    """Walls all round, and deep enough to be between them."""
+    STUCK = "stuck"
+    """Resists all round without being deep: friction."""
+    WRONG_FEATURE = "wrong feature"
+    """Walls at two opposite sides only: a slot, or a gap between parts."""
+
+
+def light_threshold_n(cell: CellFigures, press_n: float) -> float:
+    """A light touch is met above this: friction, and what noise may look like."""
+    return cell.friction * press_n + max(3 * cell.force_sigma_n, _LEAST_THRESHOLD_N)
+
+
+def class_by_force(force_n: Array, cell: CellFigures) -> ContactClass:
+    """From the direction of the contact force (3,) alone: end face, edge or side."""
+    across_n, along_n = float(np.hypot(force_n[0], force_n[1])), abs(float(force_n[2]))
+    if across_n < tan(atan(cell.friction) + _FACE_MARGIN_RAD) * along_n:
+        return ContactClass.END_FACE
+    return ContactClass.SIDE if across_n > _SIDE_RATIO * along_n else ContactClass.EDGE
+
+
+def class_by_touches(
+    resisted: tuple[bool, bool, bool, bool],
+    depth_m: float,
+    entry_depth_m: float,
+    felt: ContactClass,
+) -> ContactClass:
+    """From light touches along +x, -x, +y, -y, and the class by force where they leave it open."""
+    if all(resisted):
+        return ContactClass.ALIGNED if depth_m > entry_depth_m else ContactClass.STUCK
+    if not any(resisted):
+        return ContactClass.END_FACE
+    if resisted in ((True, True, False, False), (False, False, True, True)):
+        return ContactClass.WRONG_FEATURE
+    return ContactClass.SIDE if felt is ContactClass.END_FACE else felt
+
+
+async def classify_contact(motions: ContactMotions, task: SearchTask) -> ContactClass:
+    """Press lightly and touch to all four sides; each touch begins where the first did."""
+    begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
+    threshold_n = light_threshold_n(task.cell, _PRESS_N)
+    resisted = []
+    for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
+        travel_m = threshold_n / task.cell.stiffness_n_m + _TRAVEL_M
+        touched = await motions.touch(np.array([x, y, 0.0]), travel_m, threshold_n)
+        resisted.append(touched.ended is Ended.FORCE)
+        await _return(motions, begun, task)
+    depth_m = float(begun.task_position_tip_m[2])
+    first, second, third, fourth = resisted
+    felt = class_by_force(begun.force_n, task.cell)
+    return class_by_touches((first, second, third, fourth), depth_m, task.fit.entry_depth_m, felt)
+
+
+async def _return(motions: ContactMotions, begun: ContactSample, task: SearchTask) -> None:
+    back = begun.task_position_tip_m[None, :2]
+    speed_m_s = _TRAVEL_M / _SETTLE_S
+    await motions.slide(back, _PRESS_N, speed_m_s, lambda _sample: False, task.limits.search_n)

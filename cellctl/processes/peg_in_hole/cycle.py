@@ -1,0 +1,85 @@
+"""One whole cycle by touch: face, search, insertion, pushes to the sides, verdict."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cellctl.cell.by_touch.motions import ContactMotions
+from cellctl.processes.peg_in_hole.choice import SearchChoice, SearchName
+from cellctl.processes.peg_in_hole.face import TouchedFace, touch_face
+from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
+from cellctl.processes.peg_in_hole.search.find_hole import find_hole
+from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
+from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
+from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
+from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, SeatLimits, judge_peg
+from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
+
+_PRESS_S = 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class CyclePlan:
+    """What one cycle is asked to do; made before anything moves."""
+
+    task: SearchTask
+    choice: SearchChoice
+    seat: SeatLimits
+    face_radius_m: float
+    """Of the circle on which the face is touched."""
+    height_uncertainty_m: float
+    grip_force_n: float | None
+    """None where nobody has measured it: the touch on the rear is needed then."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CycleResult:
+    """What one cycle has found."""
+
+    face: TouchedFace
+    found_by: SearchName
+    trace: SearchTrace
+    hole_map: HoleMap
+    fed: Fed
+    evidence: InsertionEvidence
+    judgement: PegJudgement
+
+    def to_record(self) -> Mapping[str, Any]:
+        """Plain data, without path and curve."""
+        return {
+            "found_by": self.found_by.value,
+            "face_tilt_rad": self.face.tilt_rad,
+            "recoveries": list(self.fed.recoveries),
+            "evidence": self.evidence.to_record(),
+            "judgement": self.judgement.to_record(),
+        }
+
+
+async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
+    """From above the face to the verdict, held by the gripper still.
+
+    Raises what face, search and insertion raise; then the caller backs out. Without a touch on the
+    part's rear the verdict rests on the grip force alone.
+    """
+    task = plan.task
+    face = await touch_face(motions, task, plan.face_radius_m, plan.height_uncertainty_m)
+    begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
+    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
+    probe = TouchProbe(
+        motions, task, plan.choice.parameters, hole_map, begun.time_s + task.search_limit_s
+    )
+    found_by = await find_hole(probe, plan.choice.order)
+    fed = await insert(motions, task)
+    capture = await measure_capture(motions, task)
+    evidence = InsertionEvidence(
+        depth_m=fed.depth_m - face.depth_m,
+        seat_force_n=fed.seat_force_n,
+        seat_slope_n_m=fed.seat_slope_n_m,
+        capture=capture,
+        greatest_force_n=max(fed.greatest_force_n, task.limits.search_n),
+        grip_force_n=plan.grip_force_n,
+        retouch_error_m=None,
+    )
+    judgement = judge_peg(evidence, task, plan.seat)
+    return CycleResult(face, found_by, probe.trace, hole_map, fed, evidence, judgement)

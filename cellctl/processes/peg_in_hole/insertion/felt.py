@@ -1,0 +1,72 @@
+"""Forces of an insertion over depth, and what they say where a peg stands.
+
+All forces are those that the hole exerts on the peg; the axial force is counted against the feed.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+
+import numpy as np
+
+from cellctl.cell.by_touch.motions import ContactSample
+
+_OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
+"""Band of side force and moment round that of a free peg, before a recipe has measured its own."""
+_STAYS = 0.7
+_FOOT = 0.2
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A peg that stands, by the last sample of its feed."""
+
+    depth_m: float
+    axial_n: float
+    side_n: float
+    moment_nm: float
+
+    @classmethod
+    def of(cls, sample: ContactSample) -> "Standing":
+        """The figures of one sample; the moment about z does not count, keys make one."""
+        x_n, y_n, z_n = (float(value) for value in sample.force_n)
+        x_nm, y_nm, _ = (float(value) for value in sample.moment_nm)
+        depth_m = float(sample.task_position_tip_m[2])
+        return cls(depth_m, -z_n, hypot(x_n, y_n), hypot(x_nm, y_nm))
+
+    @property
+    def sideways(self) -> bool:
+        """Side force or moment out of their band: a jam or a wedge, not a closed hole."""
+        return self.side_n > _OUT_OF_BAND_N or self.moment_nm > _OUT_OF_BAND_NM
+
+    def wedged_after(self, before: "Standing") -> bool:
+        """The feed was lowered since, and side force and moment have stayed: the peg is wedged."""
+        if not before.sideways:
+            return False
+        stays_n = self.side_n > _STAYS * before.side_n
+        return self.sideways and stays_n and self.moment_nm > _STAYS * before.moment_nm
+
+    def __str__(self) -> str:
+        return (
+            f"depth {self.depth_m * 1e3:.2f} mm, axial {self.axial_n:.1f} N, side "
+            f"{self.side_n:.1f} N, moment {self.moment_nm:.2f} N·m"
+        )
+
+
+def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
+    """Rise of the axial force over depth at the end of a feed, N/m; None where it cannot be told.
+
+    From the samples since the force last passed a fifth of what it came to.
+    """
+    depth_m = np.array([sample.task_position_tip_m[2] for sample in samples])
+    axial_n = np.array([-sample.force_n[2] for sample in samples])
+    below = np.flatnonzero(axial_n < _FOOT * axial_n[-1])
+    begin = int(below[-1]) + 1 if below.size else 0
+    if len(samples) - begin < 2 or np.ptp(depth_m[begin:]) == 0:
+        return None
+    return float(np.polyfit(depth_m[begin:], axial_n[begin:], 1)[0])
+
+
+def greatest_axial_n(samples: Sequence[ContactSample]) -> float:
+    """The greatest force along the axis, of either sign."""
+    return max(abs(float(sample.force_n[2])) for sample in samples)

@@ -1,0 +1,121 @@
+"""Feeds a peg that has entered to its seat.
+
+A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the reference of issue 15.
+"""
+
+from dataclasses import dataclass
+
+from cellctl.cell.by_touch.motions import (
+    ContactMotion,
+    ContactMotions,
+    ContactSample,
+    Ended,
+)
+from cellctl.errors.by_touch import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.insertion.felt import (
+    Standing,
+    greatest_axial_n,
+    seat_slope_n_m,
+)
+from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
+from cellctl.processes.peg_in_hole.task import SearchTask
+
+SEAT_TOLERANCE_M = 0.3e-3
+_MOST_RECOVERIES = 3
+_RECOVERY_S = 15.0
+_GAIN_M = 0.2e-3
+_SAME_DEPTH_M = 0.1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Fed:
+    """An insertion that has come to the depth of the seat."""
+
+    depth_m: float
+    """Less what arm and contact give way under the force."""
+    seat_force_n: float
+    seat_slope_n_m: float | None
+    greatest_force_n: float
+    recoveries: tuple[str, ...]
+    samples: tuple[ContactSample, ...]
+
+
+async def insert(motions: ContactMotions, task: SearchTask) -> Fed:
+    """To the seat, with at most three recoveries that each gain depth.
+
+    Raises ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with the figures where the peg stands.
+    """
+    feed = _Feed(motions, task)
+    motion = await feed.on()
+    helped: list[str] = []
+    begun_s = motion.last.time_s
+    while motion.ended is Ended.FORCE and _short_of_seat(motion, task):
+        standing = Standing.of(motion.last)
+        measures = IN_ORDER if standing.sideways else WHEN_STRAIGHT
+        left = [one for one in measures if one.name not in helped]
+        late = motion.last.time_s - begun_s > _RECOVERY_S
+        if not left or len(helped) >= _MOST_RECOVERIES or late:
+            raise PegJammed(f"{standing}; tried: {', '.join(helped) or 'nothing'}")
+        await _help(motions, task, standing, left[0])
+        helped.append(left[0].name)
+        motion = await feed.on()
+        _require_gain(standing, Standing.of(motion.last), helped)
+    return feed.result(motion, tuple(helped))
+
+
+class _Feed:
+    """Feeds, and keeps every sample."""
+
+    def __init__(self, motions: ContactMotions, task: SearchTask) -> None:
+        self._motions, self._task = motions, task
+        self._samples: list[ContactSample] = []
+
+    async def on(self) -> ContactMotion:
+        """A little beyond the seat, so that only a force ends it there."""
+        limit_n = self._task.limits.insertion_n
+        yields_m = limit_n / self._task.cell.stiffness_n_m
+        target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
+        motion = await self._motions.feed(target_m, limit_n)
+        self._samples += motion.samples
+        return motion
+
+    def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
+        """What is known at the end of the last feed."""
+        end = Standing.of(motion.last)
+        return Fed(
+            depth_m=_unloaded_m(end, self._task),
+            seat_force_n=end.axial_n,
+            seat_slope_n_m=seat_slope_n_m(motion.samples),
+            greatest_force_n=greatest_axial_n(self._samples),
+            recoveries=recoveries,
+            samples=tuple(self._samples),
+        )
+
+
+def _short_of_seat(motion: ContactMotion, task: SearchTask) -> bool:
+    return _unloaded_m(Standing.of(motion.last), task) < task.fit.depth_m - SEAT_TOLERANCE_M
+
+
+def _unloaded_m(standing: Standing, task: SearchTask) -> float:
+    """Depth of the tip, which arm and contact have yielded under the force to get beyond."""
+    return standing.depth_m - standing.axial_n / task.cell.stiffness_n_m
+
+
+async def _help(
+    motions: ContactMotions, task: SearchTask, standing: Standing, measure: Recovery
+) -> None:
+    """Raises ``PegWedged``: pulling harder would only break what is wedged."""
+    lowered = await motions.press(0.3 * standing.axial_n, 0.2)
+    if Standing.of(lowered.last).wedged_after(standing):
+        raise PegWedged(str(standing))
+    await measure.apply(motions, task.fit, standing)
+
+
+def _require_gain(before: Standing, after: Standing, helped: list[str]) -> None:
+    gained_m = after.depth_m - before.depth_m
+    if gained_m >= _GAIN_M:
+        return
+    if abs(gained_m) < _SAME_DEPTH_M and not after.sideways and not before.sideways:
+        raise HoleBlocked(f"{after}, the same after a second entry")
+    if len(helped) >= _MOST_RECOVERIES:
+        raise PegJammed(f"{after}; tried: {', '.join(helped)}")

@@ -1,0 +1,100 @@
+"""What helps a peg that stands short of its seat: each measure once, none with more force.
+
+Source: section 5.3 of the reference of issue 15.
+"""
+
+from abc import ABC, abstractmethod
+from math import pi, radians
+from typing import ClassVar
+
+import numpy as np
+
+from cellctl.cell.by_touch.motions import ContactMotions
+from cellctl.processes.peg_in_hole.insertion.felt import Standing
+from cellctl.processes.peg_in_hole.task import FitGeometry
+
+_LOWERED, _HALVED = 0.3, 0.5
+_GIVE_WAY_S = 1.0
+_WIGGLE_RAD, _WIGGLE_HZ, _WIGGLE_POINTS = radians(0.3), 2.0, 8
+_YAW_RAD, _YAW_RAD_S = radians(2), radians(3)
+_BACK_M = 1e-3
+
+
+class Recovery(ABC):
+    """One measure."""
+
+    name: ClassVar[str]
+
+    @abstractmethod
+    async def apply(self, motions: ContactMotions, fit: FitGeometry, standing: Standing) -> None:
+        """Ends with the peg upright in the hole, ready to be fed again."""
+
+
+class GiveWay(Recovery):
+    """Lower the feed and null side force and moments."""
+
+    name: ClassVar[str] = "give way"
+
+    async def apply(
+        self,
+        motions: ContactMotions,
+        fit: FitGeometry,  # noqa: ARG002 - alike for every fit
+        standing: Standing,
+    ) -> None:
+        """One second at 30 % of the force at which it stands."""
+        await motions.give_way(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+
+
+class Wiggle(Recovery):
+    """Tilt in a circle, by less than the clearance allows."""
+
+    name: ClassVar[str] = "wiggle"
+
+    async def apply(self, motions: ContactMotions, fit: FitGeometry, standing: Standing) -> None:
+        """One turn of the axis at 50 % of the force."""
+        amplitude = min(_WIGGLE_RAD, fit.clearance_m / max(standing.depth_m, 1e-3))
+        hold = np.array([0.0, 0.0, _HALVED * standing.axial_n])
+        speed = 2 * pi * _WIGGLE_HZ * amplitude
+        for angle in np.linspace(0, 2 * pi, _WIGGLE_POINTS):
+            tilted = amplitude * np.array([np.cos(angle), np.sin(angle), 0.0])
+            await motions.turn(tilted, hold, speed)
+        await motions.turn(np.zeros(3), hold, speed)
+
+
+class Yaw(Recovery):
+    """Turn about the axis; friction then acts round the peg instead of along it."""
+
+    name: ClassVar[str] = "yaw"
+
+    async def apply(
+        self,
+        motions: ContactMotions,
+        fit: FitGeometry,  # noqa: ARG002 - alike for every fit
+        standing: Standing,
+    ) -> None:
+        """To both sides at 50 % of the force."""
+        hold = np.array([0.0, 0.0, _HALVED * standing.axial_n])
+        for angle in (_YAW_RAD, -_YAW_RAD, 0.0):
+            await motions.turn(np.array([0.0, 0.0, angle]), hold, _YAW_RAD_S)
+
+
+class BackAndAgain(Recovery):
+    """Back a little, null what is felt, and enter again."""
+
+    name: ClassVar[str] = "back and again"
+
+    async def apply(
+        self,
+        motions: ContactMotions,
+        fit: FitGeometry,  # noqa: ARG002 - alike for every fit
+        standing: Standing,
+    ) -> None:
+        """Back 1 mm."""
+        await motions.back_out(_BACK_M - standing.depth_m)
+        await motions.give_way(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+
+
+IN_ORDER: tuple[Recovery, ...] = (GiveWay(), Wiggle(), Yaw(), BackAndAgain())
+"""For a peg with side force or moment."""
+WHEN_STRAIGHT: tuple[Recovery, ...] = (BackAndAgain(),)
+"""For one that meets a resistance without them: only a second entry tells chip from closed hole."""

@@ -1,0 +1,99 @@
+"""Speeds, pitches, angles and thresholds of a search, from the figures of its task.
+
+Nothing else tunes a search: a parameter changes when, and only when, one of its inputs does.
+Source: sections 1, 3.2, 3.4 and 3.6 of the reference of issue 15.
+"""
+
+from dataclasses import dataclass
+from math import radians
+from typing import Any
+
+from cellctl.processes.peg_in_hole.derived import Derived
+from cellctl.processes.peg_in_hole.task import SearchTask
+
+DETECTION_S = 0.03
+"""A lost or a new contact is believed after so long."""
+_TOUCH_N = 8.0
+_FASTEST_TOUCH_M_S = 3e-3
+_FASTEST_SLIDE_M_S = 5e-3
+_SIDE_N = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class SearchParameters:
+    """Every number that the strategies use; see the formulas in ``search_parameters``."""
+
+    press_n: Derived
+    touch_speed: Derived
+    catch: Derived
+    pitch: Derived
+    slide_speed: Derived
+    side_force: Derived
+    tilt: Derived
+    tilted_dip: Derived
+    dip_threshold: Derived
+    wall_threshold: Derived
+
+    def to_record(self) -> list[dict[str, Any]]:
+        """Formula and inputs of all of them."""
+        return [getattr(self, name).to_record() for name in self.__slots__]
+
+
+def touch_speed_m_s(stiffness_n_m: float, dead_time_s: float, growth_n: float = _TOUCH_N) -> float:
+    """Greatest speed at which a contact grows by ``growth_n`` before the arm has answered."""
+    speed = growth_n / (stiffness_n_m * (dead_time_s + DETECTION_S))
+    return min(_FASTEST_TOUCH_M_S, speed)
+
+
+def search_parameters(task: SearchTask) -> SearchParameters:
+    """All parameters of a task."""
+    fit, cell = task.fit, task.cell
+    radius_m, catch_m = fit.peg_radius_m, fit.catch_radius_m
+    press_n = min(_TOUCH_N, task.limits.search_n)
+    stiffness, dead_s = cell.stiffness_n_m, cell.dead_time_s
+    loop = {"k": stiffness, "θ": dead_s, "t_det": DETECTION_S}
+    tilt_rad = min(max(max(0.4e-3, 28 * cell.height_sigma_m) / radius_m, radians(4)), radians(12))
+    heights = {"r": radius_m, "σ_z": cell.height_sigma_m}
+    dip_m = radius_m * tilt_rad
+    return SearchParameters(
+        Derived("press", press_n, "N", "min(8 N, F_search)", {"F_search": task.limits.search_n}),
+        Derived(
+            "touch speed",
+            touch_speed_m_s(stiffness, dead_s, press_n),
+            "m/s",
+            "min(3 mm/s, ΔF / (k (θ + t_det)))",
+            {"ΔF": press_n, **loop},
+        ),
+        Derived(
+            "catch radius",
+            catch_m,
+            "m",
+            "c + max(ch_hole + ch_peg - 0.1 mm, 0)",
+            {"c": fit.clearance_m, "ch_hole": fit.hole_chamfer_m, "ch_peg": fit.peg_chamfer_m},
+        ),
+        Derived("pitch", 1.6 * catch_m, "m", "1.6 C", {"C": catch_m}),
+        Derived(
+            "slide speed",
+            min(_FASTEST_SLIDE_M_S, 0.96 * catch_m / (DETECTION_S + dead_s / 2)),
+            "m/s",
+            "min(5 mm/s, 0.96 C / (t_det + θ / 2))",
+            {"C": catch_m, "θ": dead_s, "t_det": DETECTION_S},
+        ),
+        Derived("side force", _SIDE_N, "N", "5 N", {}),
+        Derived("tilt", tilt_rad, "rad", "clamp(max(0.4 mm, 28 σ_z) / r, 4°, 12°)", heights),
+        Derived("tilted dip", dip_m, "m", "r θ_t", {"r": radius_m, "θ_t": tilt_rad}),
+        Derived(
+            "dip threshold",
+            max(0.12 * dip_m, 4 * cell.height_sigma_m),
+            "m",
+            "max(0.12 r θ_t, 4 σ_z)",
+            {"θ_t": tilt_rad, **heights},
+        ),
+        Derived(
+            "wall threshold",
+            cell.friction * press_n + 3 * cell.force_sigma_n,
+            "N",
+            "μ F_z + 3 σ_F",
+            {"μ": cell.friction, "F_z": press_n, "σ_F": cell.force_sigma_n},
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Strategies that find a hole by touch, written in the words of ``ContactMotions``."""

@@ -1,0 +1,63 @@
+"""Sliding an upright peg over the face of a plug until its rim, or the hole, is reached."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.cell.by_touch.motions import Ended
+from cellctl.processes.peg_in_hole.search.probe import (
+    UPRIGHT,
+    Felt,
+    LostSupport,
+    TouchProbe,
+)
+
+Array = NDArray[np.float64]
+
+SLIDE_M_S = 5e-3
+_INSIDE_M = 0.5e-3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Edge:
+    """Where a slide over the face came to its end."""
+
+    point_m: Array
+    """Peg centre (2,)."""
+    length_m: float
+    entered: bool
+
+
+async def slide_to_edge(probe: TouchProbe, direction: Array, rim_m: float) -> Edge | None:
+    """From a contact on the face along a unit vector (2,); None where no edge is in reach.
+
+    A loss of support within the uncertainty of the hole may be the hole: there the peg is pressed.
+    """
+    begin_m = await _here(probe)
+    end_m = begin_m + 2.2 * rim_m * direction
+    while True:
+        stop = LostSupport(probe.press_n)
+        motion = await probe.slide(end_m[None, :], SLIDE_M_S, stop)
+        if motion.ended is Ended.TRAVEL:
+            return None
+        here_m = motion.last.task_position_tip_m[:2]
+        lost_m = here_m if stop.begin is None else stop.begin.task_position_tip_m[:2]
+        if np.linalg.norm(lost_m) > rim_m / 2:
+            probe.trace.note(motion.last, Felt.EDGE)
+            return Edge(lost_m, float(np.linalg.norm(lost_m - begin_m)), entered=False)
+        if await probe.enters():
+            return Edge(lost_m, 0.0, entered=True)
+
+
+async def stand_inside(probe: TouchProbe, edge_m: Array, centre_m: Array) -> Array:
+    """Touch down on the face a little inside an edge; the point (2,)."""
+    inwards = (centre_m - edge_m) / np.linalg.norm(centre_m - edge_m)
+    point_m = np.asarray(edge_m + _INSIDE_M * inwards)
+    await probe.touch_down(point_m, UPRIGHT)
+    return point_m
+
+
+async def _here(probe: TouchProbe) -> Array:
+    pressed = await probe.motions.press(probe.press_n, 0.05)
+    return pressed.last.task_position_tip_m[:2].copy()

@@ -1,0 +1,38 @@
+"""Runs the chosen strategies one after another, and says why none of them found a hole."""
+
+from collections.abc import Mapping
+
+from cellctl.errors.by_touch import HoleAbsent
+from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.search.arc import ArcSearch
+from cellctl.processes.peg_in_hole.search.particle_map import ParticleMap
+from cellctl.processes.peg_in_hole.search.patent import PatentCircumcentre, PatentMidpoint
+from cellctl.processes.peg_in_hole.search.probe import TouchProbe
+from cellctl.processes.peg_in_hole.search.spiral_search import SpiralSearch
+from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
+from cellctl.processes.peg_in_hole.search.tilted_valley import TiltedValley
+
+STRATEGIES: Mapping[SearchName, SearchStrategy] = {
+    strategy.name: strategy
+    for strategy in (
+        SpiralSearch(),
+        TiltedValley(),
+        ArcSearch(),
+        ParticleMap(),
+        PatentMidpoint(),
+        PatentCircumcentre(),
+    )
+}
+
+
+async def find_hole(probe: TouchProbe, order: tuple[SearchName, ...]) -> SearchName:
+    """The strategy by which the peg has entered.
+
+    Raises ``HoleAbsent`` when all have been tried, ``SearchGaveUp`` at the deadline before that.
+    """
+    for name in order:
+        if await STRATEGIES[name].find(probe):
+            return name
+    tried = ", ".join(order)
+    looked = "the whole map" if probe.hole_map.exhausted else "what these strategies reach"
+    raise HoleAbsent(f"{tried} found none in {looked}, {len(probe.trace.points)} points felt")

@@ -1,0 +1,208 @@
+"""What all strategies do: touch, slide, look for the way in, and keep what was felt."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, ContactSample, Ended
+from cellctl.errors.by_touch import SearchGaveUp
+from cellctl.processes.peg_in_hole.parameters import DETECTION_S, SearchParameters
+from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
+from cellctl.processes.peg_in_hole.search.spirals import expanding_turns
+from cellctl.processes.peg_in_hole.task import SearchTask
+
+Array = NDArray[np.float64]
+
+UPRIGHT = np.zeros(3)
+_LIFT_M = 0.3e-3
+_FREE_M_S = 20e-3
+_PRESS_S = 1.0
+_ENTERED_S = 0.1
+_LOST_RATIO = 0.3
+_LOCAL_RADIUS_M = 0.25e-3
+
+
+class Felt(StrEnum):
+    """What a point of the search path was."""
+
+    FACE = "face"
+    DIP = "dip"
+    EDGE = "edge"
+    """Of the outer face, or of a valley."""
+    WALL = "wall"
+    ENTRY = "entry"
+
+
+@dataclass(frozen=True, slots=True)
+class FeltPoint:
+    """One point of the search, for map and report; frame A, m."""
+
+    time_s: float
+    x_m: float
+    y_m: float
+    depth_m: float
+    felt: Felt
+
+
+@dataclass(slots=True)
+class SearchTrace:
+    """What one search has felt, in order."""
+
+    points: list[FeltPoint] = field(default_factory=list)
+
+    def note(self, sample: ContactSample, felt: Felt) -> None:
+        """Keep the end of a motion."""
+        x_m, y_m, depth_m = (float(value) for value in sample.task_position_tip_m)
+        self.points.append(FeltPoint(sample.time_s, x_m, y_m, depth_m, felt))
+
+
+class TouchProbe:
+    """One search of one hole: motions, task, map and the time that is left."""
+
+    def __init__(
+        self,
+        motions: ContactMotions,
+        task: SearchTask,
+        parameters: SearchParameters,
+        hole_map: HoleMap,
+        deadline_s: float,
+    ) -> None:
+        """``deadline_s``: on the clock of the samples."""
+        self.motions = motions
+        self.task = task
+        self.parameters = parameters
+        self.hole_map = hole_map
+        self.deadline_s = deadline_s
+        self.trace = SearchTrace()
+
+    @property
+    def press_n(self) -> float:
+        """Force along z while sliding."""
+        return self.parameters.press_n.value
+
+    async def touch_down(self, xy_m: Array, rotation: Array, at_m: float = 0.0) -> ContactSample:
+        """Lift, go over a point and touch down there, where a contact is expected ``at_m`` deep.
+
+        Without a contact it ends where a tilted peg would have touched within the hole: an upright
+        one then stands over the hole, which the next press tells. Raises ``SearchGaveUp``.
+        """
+        await self.motions.back_out(_LIFT_M - at_m)
+        over = np.array([*xy_m, at_m - _LIFT_M])
+        await self.motions.move_free(over, rotation, _FREE_M_S)
+        deeper_m = 1.2 * self.parameters.tilted_dip.value if np.any(rotation) else _LIFT_M
+        down = np.array([0.0, 0.0, 1.0])
+        touched = await self.motions.touch(down, _LIFT_M + deeper_m, self.press_n)
+        self.still_in_time(touched.last)
+        return touched.last
+
+    async def slide(self, way_m: Array, speed_m_s: float, until: "Stop") -> ContactMotion:
+        """Pressed along a way (n, 2); ends with the deadline too."""
+        motion = await self.motions.slide(
+            way_m,
+            self.press_n,
+            speed_m_s,
+            lambda sample: until(sample) or sample.time_s > self.deadline_s,
+            self.task.limits.search_n,
+        )
+        self.still_in_time(motion.last)
+        return motion
+
+    async def enters(self) -> bool:
+        """Press; True when the peg stays below the depth of entry."""
+        depth_m = self.task.fit.entry_depth_m
+        pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
+        entered = pressed.ended is Ended.CONDITION
+        self.trace.note(pressed.last, Felt.ENTRY if entered else Felt.FACE)
+        self.still_in_time(pressed.last)
+        return entered
+
+    async def look_round(self, centre_m: Array, radius_m: float = _LOCAL_RADIUS_M) -> bool:
+        """Touch down upright and search a small spiral; True when the peg has entered."""
+        await self.touch_down(centre_m, UPRIGHT)
+        if await self.enters():
+            return True
+        return await self.spiral(centre_m, radius_m)
+
+    async def spiral(self, centre_m: Array, radius_m: float) -> bool:
+        """Expanding spiral of an upright peg that stands on the face; True when it has entered."""
+        parameters = self.parameters
+        for way_m, speed_m_s in expanding_turns(
+            radius_m, parameters.pitch.value, parameters.slide_speed.value
+        ):
+            rest_m = way_m + centre_m
+            while len(rest_m):
+                stop = LostSupport(self.press_n)
+                motion = await self.slide(rest_m, speed_m_s, stop)
+                if motion.ended is Ended.TRAVEL:
+                    break
+                if await self._enters_between(stop.begin, motion.last):
+                    return True
+                rest_m = _beyond(rest_m, motion.last.task_position_tip_m[:2])
+            self.hole_map.rule_out(way_m + centre_m)
+        return False
+
+    async def _enters_between(self, begin: ContactSample | None, end: ContactSample) -> bool:
+        """Back to the middle of where nothing carried the peg, and press there."""
+        here_m = end.task_position_tip_m[:2]
+        if begin is not None:
+            middle_m = (begin.task_position_tip_m[:2] + here_m) / 2
+            speed = self.parameters.touch_speed.value
+            await self.motions.slide(
+                middle_m[None, :], self.press_n, speed, _never, self.task.limits.search_n
+            )
+        return await self.enters()
+
+    def still_in_time(self, sample: ContactSample) -> None:
+        """Raises ``SearchGaveUp`` past the deadline."""
+        if sample.time_s > self.deadline_s:
+            raise SearchGaveUp(f"within {self.task.search_limit_s:.0f} s")
+
+
+Stop = Callable[[ContactSample], bool]
+
+
+def _never(_sample: ContactSample) -> bool:
+    return False
+
+
+def held(depth_m: float) -> Stop:
+    """Holds once the tip has been below a depth for a while."""
+    since: list[float] = []
+
+    def condition(sample: ContactSample) -> bool:
+        if sample.task_position_tip_m[2] <= depth_m:
+            since.clear()
+            return False
+        since.append(sample.time_s)
+        return sample.time_s - since[0] >= _ENTERED_S
+
+    return condition
+
+
+class LostSupport:
+    """Holds when the force along z has been nearly gone for the time of detection.
+
+    A stiff arm descends only slowly into the hole, so force tells much earlier than depth.
+    """
+
+    def __init__(self, press_n: float) -> None:
+        self._least_n = _LOST_RATIO * press_n
+        self.begin: ContactSample | None = None
+
+    def __call__(self, sample: ContactSample) -> bool:
+        """The condition of a slide."""
+        if abs(sample.force_n[2]) > self._least_n:
+            self.begin = None
+            return False
+        if self.begin is None:
+            self.begin = sample
+        return sample.time_s - self.begin.time_s >= DETECTION_S
+
+
+def _beyond(way_m: Array, here_m: Array) -> Array:
+    """The part of a way that lies after its point next to here."""
+    nearest = int(np.argmin(np.linalg.norm(way_m - here_m, axis=1)))
+    return way_m[nearest + 1 :]

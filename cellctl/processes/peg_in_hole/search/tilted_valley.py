@@ -1,0 +1,186 @@
+"""A tilted peg feels its way along a valley that leads to the hole.
+
+Source: section 3.4 of the reference of issue 15. Positions are of the centre of the peg's bottom.
+"""
+
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellctl.cell.by_touch.motions import ContactMotion, ContactSample, Ended
+from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.parameters import DETECTION_S
+from cellctl.processes.peg_in_hole.search.probe import Felt, Stop, TouchProbe
+from cellctl.processes.peg_in_hole.search.spirals import spiral_points
+from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
+from cellctl.processes.peg_in_hole.search.tilted_touch import leaning
+
+Array = NDArray[np.float64]
+
+_TOWARDS = np.array([1.0, 0.0])
+_ACROSS = np.array([0.0, 1.0])
+_BACK_M = (0.0, 0.4e-3, 0.12e-3)
+"""Steps back from the wall before each crossing: where the valley is narrow it is found best."""
+
+
+class TiltedValley(SearchStrategy):
+    """For tight holes in a plate: what it feels does not shrink with the clearance."""
+
+    name: ClassVar[SearchName] = SearchName.TILTED_VALLEY
+
+    async def find(self, probe: TouchProbe) -> bool:
+        """Peck until a touch dips, follow the valley to its wall, stand up there."""
+        tilt_rad = probe.parameters.tilt.value
+        peg_m, bore_m = probe.task.fit.peg_radius_m, probe.task.fit.bore_radius_m
+        flat_m = -peg_m * np.sin(tilt_rad)
+        rotation = leaning(_TOWARDS, tilt_rad)
+        reach_m = max(probe.task.search_radius_m, 1.1 * bore_m)
+        for target_m in spiral_points(reach_m, bore_m / 2):
+            at_m = target_m - peg_m * np.cos(tilt_rad) * _TOWARDS
+            dip_m = await _confirmed_dip(probe, at_m, rotation, flat_m)
+            if dip_m is None:
+                continue
+            centre_m = await _Valley(probe, flat_m).follow(at_m, dip_m)
+            if centre_m is not None and await probe.look_round(centre_m):
+                return True
+        return False
+
+
+async def _confirmed_dip(
+    probe: TouchProbe, at_m: Array, rotation: Array, flat_m: float
+) -> float | None:
+    """The smaller dip of two touches; None when one of them is as high as the face."""
+    dips_m: list[float] = []
+    for _ in range(2):
+        expected_m = flat_m + (dips_m[0] if dips_m else 0.0)
+        sample = await probe.touch_down(at_m, rotation, expected_m)
+        dips_m.append(float(sample.task_position_tip_m[2]) - flat_m)
+        dipped = dips_m[-1] > probe.parameters.dip_threshold.value
+        probe.trace.note(sample, Felt.DIP if dipped else Felt.FACE)
+        if not dipped:
+            return None
+    return min(dips_m)
+
+
+class _Valley:
+    """Follows one valley from a point in it."""
+
+    def __init__(self, probe: TouchProbe, flat_m: float) -> None:
+        self._probe = probe
+        self._flat_m = flat_m
+        self._full_m = probe.parameters.tilted_dip.value
+        self._speed = probe.parameters.touch_speed.value
+        self._reach_m = 2 * probe.task.fit.bore_radius_m
+        self._fallen = False
+
+    async def follow(self, at_m: Array, dip_m: float) -> Array | None:
+        """Bottom centre (2,) at the wall; None when this was no valley."""
+        half_m = dip_m / 2
+        for back_m in _BACK_M:
+            if back_m:
+                at_m = await self._step_to(at_m - back_m * _TOWARDS)
+            middle_m = await self._middle(at_m, half_m)
+            if self._fallen:
+                return self._here_m
+            if middle_m is None:
+                return None
+            wall_m = await self._wall(await self._step_to(middle_m))
+            if wall_m is None:
+                return None
+            at_m = wall_m
+            half_m = 0.3 * self._full_m
+        return at_m
+
+    async def _middle(self, at_m: Array, half_m: float) -> Array | None:
+        """Middle between the two sides; None when a side has no end, or the peg fell in."""
+        sides_m = []
+        for sign in (1.0, -1.0):
+            end_m = at_m + sign * self._reach_m * _ACROSS
+            beyond = _SideReached(self, at_m, sign, half_m)
+            motion = await self._slide(end_m, 2 * self._speed, beyond)
+            self._fallen = beyond.fallen
+            if self._fallen or motion.ended is Ended.TRAVEL:
+                return None
+            self._probe.trace.note(motion.last, Felt.EDGE)
+            sides_m.append(self._here_m)
+            if sign > 0:
+                await self._step_to(at_m)
+        return np.asarray((sides_m[0] + sides_m[1]) / 2)
+
+    async def _wall(self, at_m: Array) -> Array | None:
+        """Forward until the dip has fallen to half of its greatest."""
+        stop = _WallReached(self)
+        motion = await self._slide(at_m + self._reach_m * _TOWARDS, 1.25 * self._speed, stop)
+        self._probe.trace.note(motion.last, Felt.WALL)
+        if motion.ended is Ended.TRAVEL:
+            return None
+        # The arm had gone on while the average followed and the stop took effect.
+        late_s = DETECTION_S + self._probe.task.cell.dead_time_s / 2
+        return np.asarray(self._here_m - 1.25 * self._speed * late_s * _TOWARDS)
+
+    async def _step_to(self, point_m: Array) -> Array:
+        """Downhill, hence faster: the arm does not press while the face falls away."""
+        await self._slide(point_m, 4 * self._speed, lambda _sample: False)
+        return point_m
+
+    async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
+        motion = await self._probe.slide(point_m[None, :], speed_m_s, until)
+        self._here_m: Array = motion.last.task_position_tip_m[:2].copy()
+        return motion
+
+    def dip_m(self, sample: ContactSample) -> float:
+        """How deep the peg stands below a touch beside the hole."""
+        return float(sample.task_position_tip_m[2]) - self._flat_m
+
+    def fell_in(self, dip_m: float) -> bool:
+        """Deeper than any resting tilted peg."""
+        return dip_m > 1.5 * self._full_m
+
+
+class _Average:
+    """First-order average of the dip, because single readings of a height are noisy."""
+
+    def __init__(self, valley: _Valley) -> None:
+        self._valley = valley
+        self._value_m = 0.0
+        self._time_s: float | None = None
+
+    def __call__(self, sample: ContactSample) -> float:
+        dip_m = self._valley.dip_m(sample)
+        if self._time_s is None:
+            self._value_m = dip_m
+        else:
+            weight = 1 - np.exp(-(sample.time_s - self._time_s) / DETECTION_S)
+            self._value_m += float(weight) * (dip_m - self._value_m)
+        self._time_s = sample.time_s
+        return self._value_m
+
+
+class _SideReached:
+    """Holds beyond the start, where the peg stands higher than a threshold, or fell in."""
+
+    def __init__(self, valley: _Valley, at_m: Array, sign: float, half_m: float) -> None:
+        self._valley, self._at_m, self._sign, self._half_m = valley, at_m, sign, half_m
+        self._average = _Average(valley)
+        self.fallen = False
+
+    def __call__(self, sample: ContactSample) -> bool:
+        dip_m = self._average(sample)
+        self.fallen = self._valley.fell_in(dip_m)
+        passed_m = self._sign * ((sample.task_position_tip_m[:2] - self._at_m) @ _ACROSS)
+        return self.fallen or bool(passed_m > 0 and dip_m < self._half_m)
+
+
+class _WallReached:
+    """Holds where the dip has fallen to half of its greatest, or the peg fell in."""
+
+    def __init__(self, valley: _Valley) -> None:
+        self._valley = valley
+        self._average = _Average(valley)
+        self._greatest_m = 0.0
+
+    def __call__(self, sample: ContactSample) -> bool:
+        dip_m = self._average(sample)
+        self._greatest_m = max(self._greatest_m, dip_m)
+        return self._valley.fell_in(dip_m) or dip_m < self._greatest_m / 2

@@ -1,0 +1,1 @@
+"""Whether a peg is inserted: what is measured for it, and the judgement."""

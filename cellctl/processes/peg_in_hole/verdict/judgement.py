@@ -1,0 +1,148 @@
+"""The verdict: a peg is inserted only when every item of evidence says so.
+
+Depth alone accepts every peg that has slipped in the gripper; the lateral test alone accepts some
+that stand on the face and some in a larger hole. Source: section 5.4 of the reference of issue 15.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import nan
+from typing import Any
+
+from cellctl.calibration.checks import Checks, LimitCheck
+from cellctl.errors.by_touch import (
+    FalseSeat,
+    HoleTooWide,
+    NotSeated,
+    PegNotHeld,
+    PegNotInserted,
+    PegSlipped,
+    SensorDead,
+)
+from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
+
+_MM = 1e-3
+_SEAT_MM, _RETOUCH_MM, _STEADY_MM, _PLAY_MM = 0.3, 0.15, 0.1, 0.1
+_LEAST_SLOPE = 0.3
+_LEAST_SIGMAS = 5.0
+_MOST_OF_GRIP = 0.6
+
+DEPTH, LOW_FORCE, HIGH_FORCE = "distance from the seat", "seat force", "greatest seat force"
+SLOPE = "rise of the force at the seat"
+RESISTED, PLAY_X, PLAY_Y = "directions that resist", "play along x", "play along y"
+STEADY, ALIVE = "depth change when pushed sideways", "force change when pushed sideways"
+SLIP, RETOUCH = "greatest force over grip force", "error of the touch on the rear"
+KEYED, PULL = "directions that resist a turn", "pull that was held"
+
+_FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
+    # The first that fits: what makes other figures worthless comes first. A peg on the face hardly
+    # resists a push, which looks like a dead sensor too; hence slip before that.
+    (frozenset({SLIP, RETOUCH}), PegSlipped),
+    (frozenset({ALIVE}), SensorDead),
+    (frozenset({DEPTH, LOW_FORCE, HIGH_FORCE, SLOPE}), NotSeated),
+    (frozenset({RESISTED, STEADY}), FalseSeat),
+    (frozenset({PLAY_X, PLAY_Y}), HoleTooWide),
+    (frozenset({KEYED, PULL}), PegNotHeld),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class SeatLimits:
+    """What a good part feels like at its seat, from its recipe."""
+
+    least_n: float
+    most_n: float
+    keyed: bool = False
+    pull_n: float | None = None
+    """None for a part that nothing holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class PegJudgement:
+    """The verdict with every figure that led to it."""
+
+    checks: Checks
+
+    @property
+    def inserted(self) -> bool:
+        """All items hold; an unknown one does not."""
+        return all(check.passed for check in self.checks)
+
+    @property
+    def fault(self) -> PegNotInserted | None:
+        """The numbered fault; None for a peg that is inserted."""
+        failed = {check.name for check in self.checks if not check.passed}
+        words = "; ".join(str(check) for check in self.checks if not check.passed)
+        for names, fault in _FAULTS:
+            if failed & names:
+                return fault(words)
+        return None
+
+    def to_record(self) -> Mapping[str, Any]:
+        """Plain data."""
+        fault = self.fault
+        return {
+            "inserted": self.inserted,
+            "fault": None if fault is None else fault.number,
+            "checks": [check.to_record() for check in self.checks],
+        }
+
+
+def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: SeatLimits) -> PegJudgement:
+    """All items of section 5.4."""
+    return PegJudgement(
+        (
+            *_seat_checks(evidence, task, seat),
+            *_capture_checks(evidence.capture, task),
+            _slip_check(evidence),
+            *_holding_checks(evidence, seat),
+        )
+    )
+
+
+def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: SeatLimits) -> Checks:
+    depth_m = _known(evidence.depth_m)
+    force_n, slope = _known(evidence.seat_force_n), _known(evidence.seat_slope_n_m)
+    least_slope = _LEAST_SLOPE * task.cell.stiffness_n_m
+    return (
+        LimitCheck(DEPTH, abs(depth_m - task.fit.depth_m) / _MM, _SEAT_MM, "mm"),
+        LimitCheck(LOW_FORCE, force_n, seat.least_n, "N", "min"),
+        LimitCheck(HIGH_FORCE, force_n, seat.most_n, "N"),
+        LimitCheck(SLOPE, slope, least_slope, "N/m", "min"),
+    )
+
+
+def _capture_checks(capture: LateralCapture | None, task: SearchTask) -> Checks:
+    most_mm = 2 * task.fit.clearance_m / _MM + _PLAY_MM
+    found = capture or LateralCapture(0, None, None, nan, nan)
+    return (
+        LimitCheck(RESISTED, found.resisted, 4, "", "min"),
+        LimitCheck(PLAY_X, _known(found.play_x_m) / _MM, most_mm, "mm"),
+        LimitCheck(PLAY_Y, _known(found.play_y_m) / _MM, most_mm, "mm"),
+        LimitCheck(STEADY, found.depth_change_m / _MM, _STEADY_MM, "mm"),
+        LimitCheck(ALIVE, found.force_change_sigmas, _LEAST_SIGMAS, "σ", "min"),
+    )
+
+
+def _slip_check(evidence: InsertionEvidence) -> LimitCheck:
+    """Either no force could make the part slip, or a touch shows that it did not."""
+    ratio = _known(evidence.greatest_force_n) / (evidence.grip_force_n or nan)
+    by_force = LimitCheck(SLIP, ratio, _MOST_OF_GRIP, "")
+    if by_force.passed:
+        return by_force
+    return LimitCheck(RETOUCH, abs(_known(evidence.retouch_error_m)) / _MM, _RETOUCH_MM, "mm")
+
+
+def _holding_checks(evidence: InsertionEvidence, seat: SeatLimits) -> Checks:
+    checks: list[LimitCheck] = []
+    if seat.keyed:
+        checks.append(LimitCheck(KEYED, _known(evidence.keyed_directions), 2, "", "min"))
+    if seat.pull_n is not None:
+        checks.append(LimitCheck(PULL, _known(evidence.held_pull_n), seat.pull_n, "N", "min"))
+    return tuple(checks)
+
+
+def _known(value: float | None) -> float:
+    """An unknown figure is no number, and no limit holds for that."""
+    return nan if value is None else value

@@ -1,0 +1,96 @@
+import asyncio
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from benchmarks.insertion.kinematic import KinematicMotions, Truth
+from cellctl.cell.by_touch.motions import Condition, ContactMotion, ContactSample, Ended
+from cellctl.errors.by_touch import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
+from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
+from tests.unit.processes.peg_in_hole.tasks import pin
+
+Array = NDArray[np.float64]
+LIMIT_N = 30.0
+
+
+class Bore(KinematicMotions):
+    """A hole in which the peg stands at given depths, one after another, before it goes on."""
+
+    def __init__(self, stands_mm: list[float], *, side_n: float, wedged: bool = False) -> None:
+        task = pin(force_sigma_n=1e-3)
+        truth = Truth(np.zeros(2), np.zeros(2))
+        super().__init__(task, truth, np.random.default_rng(0))
+        self.stands_mm, self.side_n, self.wedged = stands_mm, side_n, wedged
+        self.greatest_asked_n = 0.0
+
+    async def feed(
+        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+    ) -> ContactMotion:
+        self.greatest_asked_n = max(self.greatest_asked_n, force_limit_n)
+        if not self.stands_mm:
+            return await super().feed(depth_m, force_limit_n, until)
+        self.position_m[2] = self.stands_mm.pop(0) * 1e-3
+        return ContactMotion(Ended.FORCE, (self.felt(force_limit_n),))
+
+    async def press(
+        self, force_n: float, hold_s: float, until: Condition | None = None
+    ) -> ContactMotion:
+        self.time_s += hold_s
+        return ContactMotion(Ended.TIME, (self.felt(force_n),))
+
+    def felt(self, press_n: float) -> ContactSample:
+        side = self.side_n * (1.0 if self.wedged else press_n / LIMIT_N)
+        force = np.array([side, 0.0, -press_n])
+        moment = np.array([0.0, side * 0.05, 0.0])
+        return ContactSample(self.time_s, self.position_m.copy(), np.zeros(3), force, moment, 0.3)
+
+
+def fed(bore: Bore) -> Fed:
+    result = asyncio.run(insert(bore, bore.task))
+    assert bore.greatest_asked_n == bore.task.limits.insertion_n  # no retry asks for more
+    return result
+
+
+def test_a_free_hole_is_fed_to_its_seat() -> None:
+    found = fed(Bore([], side_n=0))
+    assert found.depth_m == pytest.approx(12e-3, abs=1e-6)
+    assert found.seat_force_n == pytest.approx(LIMIT_N, abs=0.1)
+    assert found.seat_slope_n_m == pytest.approx(1e6, rel=0.01)
+    assert found.recoveries == ()
+
+
+def test_a_jam_is_freed_by_giving_way_first() -> None:
+    found = fed(Bore([4.0], side_n=10))
+    assert found.recoveries == ("give way",)
+    assert found.greatest_force_n == pytest.approx(LIMIT_N, abs=0.1)
+
+
+def test_recoveries_come_in_order_and_end_after_three() -> None:
+    with pytest.raises(PegJammed, match="tried: give way, wiggle, yaw"):
+        fed(Bore([4.0, 4.5, 5.0, 5.5, 6.0], side_n=10))
+
+
+def test_a_straight_peg_at_the_same_depth_twice_is_blocked() -> None:
+    with pytest.raises(HoleBlocked, match=r"depth 5\.05 mm"):
+        fed(Bore([5.0, 5.05], side_n=0))
+
+
+def test_a_chip_that_gives_way_is_passed() -> None:
+    assert fed(Bore([5.0], side_n=0)).recoveries == ("back and again",)
+
+
+def test_side_force_that_stays_is_a_wedge() -> None:
+    with pytest.raises(PegWedged, match=r"side 10\.0 N"):
+        fed(Bore([4.0], side_n=10, wedged=True))
+
+
+def test_standing_counts_the_axial_force_against_the_feed() -> None:
+    standing = Standing.of(Bore([], side_n=10).felt(20.0))
+    assert standing.axial_n == 20
+    assert standing.sideways
+
+
+def test_no_slope_without_two_depths() -> None:
+    assert seat_slope_n_m([Bore([], side_n=0).felt(1.0)]) is None

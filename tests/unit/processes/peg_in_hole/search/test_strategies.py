@@ -1,0 +1,79 @@
+"""Every strategy on the kinematic model: few seeds here, figures in ``make campaign-insertion``."""
+
+import asyncio
+
+import numpy as np
+import pytest
+
+from benchmarks.insertion.kinematic import KinematicMotions, Truth
+from cellctl.errors.by_touch import HoleAbsent, SearchGaveUp
+from cellctl.processes.peg_in_hole.choice import SearchName, choose_search
+from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
+from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
+from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
+from cellctl.processes.peg_in_hole.task import SearchTask
+from tests.unit.processes.peg_in_hole.tasks import pin, plug
+
+
+def searching(
+    task: SearchTask, seed: int, *, absent: bool = False, deadline_s: float = 120.0
+) -> tuple[TouchProbe, KinematicMotions]:
+    rng = np.random.default_rng(seed)
+    drawn = Truth.draw(task, rng)
+    truth = Truth(drawn.hole_m, drawn.slope, absent)
+    motions = KinematicMotions(task, truth, rng)
+    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
+    return TouchProbe(motions, task, search_parameters(task), hole_map, deadline_s), motions
+
+
+@pytest.mark.parametrize(
+    ("name", "task", "least"),
+    [
+        (SearchName.SPIRAL, plug(), 10),
+        (SearchName.SPIRAL, pin(chamfer_mm=0.5), 10),
+        (SearchName.TILTED_VALLEY, pin(), 9),
+        (SearchName.TILTED_VALLEY, pin(stiffness_n_m=1e5), 9),
+        (SearchName.PARTICLE_MAP, pin(stiffness_n_m=1e5), 8),
+        (SearchName.ARC, plug(0.05, chamfer_mm=0), 8),
+        (SearchName.PATENT_CIRCUMCENTRE, plug(), 9),
+    ],
+)
+def test_a_strategy_finds_the_hole_and_stands_in_it(
+    name: SearchName, task: SearchTask, least: int
+) -> None:
+    found = 0
+    for seed in range(10):
+        probe, motions = searching(task, seed)
+        try:
+            entered = asyncio.run(STRATEGIES[name].find(probe))
+        except SearchGaveUp:
+            continue
+        off_m = float(np.hypot(*motions.true_offset_m))
+        # Whatever it says, it says of the hole.
+        assert entered == (off_m < task.fit.catch_radius_m)
+        found += entered
+    assert found >= least
+
+
+def test_without_a_hole_a_spiral_searches_the_whole_map() -> None:
+    task = plug(uncertainty_m=2e-3)
+    probe, _ = searching(task, 1, absent=True, deadline_s=500.0)
+    with pytest.raises(HoleAbsent, match="in the whole map"):
+        asyncio.run(find_hole(probe, (SearchName.SPIRAL,)))
+    assert all(point.felt is not Felt.ENTRY for point in probe.trace.points)
+
+
+def test_every_search_ends_at_its_deadline() -> None:
+    probe, motions = searching(pin(), 2, absent=True, deadline_s=30.0)
+    with pytest.raises(SearchGaveUp):
+        asyncio.run(find_hole(probe, choose_search(pin()).order))
+    assert motions.time_s < 30 + 25  # one motion may run beyond it
+
+
+def test_the_next_strategy_follows_when_the_first_finds_nothing() -> None:
+    task = plug(0.05, chamfer_mm=0, uncertainty_m=2e-3)
+    probe, motions = searching(task, 3)
+    order = (SearchName.PATENT_MIDPOINT, SearchName.PATENT_CIRCUMCENTRE)
+    assert asyncio.run(find_hole(probe, order)) is SearchName.PATENT_CIRCUMCENTRE
+    assert np.hypot(*motions.true_offset_m) < task.fit.catch_radius_m
