@@ -160,7 +160,7 @@ coverage: venv
 	$(BIN)/coverage report
 
 lock: venv
-	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url \
+	$(BIN)/uv pip compile pyproject.toml --extra dev --generate-hashes --no-emit-index-url \
 		--universal --fork-strategy fewest --custom-compile-command "make lock" --quiet -o requirements.lock
 
 clean:

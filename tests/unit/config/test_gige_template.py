@@ -1,0 +1,55 @@
+"""The template of a cell with GigE heads: the general template but for the heads."""
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from drivers.camera.gige.config import GigeHeadConfig
+
+CONFIG = Path(__file__).parents[3] / "config"
+TEMPLATE = CONFIG / "deck-gige.toml"
+HEADS = "stereo_cameras"
+
+
+def read(path: Path) -> dict[str, Any]:
+    return tomllib.loads(path.read_text())
+
+
+def test_all_but_the_heads_is_as_in_the_general_template() -> None:
+    general, own = read(CONFIG / "cell.toml"), read(TEMPLATE)
+    assert general.pop(HEADS) != own.pop(HEADS)
+    assert own == general
+
+
+def test_the_heads_are_four_different_cameras() -> None:
+    heads = [GigeHeadConfig(**head["settings"]) for head in read(TEMPLATE)[HEADS].values()]
+    cameras = [camera.serial_number for head in heads for camera in (head.left, head.right)]
+    assert len(set(cameras)) == 4
+
+
+@pytest.mark.parametrize("key", ["producers", "left.serial_number", "right.serial_number"])
+def test_what_no_template_can_know_is_marked(key: str) -> None:
+    lines = [line for line in TEMPLATE.read_text().splitlines() if line.startswith(f"{key} =")]
+    assert len(lines) == 2
+    assert all("# FILL IN" in line for line in lines)
+
+
+def test_checking_it_does_not_load_the_library_of_the_cameras() -> None:
+    """harvesters costs start-up time and loads native code: only the cameras' process may."""
+    program = (
+        "import sys\n"
+        "from typer.testing import CliRunner\n"
+        "from cellctl.cli.commands import whole_app\n"
+        f"done = CliRunner().invoke(whole_app(), ['check', {str(TEMPLATE)!r}])\n"
+        "assert done.exit_code == 0, done.output\n"
+        "assert 'drivers.camera.gige.driver' in sys.modules\n"
+        "print(sorted({'harvesters', 'genicam'} & set(sys.modules)))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout.strip()) == (0, "[]"), done.stderr
