@@ -1,4 +1,4 @@
-"""Cases of the reference's table (section 3.3 for issue 15) with its figures beside them."""
+"""Cases of the table in section 3.3 of the study of insertion by touch, with its figures."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -10,7 +10,7 @@ _SPIRAL, _VALLEY, _MAP = SearchName.SPIRAL, SearchName.TILTED_VALLEY, SearchName
 _ARC = SearchName.ARC
 _MIDPOINT, _CIRCUMCENTRE = SearchName.PATENT_MIDPOINT, SearchName.PATENT_CIRCUMCENTRE
 
-_CELL = CellFigures(
+STUDY_CELL = CellFigures(
     stiffness_n_m=1e6,
     dead_time_s=24e-3,
     uncertainty_m=3e-3,
@@ -40,7 +40,7 @@ def _pin(
     """Per cent of spiral, tilted valley and particle map."""
     chamfer_m = chamfer_mm * 1e-3
     fit = FitGeometry(3e-3, clearance_mm * 1e-3, chamfer_m, chamfer_m, 12e-3)
-    cell = replace(_CELL, stiffness_n_m=stiffness_n_m, uncertainty_m=u_mm * 1e-3)
+    cell = replace(STUDY_CELL, stiffness_n_m=stiffness_n_m, uncertainty_m=u_mm * 1e-3)
     task = SearchTask(fit, cell, ForceLimits(8, 30, 50, 1))
     chamfered = ", chamfered" if chamfer_mm else ""
     title = f"pin, c {clearance_mm:g}, u {u_mm:g} mm, k {stiffness_n_m:.0e} N/m{chamfered}"
@@ -53,7 +53,7 @@ def _plug(
 ) -> SearchCase:
     chamfer_m = chamfer_mm * 1e-3
     fit = FitGeometry(14e-3, clearance_mm * 1e-3, chamfer_m, chamfer_m, 10e-3, 16.5e-3)
-    cell = replace(_CELL, uncertainty_m=u_mm * 1e-3)
+    cell = replace(STUDY_CELL, uncertainty_m=u_mm * 1e-3)
     task = SearchTask(fit, cell, ForceLimits(10, 80, 100, 2))
     chamfered = ", chamfered" if chamfer_mm else ""
     return SearchCase(f"plug, c {clearance_mm:g}, u {u_mm:g} mm{chamfered}", task, reference)

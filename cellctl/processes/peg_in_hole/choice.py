@@ -1,6 +1,6 @@
 """Which searches suit a task, how long each may take, and when to refuse before any contact.
 
-Source: section 3.6 of the reference of issue 15.
+Source: section 3.6 of the study of insertion by touch.
 """
 
 from collections.abc import Callable, Mapping

@@ -2,7 +2,7 @@
 
 Forces tell a direction first, then light touches along and against it. Forces alone never say that
 a peg is aligned: pressed hard enough, friction resists every light touch. Source: section 2 (S3) of
-the reference of issue 15, which corrects the printed test of seed 003.
+the study of insertion by touch, which corrects the printed test of seed 003.
 """
 
 from enum import StrEnum

@@ -1,7 +1,7 @@
 """The face of the hole, touched at three points and proved at a fourth.
 
 Its height is never taken from vision: every depth of search, insertion and verdict counts from this
-plane. Source: section 2 (S1b, S1c) of the reference of issue 15.
+plane. Source: section 2 (S1b, S1c) of the study of insertion by touch.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,7 @@
 """Speeds, pitches, angles and thresholds of a search, from the figures of its task.
 
 Nothing else tunes a search: a parameter changes when, and only when, one of its inputs does.
-Source: sections 1, 3.2, 3.4 and 3.6 of the reference of issue 15.
+Source: sections 1, 3.2, 3.4 and 3.6 of the study of insertion by touch.
 """
 
 from dataclasses import dataclass

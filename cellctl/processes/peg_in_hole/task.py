@@ -1,6 +1,6 @@
 """The task in numbers: what the drawing says, and what was measured of cell and process.
 
-Sources: issue 15; figures of a contact search by touch in section 1 of its reference.
+Source: section 1 of the study of insertion by touch.
 """
 
 from dataclasses import dataclass

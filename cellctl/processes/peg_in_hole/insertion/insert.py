@@ -1,6 +1,6 @@
 """Feeds a peg that has entered to its seat.
 
-A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the reference of issue 15.
+A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the study of insertion by touch.
 """
 
 from dataclasses import dataclass

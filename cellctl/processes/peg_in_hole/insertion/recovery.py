@@ -1,6 +1,6 @@
 """What helps a peg that stands short of its seat: each measure once, none with more force.
 
-Source: section 5.3 of the reference of issue 15.
+Source: section 5.3 of the study of insertion by touch.
 """
 
 from abc import ABC, abstractmethod

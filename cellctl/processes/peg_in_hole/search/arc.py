@@ -1,7 +1,7 @@
 """Touches along the outer face of a plug, and the circle through them.
 
-Source: section 3.6 of the reference of issue 15. There the arc is traced in contact; here it is
-touched point by point, since motions by touch press along one axis at a time.
+Source: section 3.6 of the study of insertion by touch. There the arc is traced in contact; here it
+is touched point by point, since motions by touch press along one axis at a time.
 """
 
 from math import radians

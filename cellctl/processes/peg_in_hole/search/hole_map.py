@@ -1,6 +1,6 @@
 """The map of where the hole is not: what is still believed after each touch.
 
-Source: section 3.5 of the reference of issue 15.
+Source: section 3.5 of the study of insertion by touch.
 """
 
 import numpy as np

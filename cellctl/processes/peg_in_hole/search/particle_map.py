@@ -1,6 +1,6 @@
 """Tilted touches, each where the map expects to learn most, until the hole's place is known.
 
-Source: section 3.5 of the reference of issue 15.
+Source: section 3.5 of the study of insertion by touch.
 """
 
 from typing import ClassVar

@@ -3,7 +3,7 @@
 A peg that is tilted towards a direction touches a plate with the lowest point of its rim. Where
 that point is over the hole the peg sinks until two other points of its rim rest on the edge. Seen
 from above this makes a valley that leads to the hole from behind, and ends there at a wall.
-Source: section 3.1 of the reference of issue 15, compared there with a physical simulation.
+Source: section 3.1 of the study of insertion by touch, compared there with a physical simulation.
 """
 
 import numpy as np

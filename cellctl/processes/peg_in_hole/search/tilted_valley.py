@@ -1,6 +1,7 @@
 """A tilted peg feels its way along a valley that leads to the hole.
 
-Source: section 3.4 of the reference of issue 15. Positions are of the centre of the peg's bottom.
+Source: section 3.4 of the study of insertion by touch. Positions are those of the centre of the
+peg's bottom.
 """
 
 from typing import ClassVar

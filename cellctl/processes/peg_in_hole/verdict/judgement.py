@@ -1,7 +1,8 @@
 """The verdict: a peg is inserted only when every item of evidence says so.
 
 Depth alone accepts every peg that has slipped in the gripper; the lateral test alone accepts some
-that stand on the face and some in a larger hole. Source: section 5.4 of the reference of issue 15.
+that stand on the face and some in a larger hole. Source: section 5.4 of the study of insertion by
+touch.
 """
 
 from collections.abc import Mapping
