@@ -2,7 +2,7 @@
 
 Forces tell a direction first, then light touches along and against it. Forces alone never say that
 a peg is aligned: pressed hard enough, friction resists every light touch. Source: section 2 (S3) of
-the study of insertion by touch, which corrects the printed test of seed 003.
+the study of insertion by touch, which corrects the printed test of the patent.
 """
 
 from enum import StrEnum

@@ -1,4 +1,4 @@
-"""The right triangle on the rim of a plug: patent of seed 003, as printed and corrected.
+"""The right triangle on the rim of a plug: the patent, as printed and corrected.
 
 Three points of the circle on which the peg leaves the face, two chords at right angles: the
 hypotenuse is a diameter. As printed the first direction is free and the centre is the midpoint of
