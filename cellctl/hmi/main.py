@@ -62,10 +62,18 @@ def secret() -> None:
 def run(settings: PageSettings) -> None:
     """Serve until a signal; raises ``PageCannotServe``."""
     server, listener = page_server(settings)
-    # For whoever started it: with port 0 nobody else knows the address.
-    typer.echo(json.dumps({"ready": True, "url": url_of(listener)}))
-    sys.stdout.flush()
     asyncio.run(server.serve(sockets=[listener]))
+
+
+class PageServer(uvicorn.Server):
+    """Tells whoever started it where it is: with port 0 nobody else knows the address."""
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Signals are answered from here on, so that no one who was told sends one in vain."""
+        await super().startup(sockets)
+        for listener in sockets or ():
+            typer.echo(json.dumps({"ready": True, "url": url_of(listener)}))
+        sys.stdout.flush()
 
 
 def page_server(settings: PageSettings) -> tuple[uvicorn.Server, socket.socket]:
@@ -81,7 +89,7 @@ def page_server(settings: PageSettings) -> tuple[uvicorn.Server, socket.socket]:
         # What a proxy on this PC says of its clients is believed; nobody else's word is.
         forwarded_allow_ips="127.0.0.1",
     )
-    return uvicorn.Server(config), listener
+    return PageServer(config), listener
 
 
 def url_of(listener: socket.socket) -> str:
