@@ -26,7 +26,7 @@ from benchmarks.robot.far_end import Stamp, serve
 from cellctl.errors.base import CellError
 from cellctl.interfaces.streaming_robot import StreamReport
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig, SiasunRpcStopChannelConfig
-from drivers.robot.siasun_rpc.connections.connection import RpcConnection
+from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.driver import SiasunRpcRobot
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel

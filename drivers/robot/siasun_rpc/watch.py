@@ -23,7 +23,7 @@ from cellctl.interfaces.robot import RobotMode, RobotState
 from drivers.robot.siasun_rpc.codec.messages import Request, Value
 from drivers.robot.siasun_rpc.codec.state_frame import StateFrame
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.connections.connection import RpcConnection
+from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.frame_stream import FrameStream
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.vendor import OperationMode, Power, SafetyState

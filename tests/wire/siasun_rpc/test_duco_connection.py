@@ -9,7 +9,7 @@ from thrift.Thrift import TType
 
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from drivers.robot.siasun_rpc.codec.messages import MethodUnknown
-from drivers.robot.siasun_rpc.connections.connection import RpcConnection
+from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.protocol import request
 from fakes.wire.duco.codec import write_reply, write_unknown
 from tests.wire.siasun_rpc.duco_rig import duco_rig

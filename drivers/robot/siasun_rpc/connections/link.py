@@ -9,8 +9,8 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import ConnectTimeout, LinkError, LinkLost
 from drivers.robot.siasun_rpc.codec.messages import MethodUnknown
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
+from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.background import BackgroundTasks
-from drivers.robot.siasun_rpc.connections.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.frame_stream import FrameStream
 from drivers.robot.siasun_rpc.features import Features, features
 from drivers.robot.siasun_rpc.protocol import request
