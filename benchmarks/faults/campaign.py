@@ -137,9 +137,7 @@ def campaign(  # noqa: PLR0917  # options of the command line
     ] = None,
     tenth: Annotated[int | None, typer.Option(help="A tenth of the cells, by this seed.")] = None,
     seed: Annotated[int, typer.Option(help="Of the fake cell.")] = 1,
-    out: Annotated[Path, typer.Option(help="Folder of the tried cells.")] = Path(
-        "runs/faults"
-    ),
+    out: Annotated[Path, typer.Option(help="Folder of the tried cells.")] = Path("runs/faults"),
     page: Annotated[Path | None, typer.Option(help="Where the table goes as Markdown.")] = None,
     list_only: Annotated[  # noqa: FBT002  # a flag of the command line
         bool, typer.Option("--list", help="Only name the cells.")
