@@ -10,13 +10,13 @@ import typer
 
 from fakes import scenario as scenarios
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
-from fakes.sections import Controller
+from fakes.sections import JobController
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
 ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
 RobotsOption = Annotated[
-    Controller | None,
+    JobController | None,
     typer.Option(
         "--robots", help="What all controllers do, in place of what the scenario file says."
     ),

@@ -43,7 +43,9 @@ class Cell:
         self.world = open_world(scenario, seed)
         self.watch = MotionWatch(self.world.arms)
         self.robots = {
-            name: self._controller(name, robot) for name, robot in scenario.robots.items()
+            name: self._controller(name, robot)
+            for name, robot in scenario.robots.items()
+            if robot.controller != "rpc"
         }
         self._rack = DeviceRack(self.world, self.clock, self._ports)
         self.stopping = asyncio.Event()

@@ -1,6 +1,6 @@
 """The devices of a fake cell that listen: one server for each section of the scenario file.
 
-Controllers of robots are not here: they connect to the PC, as the real ones do.
+Job controllers of robots are not here: they connect to the PC, as the real ones do.
 """
 
 import asyncio
@@ -16,13 +16,15 @@ from fakes.render.look import options_of
 from fakes.render.options import RenderOptions
 from fakes.render.worker import make_pool, render_frame
 from fakes.scenario import Scenario
-from fakes.sections import DigitalIo, Gripper, SingleCamera, StereoCamera, Tracker
+from fakes.sections import DigitalIo, Gripper, Robot, SingleCamera, StereoCamera, Tracker
 from fakes.wire.cameras.cfs_server import MONO8, RGB8, CfsServer, ExposureError
 from fakes.wire.cameras.frame_server import FrameServer
 from fakes.wire.cameras.image_server import ImageServer, Picture
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import gripper_coupler
+from fakes.wire.duco.controller import DucoController
+from fakes.wire.duco.logic import DucoLogic
 from fakes.wire.sri.box import SriBox
 from fakes.world.targets import SeenTarget
 from fakes.world.world import Command, World
@@ -82,6 +84,9 @@ class DeviceRack:
 
     def _all(self) -> Iterator[Device]:
         scenario = self._scenario
+        for name, robot in scenario.robots.items():
+            if robot.controller == "rpc":
+                yield self._collaborative_arm(name, robot)
         for name in scenario.force_sensors:
             yield self._force_sensor(name)
         for name, tracker in scenario.trackers.items():
@@ -97,6 +102,20 @@ class DeviceRack:
 
     def _port(self, name: str, default: int) -> int:
         return self._ports.get(name, default)
+
+    # -- robots ---------------------------------------------------------------------------------
+    def _collaborative_arm(self, name: str, robot: Robot) -> Device:
+        controller = DucoController(
+            DucoLogic(self._world.arms[name], self._clock),
+            rpc_port=self._port(f"{name}.RPC", robot.ports["RPC"]),
+            state_port=self._port(f"{name}.FRAMES", robot.ports["FRAMES"]),
+        )
+
+        async def start() -> int:
+            await controller.start()
+            return controller.rpc_port
+
+        return Device(name, controller.rpc_port, controller.logic.faults, start, controller.stop)
 
     # -- force sensors and trackers -------------------------------------------------------------
     def _force_sensor(self, name: str) -> Device:

@@ -1,7 +1,8 @@
 """The scenario file of a fake cell: its devices, any number of each kind.
 
 The key ``scene`` names what stands in the cell; that scene brings a model with further sections
-(``fakes.scenes``).
+(``fakes.scenes``). The key ``like`` names another scenario file in the same folder: what is not
+written in this one is as it is there.
 """
 
 import tomllib
@@ -14,11 +15,11 @@ from pydantic import Field, field_validator, model_validator
 from fakes.imperfections import CATALOGUE, check_scales, scale_written
 from fakes.sections import (
     Camera,
-    Controller,
     DeviceName,
     DigitalIo,
     ForceSensor,
     Gripper,
+    JobController,
     Optics,
     Pose,
     Rendering,
@@ -68,10 +69,12 @@ class Scenario(Section):
         """Size of an imperfection whose size is that of the catalogue, in its unit there."""
         return CATALOGUE[imperfection].size * self.imperfections.get(imperfection, 0.0)
 
-    def with_controllers(self, controller: Controller) -> Self:
-        """The same cell with one kind of controller at all arms."""
+    def with_controllers(self, controller: JobController) -> Self:
+        """The same cell with one kind of controller at all arms but the collaborative ones."""
         robots = {
-            name: robot.model_copy(update={"controller": controller})
+            name: robot
+            if robot.controller == "rpc"
+            else robot.model_copy(update={"controller": controller})
             for name, robot in self.robots.items()
         }
         return self.model_copy(update={"robots": robots})
@@ -173,6 +176,20 @@ def load(path: Path, imperfections: Mapping[str, float] | None = None) -> Scenar
 def _read_toml(path: Path, imperfections: Mapping[str, float]) -> dict[str, Any]:
     with path.open("rb") as file:
         written = tomllib.load(file)
+    if like := written.pop("like", None):
+        # Of one file only: a chain of them could not be read by a person.
+        with (path.parent / str(like)).open("rb") as file:
+            written = _merged(tomllib.load(file), written)
     scales = {**written.get("imperfections", {}), **imperfections}
     check_scales(scales)
     return scale_written({**written, "imperfections": scales}, scales)
+
+
+def _merged(below: Mapping[str, Any], above: Mapping[str, Any], depth: int = 2) -> dict[str, Any]:
+    """Sections and devices are joined key by key; of what a device says the upper one counts."""
+    both = {
+        key: _merged(below[key], value, depth - 1)
+        for key, value in above.items()
+        if depth and isinstance(value, dict) and isinstance(below.get(key), dict)
+    }
+    return {**below, **above, **both}

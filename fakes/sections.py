@@ -12,8 +12,11 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, model_vali
 Pose = tuple[float, float, float, float, float, float]
 """x, y, z in mm and A, B, C in degrees with R = Rz(A) Ry(B) Rx(C)."""
 DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
-Channel = Literal["CMD", "STA", "GRD"]
-Controller = Literal["protocol", "jobs"]
+Channel = Literal["CMD", "STA", "GRD", "RPC", "FRAMES"]
+JobController = Literal["protocol", "jobs"]
+"""A job controller speaks SJL from the text of the protocol, or runs the shipped job files."""
+Controller = JobController | Literal["rpc"]
+"""The last is that of a collaborative arm, which listens."""
 Six = tuple[float, float, float, float, float, float]
 Three = tuple[float, float, float]
 Pair = tuple[float, float]
@@ -49,7 +52,8 @@ class Robot(Section):
     name: str
     """Of the controller, as it names itself on the wire."""
     ports: dict[Channel, int]
-    """Ports of the PC that the controller connects to."""
+    """Ports of the PC that a job controller connects to: CMD, STA and, of an arm that the guard can
+    stop, GRD. Or those where a collaborative arm listens: RPC and FRAMES."""
     chain_mm: Chain
     limits_deg: tuple[Pair, Pair, Pair, Pair, Pair, Pair]
     rated_deg_s: Six
@@ -83,9 +87,19 @@ class Robot(Section):
     home_deg: Six
     """Joint angles at switch-on."""
     controller: Controller = "protocol"
-    """Whether it speaks from the text of the protocol, or runs the shipped job files."""
     statement_ms: float = 0.5
     """Of a job file; nobody has published the speed of the real interpreter."""
+
+    @model_validator(mode="after")
+    def _ports_fit(self) -> Self:
+        needed, allowed = (
+            ({"RPC", "FRAMES"},) * 2
+            if self.controller == "rpc"
+            else ({"CMD", "STA"}, {"CMD", "STA", "GRD"})
+        )
+        if not needed <= self.ports.keys() <= allowed:
+            raise ValueError(f"ports of a {self.controller} controller: {sorted(allowed)}")
+        return self
 
 
 class ForceSensor(Section):

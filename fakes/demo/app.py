@@ -21,7 +21,7 @@ from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, req
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.imperfections import UnknownImperfection, parsed_scale
 from fakes.scenes.registry import UnknownScene
-from fakes.sections import Controller
+from fakes.sections import JobController
 
 DEFAULT_PROCESS = "deck-to-frame"
 _REFUSALS = (
@@ -74,7 +74,7 @@ def demo(
         list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
     ] = None,
     robots: Annotated[
-        Controller | None,
+        JobController | None,
         typer.Option(help="What all robot controllers do; default: what the scenario file says."),
     ] = None,
 ) -> None:

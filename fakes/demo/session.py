@@ -16,7 +16,7 @@ from fakes.demo.outcome import collect, result_table
 from fakes.demo.page import DemoPage, write_settings
 from fakes.demo.safety import own_calibrations
 from fakes.demo.verdict import why_not_good
-from fakes.sections import Controller
+from fakes.sections import JobController
 
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
@@ -35,7 +35,7 @@ class Files:
     out: Path
     imperfections: Mapping[str, float] = field(default_factory=dict)
     """Scales in place of those of the scenario file, by name."""
-    robots: Controller | None = None
+    robots: JobController | None = None
     """What all controllers do, in place of what the scenario file says."""
 
 

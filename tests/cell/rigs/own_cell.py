@@ -22,7 +22,7 @@ from fakes.demo.control import Control
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config"
-_PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD) = (\d{4})\b")
+_PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD|RPC|FRAMES) = (\d{4})\b")
 _MARK = "CELLCTL_TEST_FAMILY"
 READY_S = 60.0
 END_S = 30.0
@@ -58,6 +58,9 @@ class OwnCell:
         own._write_cell()
         scenario = own._shipped_scenario.read_text(encoding="utf-8")
         own.scenario.write_text(own._renumbered(scenario), encoding="utf-8")
+        if like := tomllib.loads(scenario).get("like"):
+            below = (CONFIG / like).read_text(encoding="utf-8")
+            (folder / like).write_text(own._renumbered(below), encoding="utf-8")
         return own
 
     def visited_from(self, folder: Path) -> Self:

@@ -91,3 +91,38 @@ def test_what_is_no_world_is_no_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "entry_points", points)
     with pytest.raises(registry.UnknownScene, match="is not a World"):
         registry.open_world(Scenario(scene="moon", hardware_seed=1, control_port=0), 1)
+
+
+def test_a_file_may_be_like_another(tmp_path: Path) -> None:
+    below = load(CONFIG / "antenna.scenario.toml")
+    above = load(CONFIG / "antenna-rpc.scenario.toml")
+    arm = above.robots["arm"]
+    assert arm.controller == "rpc"
+    assert set(arm.ports) == {"RPC", "FRAMES"}, (
+        "what a device says takes the place of the lower one"
+    )
+    changes = {"controller": "protocol", "ports": below.robots["arm"].ports}
+    assert arm.model_copy(update=changes) == below.robots["arm"]
+    assert above.model_copy(update={"robots": below.robots}) == below
+    alone = tmp_path / "alone.toml"
+    alone.write_text('like = "nobody.toml"', encoding="utf-8")
+    with pytest.raises(FileNotFoundError, match=r"nobody\.toml"):
+        load(alone)
+
+
+@pytest.mark.parametrize(
+    ("controller", "ports"),
+    [
+        ("rpc", {"CMD": 1, "STA": 2}),
+        ("rpc", {"RPC": 1}),
+        ("protocol", {"RPC": 1, "FRAMES": 2}),
+        ("jobs", {"CMD": 1, "STA": 2, "RPC": 3}),
+        ("jobs", {"CMD": 1}),
+    ],
+)
+def test_a_controller_has_its_own_ports(
+    small: dict[str, Any], controller: str, ports: dict[str, int]
+) -> None:
+    small["robots"]["arm"] |= {"controller": controller, "ports": ports}
+    with pytest.raises(ValidationError, match=f"ports of a {controller} controller"):
+        PlateScenario.model_validate(small)
