@@ -120,11 +120,6 @@ TERMS = (
         ((selection, "_WALL_DEPTHS_M", (4e-3,)),),
     ),
     Term(
-        "wall: likelier under a bore than a cone",
-        (*WALLS, *CONES),
-        ((selection, "_BORE_ODDS", 0.0), (selection, "_CONE_ODDS", 0.0)),
-    ),
-    Term(
         "grey at the middle of what a pixel sees",
         EVERYTHING,
         ((light, "_middle", lambda pixels, *_: pixels.points),),
@@ -193,7 +188,6 @@ TERMS = (
         (less("_inside", slice(14, 19), only_if=lambda model: model.turns_grey > 0.0),),
     ),
     Term("outliers weigh less", ("lit wall", "turns", "deck"), ((noise, "_HUBER", 1e9),)),
-    Term("extrapolated rounds", WALLS, ((solver, "_EXTRAPOLATE_PX", 0.0),)),
     Term("lower edge must settle", (*WALLS, "deck"), ((solver, "_LOWER_EDGE", 0.0),)),
     Term(
         "covariance: alike over arcs",

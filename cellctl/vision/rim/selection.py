@@ -37,10 +37,6 @@ _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """Depths at which a fit may start: it converges from above the true one, not always from below."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
-_BORE_ODDS, _CONE_ODDS = 12.0, -15.0
-"""Difference of the information criteria at which a fit with a wall and one without are equally
-likely. Every bore has a wall, and one that is hardly seen moves the rim all the same; under a cone
-the light of the cone is easily taken for a wall."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
@@ -142,8 +138,7 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
 
 def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
     """The better one by the information criterion; the other widens its covariance."""
-    odds = _CONE_ODDS if plain.problem.light.cone else _BORE_ODDS
-    for_wall = float(expit(0.5 * (plain.bic() - walled.bic() + odds)))
+    for_wall = float(expit(0.5 * (plain.bic() - walled.bic())))
     # The probability of the rejected model times the squared distance of its centre is the variance
     # that choosing between them adds.
     off = walled.solution.vector[:2] - plain.solution.vector[:2]

@@ -1,6 +1,6 @@
 """Robust maximum-likelihood fit of a rim by damped Gauss-Newton steps, in one image or in both."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -32,7 +32,6 @@ _ROUGH_PX, _SETTLED_PX = 0.15, 0.01
 """Steps at which a round ends: before the noise is known, and after."""
 _LOWER_EDGE = 0.03
 """Largest share of a movement of the wall's lower edge by which the rim follows it."""
-_EXTRAPOLATE_PX = 0.01
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
 
@@ -137,27 +136,18 @@ def _minimised(
     """The best solution, and whether it settled.
 
     The terms of the light depend weakly on the shape. They are held fixed for a few steps and then
-    brought up to date. The series of these rounds converges linearly, slowly where a wall is nearly
-    as bright as the face, and is therefore extrapolated. The noise of the pixels is final after
-    ``weighing_rounds``: weights that follow the residuals for ever can make a fit swing between two
-    solutions.
+    brought up to date. The noise of the pixels is final after ``weighing_rounds``: weights that
+    follow the residuals for ever can make a fit swing between two solutions.
     """
     best = start
-    before: Array | None = None
     change_px = np.inf
     for number in range(_MAX_ROUNDS):
         anchor = best.vector
         best = _settle(problem, best, _SETTLED_PX if number else _ROUGH_PX)
-        change = best.vector - anchor
-        change_px = _step_px(problem, change)
+        change_px = _step_px(problem, best.vector - anchor)
         weighing = number < weighing_rounds
         if change_px < tolerance_px and not weighing:
             return RimFit(problem, best, converged=True)
-        if before is not None and change_px < _EXTRAPOLATE_PX:
-            best = replace(
-                best, vector=best.vector + change * _rest_of_series(problem, before, change)
-            )
-        before = None if weighing else change
         best = relinearised(problem, best, weigh=weighing)
     return RimFit(problem, best, change_px < 4.0 * tolerance_px)
 
@@ -178,16 +168,6 @@ def _settle(problem: RimProblem, best: RimSolution, settled_px: float) -> RimSol
         if max(step_px, _LOWER_EDGE * _lower_edge_px(problem, change)) < settled_px:
             break
     return best
-
-
-def _rest_of_series(problem: RimProblem, before: Array, change: Array) -> float:
-    """Sum of the rest of a geometric series over its last term, from its last two terms."""
-    views = problem.views
-    last = np.concatenate([(view.selection @ change)[:3] / view.pixels.unit_px for view in views])
-    first = np.concatenate([(view.selection @ before)[:3] / view.pixels.unit_px for view in views])
-    # At most four times the last step is added: a ratio near one would extrapolate noise.
-    ratio = float(np.clip(last @ first / max(float(first @ first), 1e-12), 0.0, 0.8))
-    return ratio / (1.0 - ratio)
 
 
 def _moved(problem: RimProblem, solution: RimSolution, damping: float) -> Array:
