@@ -44,6 +44,7 @@ class Bench:
     """Running; ``close`` ends everything."""
 
     def __init__(self, folder: Path, seed: int) -> None:
+        folder = folder.resolve()  # paths in a cell file count from where that file lies
         folder.mkdir(parents=True, exist_ok=True)
         self._clock = folder / "clock-offset-s"
         self._clock.unlink(missing_ok=True)

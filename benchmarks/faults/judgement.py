@@ -8,6 +8,8 @@ from benchmarks.faults.observation import Effect, Moved, Observation
 RESTING_STATES = frozenset({"Aborted", "Stopped", "Held"})
 BACKS_OFF_AFTER = frozenset({501, 502, 503, 504, 505, 512, 522, 523, 525, 526, 527, 704})
 """The faults after which the arm leaves the frame by itself, as docs/operating.md says."""
+OF_CALIBRATIONS = 0x106
+"""Reject code of a Start for want of calibrations: only a false time of day makes them invalid."""
 BACK_OFF_MM = 2.2
 """2 mm, and what the arm adds to it."""
 AFTER_END_S = 0.3
@@ -99,7 +101,8 @@ def _line(seen: Observation) -> list[str]:
     if seen.expected.line_silent:
         return []
     if seen.refused and seen.state == "Idle":
-        return []
+        elsewhere = seen.refused == OF_CALIBRATIONS and seen.fault != "clock-back"
+        return ["Start was refused for the calibrations"] if elsewhere else []
     wrong = []
     if seen.state not in RESTING_STATES:
         wrong.append(f"moved on to {seen.state}")

@@ -92,6 +92,9 @@ def test_a_start_that_is_refused_leaves_the_cell_in_idle() -> None:
     seen = replace(CALM, motions=[], state="Idle", refused=0x107, record=None, shown=[])
     assert judge(seen).passed
     assert not judge(replace(seen, refused=0)).passed
+    of_calibrations = replace(seen, refused=0x106)
+    assert not judge(of_calibrations).passed, "refused, but not for the fault"
+    assert judge(replace(of_calibrations, fault="clock-back")).passed
 
 
 def test_of_a_dead_daemon_the_line_sees_nothing() -> None:
