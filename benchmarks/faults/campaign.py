@@ -100,7 +100,8 @@ class Campaign:
                 self._end_bench()
                 continue
             self._keep(seen)
-            if not seen.idle_again:
+            # The next trial would meet what this one has left: a cell that is not itself again.
+            if not (seen.idle_again and seen.calibrated):
                 self._end_bench()
             return
 

@@ -73,6 +73,8 @@ class Observation:
     """The cell came back to Idle by Clear and Reset, as an operator would do it."""
     restarted: bool
     """It did so only after the daemon had been started again."""
+    calibrated: bool
+    """All calibrations were still valid then."""
     lost_s: float
     """Time that the PC did not give to the fake world."""
     software: str

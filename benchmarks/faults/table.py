@@ -78,7 +78,7 @@ def row(seen: Observation) -> list[str]:
         f"{seen.lost_s:.2f}",
         shown,
         seen.record or "none",
-        seen.next_start,
+        seen.next_start + ("" if seen.calibrated else ", calibrations to be made again"),
         "as demanded" if found.passed else "**" + "; ".join(found.wrong) + "**",
     ]
 

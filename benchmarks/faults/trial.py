@@ -67,6 +67,7 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
         next_start=found.words,
         idle_again=found.idle,
         restarted=found.restarted,
+        calibrated=found.idle and bench.plc.bit("calibration_ok"),
         lost_s=after["lost_s"] - truth["lost_s"],
         software=software(),
     )

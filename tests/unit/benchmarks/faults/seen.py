@@ -18,6 +18,7 @@ CALM = Observation(
     next_start="Aborted F302 → Stopped → Idle",
     idle_again=True,
     restarted=False,
+    calibrated=True,
     lost_s=0.1,
     software="cellctl 0 (abc)",
 )

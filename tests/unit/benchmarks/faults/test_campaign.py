@@ -68,6 +68,16 @@ def test_one_cell_serves_as_long_as_it_comes_back_to_idle(
     assert (Cell.opened, Cell.closed) == (2, 2)
 
 
+def test_a_cell_whose_calibrations_are_void_serves_no_further_trial(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    void = replace(CALM, calibrated=False)
+    play(monkeypatch, tmp_path, CALM, void, CALM).run(TRIALS)
+    assert (Cell.opened, Cell.closed) == (2, 2)
+    text = table.markdown({void.key: void})
+    assert "calibrations to be made again" in text
+
+
 def test_an_interrupted_campaign_goes_on_where_it_was(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
