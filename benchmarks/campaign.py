@@ -67,18 +67,29 @@ def _run(seed: int, out: Path, options: Sequence[str], console: Console) -> dict
     command = ["-m", "fakes", "demo", "--seed", str(seed), "--out", str(folder), "--quiet"]
     command += options
     begun = time.monotonic()
-    process = subprocess.run(
-        [sys.executable, *command], check=False, capture_output=True, text=True
-    )
+    errors = _run_to_its_end([sys.executable, *command])
     wall_s = time.monotonic() - begun
     if path.exists():
         result: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
     else:
-        tail = "\n".join(process.stderr.splitlines()[-5:])
+        tail = "\n".join(errors.splitlines()[-5:])
         result = {"seed": seed, "passed": False, "fault": f"no result: {tail}"}
     result["wall_s"] = wall_s
     console.print(f"seed {seed}: {told(result)} in {wall_s:.0f} s")
     return result
+
+
+def _run_to_its_end(command: Sequence[str]) -> str:
+    """What the program has written as errors. Ctrl-C waits until it has ended what it started."""
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    ) as process:
+        try:
+            return process.communicate()[1]
+        except KeyboardInterrupt:
+            process.terminate()
+            process.wait(60)
+            raise
 
 
 def told(result: Mapping[str, Any]) -> str:
