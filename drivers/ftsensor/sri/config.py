@@ -66,6 +66,9 @@ class SriConfig(BaseModel):
     reply_timeout_s: Positive = 1.2
     first_frame_timeout_s: Positive = 1.0
     reconnect_s: Positive = 0.5
+    max_lag_s: Positive = 0.3
+    """Samples that arrive later than this after they were taken end the connection. Seen where a
+    stream starts late, or goes on late after a pause; a sample carries no time of its own."""
 
     @property
     def layout(self) -> FrameLayout:

@@ -3,6 +3,7 @@
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError, LinkLost
 from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
+from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.links import Link, link_for
 from drivers.ftsensor.sri.sampler import Sampler
@@ -129,7 +130,12 @@ class SriSensor(FtSensor):
             self._firmware = session.setup.firmware
             self._reconnects += self._opened
             self._opened = True
-        return self._sampler.take(frames, now_s())
+        samples = self._sampler.take(frames, now_s())
+        if (lag_s := self._sampler.clock.lag_s) > self._config.max_lag_s:
+            # A new stream begins with what is taken now, and shows by its first frame whether it is
+            # late too.
+            raise faults.late(self._link.connection.peer, lag_s, self._config.max_lag_s)
+        return samples
 
     def _begin(self) -> None:
         link = self._link

@@ -1,7 +1,7 @@
 """Translates errors of sockets, serial lines and CAN, and the answers of the box, to faults."""
 
 from cellctl.errors.force import SensorSetupWrong
-from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout
+from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout, StaleData
 
 
 def cannot_connect(peer: str, reason: object) -> ConnectTimeout:
@@ -17,6 +17,13 @@ def lost(peer: str, reason: object) -> LinkLost:
 def no_reply(peer: str, request: str) -> ReplyTimeout:
     """Fault of a command that was not answered."""
     return ReplyTimeout(f"force sensor at {peer}: no reply to {request}")
+
+
+def late(peer: str, lag_s: float, allowed_s: float) -> StaleData:
+    """Fault of samples that are old when they arrive, although they arrive at the right rate."""
+    return StaleData(
+        f"force sensor at {peer}: samples arrive {lag_s:.2f} s late, allowed {allowed_s:g} s"
+    )
 
 
 def wrong_setup(what: str, found: object, expected: object) -> SensorSetupWrong:

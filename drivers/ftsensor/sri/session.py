@@ -24,8 +24,8 @@ class Decoder(Protocol):
 class Session:
     """Never waits: ``pump`` takes what is there and looks at the clock.
 
-    ``pump`` raises ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout`` or ``SensorSetupWrong``;
-    the session is over then.
+    ``pump`` raises ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``StaleData`` or
+    ``SensorSetupWrong``; the session is over then.
     """
 
     def __init__(
@@ -46,8 +46,10 @@ class Session:
         self._start_up = start_up
         self._waiting: Exchange | None = None
         self._begun = False
+        self._was_prompt = False
         self._deadline_s = now_s + config.connect_timeout_s
         self._quiet_since_s = now_s
+        self._started_s = self._empty_s = now_s
         self._skipped_before = 0
         self._errors_before = 0
         connection.connect()
@@ -69,10 +71,13 @@ class Session:
         frames = self._receive(now_s)
         if frames:
             self._begin_stream()
+            self._require_prompt()
             # From here on each frame moves the limit, so a stream that stops ends the session.
             self._deadline_s = now_s + self._config.first_frame_timeout_s
         elif now_s > self._deadline_s or self._quiet(now_s):
             self._time_out(now_s)
+        elif self.setup is not None:
+            self._empty_s = now_s
         return frames
 
     def _begin(self, now_s: float) -> bool:
@@ -103,6 +108,15 @@ class Session:
                 self._advance(item, now_s)
         return frames
 
+    def _require_prompt(self) -> None:
+        """The first sample is taken when the stream starts: a first frame that is late is old."""
+        # Until when somebody has looked and found nothing. The time at which the frame was found
+        # would blame the box for a pause of this PC.
+        lag_s = self._empty_s - self._started_s - self._config.points / self._config.rate_hz
+        if not self._was_prompt and lag_s > self._config.max_lag_s:
+            raise faults.late(self._connection.peer, lag_s, self._config.max_lag_s)
+        self._was_prompt = True
+
     def _begin_stream(self) -> None:
         if not self.streaming:
             self.streaming = True
@@ -127,6 +141,7 @@ class Session:
                 exchange = self._start_up.send(reply)
             except StopIteration as stop:
                 self.setup, self._waiting = stop.value, None
+                self._started_s = self._empty_s = now_s
                 self._deadline_s = now_s + self._config.first_frame_timeout_s
                 return
             self._connection.send(exchange.send)

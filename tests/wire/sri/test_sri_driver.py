@@ -9,7 +9,7 @@ import can
 import pytest
 
 from cellctl.errors.force import SensorSetupWrong
-from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout
+from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout, StaleData
 from drivers.ftsensor.sri.driver import SriSensor
 from fakes.wire.sri.box import SriBox
 from tests.ports import free_ports
@@ -196,6 +196,28 @@ async def test_reading_recovers_by_itself(box: SriBox, how: str) -> None:
     await read_until(sensor, lambda: sensor.health().reconnects == 1)
     await some(sensor)
     await closed(sensor)
+
+
+async def test_samples_that_become_late_are_no_samples(box: SriBox) -> None:
+    sensor = await opened(await tcp_sensor(box, reconnect_s=0.05, max_lag_s=0.3))
+    await some(sensor)
+    box.faults.inject("late_s", 0.6)
+    await read_until(sensor, lambda: sensor.fileno() < 0)
+    # The new stream is late too, which its first frame shows.
+    assert await blocking(lambda: sensor.read(2.0)) == ()
+    assert sensor.health().reconnects == 0
+    box.faults.clear()
+    await read_until(sensor, lambda: sensor.health().reconnects == 1)
+    await some(sensor)
+    await closed(sensor)
+
+
+async def test_a_box_whose_first_frame_is_late_is_refused(box: SriBox) -> None:
+    box.faults.inject("late_s", 0.6)
+    sensor = await tcp_sensor(box, max_lag_s=0.3)
+    with pytest.raises(StaleData, match=r"0\.[56]\d s late, allowed 0\.3 s"):
+        await blocking(sensor.open)
+    assert sensor.fileno() == -1
 
 
 async def test_nobody_listens() -> None:

@@ -65,3 +65,37 @@ def test_lost_frames_take_their_time() -> None:
     for k in range(1200):
         clock.stamp(k * 1e-3, 1)
     assert clock.stamp(1.205, 6) == pytest.approx(1.205, abs=2e-4)
+
+
+def read_at(clock: SampleClock, arrivals_s: list[float]) -> None:
+    for arrival_s in arrivals_s:
+        clock.stamp(arrival_s, 1)
+
+
+def test_samples_that_stay_late_after_a_pause_are_seen() -> None:
+    clock = SampleClock(1000.0, 0.05)
+    read_at(clock, [k * 1e-3 for k in range(1000)])
+    assert clock.lag_s == 0.0
+    read_at(clock, [1.8 + k * 1e-3 for k in range(1100)])
+    assert clock.lag_s == pytest.approx(0.8, abs=0.01)
+    clock.restart()
+    assert clock.lag_s == 0.0
+
+
+def test_a_backlog_that_is_caught_up_with_is_no_lag() -> None:
+    clock = SampleClock(1000.0, 0.05)
+    read_at(clock, [k * 1e-3 for k in range(1000)])
+    # The PC stood still for 0.8 s. What waited comes in four reads, then all is as before.
+    for part in range(4):
+        for k in range(200):
+            clock.stamp(1.8 + 1e-4 * part, 1, 199 - k)
+    read_at(clock, [1.801 + k * 1e-3 for k in range(1200)])
+    assert clock.lag_s < 0.05
+
+
+def test_samples_that_were_lost_are_no_lag() -> None:
+    clock = SampleClock(1000.0, 0.05)
+    read_at(clock, [k * 1e-3 for k in range(1000)])
+    clock.stamp(1.8, 801)
+    read_at(clock, [1.801 + k * 1e-3 for k in range(1200)])
+    assert clock.lag_s == 0.0
