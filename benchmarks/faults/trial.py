@@ -9,8 +9,8 @@ from typing import Any
 from benchmarks.faults.bench import LINE_FAILURES, POLL_S, RESTING, Bench, NotReached
 from benchmarks.faults.kinds import Fault, demanded
 from benchmarks.faults.line import Shown
-from benchmarks.faults.observation import Expected, Moved, Observation
-from benchmarks.faults.phases import PRODUCTION, Phase, start_run
+from benchmarks.faults.observation import Effect, Expected, Moved, Observation
+from benchmarks.faults.phases import LIMIT_N, PRODUCTION, Phase, start_run
 from cellctl.version import software
 from fakes.demo.control import Refused
 
@@ -79,7 +79,8 @@ def _expected(fault: Fault, phase: Phase) -> Expected:
     return Expected(
         effect,
         bound_s,
-        phase.peak_bound_n,
+        # A job that need not end at once may go on into the contact that its recipe plans.
+        LIMIT_N if effect is Effect.AT_NEXT_USE else phase.peak_bound_n,
         line_silent=fault.line_silent,
         may_restart=fault.may_restart,
         noticed_s=fault.noticed_s,
