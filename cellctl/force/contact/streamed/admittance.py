@@ -9,6 +9,7 @@ section 4 of the study of insertion by touch.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from cellctl.geometry.pose import Array
@@ -27,8 +28,8 @@ class AdmittanceGains:
     """N·s/m, N·m·s/rad."""
     spring: Array
     """N/m, N·m/rad; 0 on an axis whose force is controlled."""
-    follows: Array
-    """Bool; an axis that does not follow is stiff: it stays where it is."""
+    follows: NDArray[np.bool_]
+    """An axis that does not follow is stiff: it stays where it is."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,8 +59,8 @@ class Admittance:
         return np.concatenate([self._shift_m, self._turn.as_rotvec()])
 
     @property
-    def at_bound(self) -> Array:
-        """Bool, shape (6,): axes that have given way as far as they may."""
+    def at_bound(self) -> NDArray[np.bool_]:
+        """Shape (6,): axes that have given way as far as they may."""
         near = np.abs(self.displacement) >= 0.999 * self._bounds.way
         return np.asarray(near & self.gains.follows)
 

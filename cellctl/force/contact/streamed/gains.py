@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from math import isfinite
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.errors.streamed_contact import LoopNotMeasured, LoopTooSlow, LoopUnstable
 from cellctl.geometry.pose import Array
@@ -64,7 +65,9 @@ def loop_load(figures: LoopFigures, weights: Array, damping_s: Array) -> float:
     return float(np.sum(figures.loop_n_s_m * weights**2 / damping_s))
 
 
-def contact_load(figures: LoopFigures, lever_m: float, damping_s: Array, follows: Array) -> float:
+def contact_load(
+    figures: LoopFigures, lever_m: float, damping_s: Array, follows: NDArray[np.bool_]
+) -> float:
     """Greatest ``loop_load`` of any single contact at the rim; arrays of shape (6,).
 
     The direction of a contact has length 1 and its moment at most that of the lever, so it loads

@@ -28,7 +28,7 @@ class PathFollower:
     @property
     def arrived(self) -> bool:
         """True at the last point."""
-        return self.remaining <= 1e-12 + 1e-9 * self._marks[-1]
+        return self.remaining <= 1e-12 + 1e-9 * float(self._marks[-1])
 
     @property
     def point(self) -> Array:

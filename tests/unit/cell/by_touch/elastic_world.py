@@ -1,5 +1,6 @@
 """A tip on an arm with dead time, before an elastic part; with a stream and a guard, no process."""
 
+from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -13,7 +14,7 @@ from cellctl.cell.by_touch.settings import ContactSettings
 from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.cell.by_touch.ticks import ContactTick, TickObserver
 from cellctl.force.contact.streamed.gains import LoopFigures
-from cellctl.guard.report import GuardSamples, GuardTrip, TareResult
+from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport
 from tests.unit.cell.guard import TinyGuard
 
@@ -29,6 +30,8 @@ FRAMES = ContactFrames(
     RigidTransform.from_components([0.01, 0.0, 0.25], Rotation.from_euler("Z", 30, True)),
     Rotation.from_euler("Z", 170, degrees=True),
 )
+
+_TASK_R_NOMINAL = FRAMES.task_R_nominal.as_matrix()
 
 
 def wall(stiffness_n_m: float) -> Part:
@@ -134,23 +137,17 @@ class WorldGuard(TinyGuard):
         self._wrenches: list[Array] = []
 
     def publish(self, time_s: float, wrench: Array) -> None:
-        task_R_tip = Rotation.from_rotvec(self._world.tip[3:]) * FRAMES.task_R_nominal
-        inverse = task_R_tip.inv()
-        felt = np.concatenate([inverse.apply(wrench[:3]), inverse.apply(wrench[3:])])
+        turned = Rotation.from_rotvec(self._world.tip[3:]).as_matrix()
+        # Rows times a matrix: the inverse rotation.
+        felt = np.ravel(wrench.reshape(2, 3) @ turned @ _TASK_R_NOMINAL)
         sigma = np.repeat([self._world.sigma_n, self._world.sigma_nm], 3)
         self._times.append(time_s)
         self._wrenches.append(felt + self._rng.normal(0.0, 1.0, 6) * sigma)
         if np.abs(wrench[:3]).max() > self._world.trip_above_n and self.trip is None:
-            self.trip = self.trip_of_force(time_s)
-
-    @staticmethod
-    def trip_of_force(time_s: float) -> GuardTrip:
-        from cellctl.guard.report import TripReason
-
-        return GuardTrip(TripReason.FILTERED_LIMIT, time_s, "force above its limit", 2, 1.0)
+            self.trip = GuardTrip(TripReason.FILTERED_LIMIT, time_s, "force above its limit")
 
     def samples(self, since_s: float) -> GuardSamples:
-        first = int(np.searchsorted(self._times, since_s, side="right"))
+        first = bisect_right(self._times, since_s)
         wrench = np.array(self._wrenches[first:]).reshape(-1, 6)
         count = len(wrench)
         return GuardSamples(

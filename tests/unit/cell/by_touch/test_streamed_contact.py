@@ -1,4 +1,6 @@
 import asyncio
+from collections.abc import Coroutine
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,15 +13,17 @@ from tests.unit.cell.by_touch.elastic_world import ElasticWorld, Hole, Ticks, co
 
 DOWN = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.zeros(3)
+CLOSE = np.array([0.0, 0.0, -0.05e-3, 0.0, 0.0, 0.0])
 
 
-def run(motion) -> ContactMotion:  # type: ignore[no-untyped-def]
-    return asyncio.run(motion)
+def run(motion: Coroutine[Any, Any, ContactMotion]) -> ContactMotion:
+    ended: ContactMotion = asyncio.run(motion)
+    return ended
 
 
 @pytest.mark.parametrize("stiffness_n_m", [1e5, 1e6, 3e6])
 def test_a_touch_ends_by_its_force_and_overshoots_by_no_more(stiffness_n_m: float) -> None:
-    world = ElasticWorld(wall(stiffness_n_m), sigma_n=0.3, tip=np.array([0, 0, -1e-4, 0, 0, 0.0]))
+    world = ElasticWorld(wall(stiffness_n_m), sigma_n=0.3, tip=CLOSE)
     motions = contact(world, LoopFigures(stiffness_n_m, world.dead_time_s))
 
     async def touch_and_stand() -> ContactMotion:
@@ -40,7 +44,7 @@ def test_a_touch_without_a_part_ends_by_its_travel() -> None:
 
 
 def test_a_press_comes_to_its_force_without_a_jump_and_ends_by_its_time() -> None:
-    world = ElasticWorld(wall(1e6), sigma_n=0.3)
+    world = ElasticWorld(wall(1e6), sigma_n=0.3, tip=CLOSE)
     motions = contact(world)
 
     async def touch_and_press() -> ContactMotion:
@@ -62,7 +66,7 @@ def test_a_press_into_nothing_is_a_lost_contact() -> None:
 
 
 def test_a_slide_follows_its_points_under_a_steady_force() -> None:
-    world = ElasticWorld(wall(1e6), sigma_n=0.3)
+    world = ElasticWorld(wall(1e6), sigma_n=0.3, tip=CLOSE)
     motions = contact(world)
     angle = np.linspace(0.0, 2 * np.pi, 30)
     way = 1e-3 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -80,7 +84,7 @@ def test_a_slide_follows_its_points_under_a_steady_force() -> None:
 
 def test_a_slide_that_falls_into_a_hole_ends_by_its_condition() -> None:
     hole = Hole(1e6, centre_m=np.array([1e-3, 0.0]))
-    world = ElasticWorld(hole, sigma_n=0.3)
+    world = ElasticWorld(hole, sigma_n=0.3, tip=CLOSE)
     motions = contact(world)
 
     async def search() -> ContactMotion:
@@ -98,8 +102,8 @@ def test_a_slide_that_falls_into_a_hole_ends_by_its_condition() -> None:
 def test_a_feed_gives_way_on_the_chamfer_and_ends_at_the_seat(
     stiffness_n_m: float, limit_s: float
 ) -> None:
-    hole = Hole(stiffness_n_m, centre_m=np.array([0.3e-3, -0.2e-3]))
-    world = ElasticWorld(hole, sigma_n=0.3, tip=np.array([0, 0, -1e-4, 0, 0, 0.0]))
+    hole = Hole(stiffness_n_m, centre_m=np.array([0.3e-3, -0.2e-3]), depth_m=1.5e-3)
+    world = ElasticWorld(hole, sigma_n=0.3, tip=CLOSE)
     motions = contact(world, LoopFigures(stiffness_n_m, world.dead_time_s))
     fed = run(motions.feed(hole.depth_m + 30.0 / stiffness_n_m + 0.3e-3, 30.0))
     assert fed.ended is Ended.FORCE
@@ -117,7 +121,7 @@ def test_it_comes_out_by_the_way_it_went_in() -> None:
     motions = contact(world, LoopFigures(1e5, world.dead_time_s))
 
     async def in_and_out() -> ContactMotion:
-        await motions.feed(2e-3, 30.0)
+        await motions.feed(1.5e-3, 30.0)
         return await motions.back_out(2e-3)
 
     out = run(in_and_out())
@@ -161,7 +165,7 @@ def test_a_silent_sensor_stops_the_motion_and_then_ends_it() -> None:
     world = ElasticWorld(wall(1e6))
     world.silent_from_s = world.now_s + 0.05
     ticks = Ticks()
-    with pytest.raises(StreamLate, match="the newest force is 2[0-9] ms old"):
+    with pytest.raises(StreamLate, match=r"the newest force is 2[0-9] ms old"):
         run(contact(world, ticks=ticks).move_free(np.array([5e-3, 0, -1e-3]), UPRIGHT, 5e-3))
     assert [str(tick.pace) for tick in ticks.all][-2:] == ["brake", "brake"]
 
