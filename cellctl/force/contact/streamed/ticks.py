@@ -1,0 +1,44 @@
+"""What late ticks and old forces do to a motion: it slows, stands, and at last is given up.
+
+Lost travel is never made up for, and a force is never extrapolated. Source: section 4.2 of the
+study of insertion by touch.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from cellctl.errors.streamed_contact import StreamLate
+
+
+class Pace(StrEnum):
+    """How the setpoint of a tick follows."""
+
+    STEP = "step"
+    HOLD = "hold"
+    """The same target again, and half the speed."""
+    BRAKE = "brake"
+    """Slow down towards standstill."""
+
+
+@dataclass(frozen=True, slots=True)
+class TickRules:
+    """Ages from which on a motion slows or ends."""
+
+    period_s: float
+    lost_s: float = 0.05
+    """A tick after this time, or after ten periods, ends the stream."""
+    old_force_s: float = 5e-3
+    lost_force_s: float = 20e-3
+
+    def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
+        """How to go on after a tick; raises ``StreamLate``."""
+        if tick_age_s > min(10.0 * self.period_s, self.lost_s):
+            raise StreamLate(
+                f"{tick_age_s * 1e3:.0f} ms between two ticks of a stream of "
+                f"{self.period_s * 1e3:.0f} ms"
+            )
+        if force_age_s > self.lost_force_s:
+            raise StreamLate(f"the newest force is {force_age_s * 1e3:.0f} ms old")
+        if tick_age_s > 3.0 * self.period_s or force_age_s > self.old_force_s:
+            return Pace.BRAKE
+        return Pace.HOLD if tick_age_s > 1.5 * self.period_s else Pace.STEP
