@@ -38,7 +38,8 @@ class ContactSettings:
     """How far it may give way sideways."""
     give_way_rad: float = 0.052
     fastest_retreat_m_s: float = 5e-3
-    lost_tick_s: float = 0.05
+    lost_tick_s: float | None = None
+    """See ``TickRules``."""
     old_force_s: float = 5e-3
     lost_force_s: float = 20e-3
 

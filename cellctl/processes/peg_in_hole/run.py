@@ -29,7 +29,7 @@ class PegFacts:
     @classmethod
     def of(cls, cell: PegCell, recipe: PegRecipe, plan: CyclePlan) -> Self:
         """Raises ``LoopTooSlow`` or ``LoopUnstable``: the arm could not be let follow a force."""
-        task = plan.task
+        task, lost_ms = plan.task, cell.settings.lost_tick_ms
         settings = ContactSettings(
             figures=LoopFigures(task.cell.stiffness_n_m, task.cell.dead_time_s),
             lever_m=task.fit.peg_radius_m,
@@ -37,7 +37,7 @@ class PegFacts:
             limit_n=task.limits.fault_n,
             limit_nm=task.limits.fault_nm,
             follow_m=recipe.fit.depth_mm * MM + _FOLLOW_MARGIN_M,
-            lost_tick_s=cell.settings.lost_tick_ms * _MS,
+            lost_tick_s=None if lost_ms is None else lost_ms * _MS,
             old_force_s=cell.settings.old_force_ms * _MS,
             lost_force_s=cell.settings.lost_force_ms * _MS,
         )

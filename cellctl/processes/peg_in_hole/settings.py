@@ -20,8 +20,9 @@ class PegSettings(Section):
     """Of one reading of the height in contact, standard deviation."""
     force_sigma_n: Annotated[float, Field(gt=0, le=10)]
     """Of the mean of ten samples of one component of the force, standard deviation."""
-    lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] = 50.0
-    """A tick of the stream that comes later than this ends the contact at standstill."""
+    lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] | None = None
+    """A tick of the stream that comes later than this ends the contact at standstill; left out: 50
+    ms, or ten periods of the stream where they are less."""
     old_force_ms: Annotated[float, Field(ge=1, le=1000)] = 5.0
     """A force older than this lets the arm go no further."""
     lost_force_ms: Annotated[float, Field(ge=5, le=1000)] = 20.0

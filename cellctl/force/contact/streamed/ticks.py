@@ -9,6 +9,8 @@ from enum import StrEnum
 
 from cellctl.errors.streamed_contact import StreamLate
 
+_LOST_S = 0.05
+
 
 class Pace(StrEnum):
     """How the setpoint of a tick follows."""
@@ -25,14 +27,15 @@ class TickRules:
     """Ages from which on a motion slows or ends."""
 
     period_s: float
-    lost_s: float = 0.05
-    """A tick after this time, or after ten periods, ends the stream."""
+    lost_s: float | None = None
+    """A tick after this time ends the stream; None: after 50 ms or ten periods."""
     old_force_s: float = 5e-3
     lost_force_s: float = 20e-3
 
     def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
         """How to go on after a tick; raises ``StreamLate``."""
-        if tick_age_s > min(10.0 * self.period_s, self.lost_s):
+        lost_s = min(10.0 * self.period_s, _LOST_S) if self.lost_s is None else self.lost_s
+        if tick_age_s > lost_s:
             raise StreamLate(
                 f"{tick_age_s * 1e3:.0f} ms between two ticks of a stream of "
                 f"{self.period_s * 1e3:.0f} ms"
