@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna bench bench-metrology bench-looks bench-guard bench-robot bench-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -35,7 +35,6 @@ demo-antenna: venv
 demo-antenna-calibration: venv
 	$(BIN)/cellctl demo --process antenna-module --calibrate --seed $(SEED) $(ARGS)
 
-# ARGS='--cell pin' is a pin in a plate.
 demo-insertion: venv
 	$(BIN)/cellctl demo --process peg-in-hole --seed $(SEED) $(ARGS)
 
@@ -69,6 +68,10 @@ campaign-antenna: venv
 	$(BIN)/python -m benchmarks.antenna.chain.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.antenna.insertion.campaign $(if $(QUICK),--quick)
 
+# Takes twenty minutes; QUICK=1 draws few holes, in two minutes.
+campaign-insertion: venv
+	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
+
 bench: bench-metrology bench-looks bench-guard
 
 bench-metrology: venv
@@ -83,9 +86,20 @@ bench-guard: venv
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc
 	$(BIN)/python -m benchmarks.robot.slow_jobs
+	$(BIN)/python -m benchmarks.robot.stops
+
+# Takes about a quarter of an hour; N motions on each of three ways to an arm.
+soak-robot: N = 10000
+soak-robot: venv
+	$(BIN)/python -m benchmarks.robot.soak --moves $(N)
 
 bench-cameras: venv
 	$(BIN)/python -m benchmarks.cameras.throughput
+	$(BIN)/python -m benchmarks.cameras.depth
+
+# Takes half an hour. A short run: python -m benchmarks.cameras.soak --cycles 20 --pulls 10 --grabs 500
+soak-cameras: venv
+	$(BIN)/python -m benchmarks.cameras.soak
 
 bench-antenna-vision: venv
 	$(BIN)/python -m benchmarks.antenna.vision
@@ -149,7 +163,7 @@ coverage: venv
 	$(BIN)/coverage report
 
 lock: venv
-	$(BIN)/uv pip compile pyproject.toml --extra dev --extra gige --generate-hashes --no-emit-index-url \
+	$(BIN)/uv pip compile pyproject.toml --extra dev --generate-hashes --no-emit-index-url \
 		--universal --fork-strategy fewest --custom-compile-command "make lock" --quiet -o requirements.lock
 
 clean:

@@ -61,8 +61,7 @@ def demo(
         Path | None, typer.Option(help="Scenario of the fake cell; default: the process's own.")
     ] = None,
     cell: Annotated[
-        Path | None,
-        typer.Option(help="The daemon's cell file, or the name of one of the process's own cells."),
+        Path | None, typer.Option(help="The daemon's cell file; default: the process's own.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for record, report, logs.")] = None,
     calibrate: Annotated[bool, typer.Option(help="Run all calibrations instead.")] = False,
@@ -88,8 +87,6 @@ def demo(
     job = Job(seed=seed, calibrate=calibrate, stay=stay, faults=tuple(fault or ()))
     try:
         shown = registry.find(process)
-        if (variant := shown.variants().get(str(cell))) is not None:
-            shown, cell = variant(), None
         files = Files(
             scenario=scenario or shown.scenario,
             cell=cell or shown.cell,

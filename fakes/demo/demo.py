@@ -83,11 +83,6 @@ class Demo(ABC):
     steps: ClassVar[Mapping[int, str]] = {}
     """Labels of the steps by number, where they differ from those that the line PLC knows."""
 
-    @classmethod
-    def variants(cls) -> Mapping[str, "type[Demo]"]:
-        """Cells of this process by the short names that ``--cell`` takes, beside a file's."""
-        return {}
-
     def prepare(self, control: Control) -> None:  # noqa: B027  most cells begin as they are
         """What the operator does at the cell before the line starts the run."""
 

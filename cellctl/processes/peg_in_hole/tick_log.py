@@ -55,7 +55,10 @@ class TickLog(TickObserver):
 
 def read_ticks(text: str) -> dict[str, Array]:
     """The columns by name; raises ``ValueError`` for what is no such table."""
-    rows = list(csv.reader(io.StringIO(text)))
+    try:
+        rows = list(csv.reader(io.StringIO(text)))
+    except csv.Error as error:
+        raise ValueError(f"no table of ticks: {error}") from error
     if len(rows) < 2 or tuple(rows[0]) != COLUMNS:
         raise ValueError("no table of ticks")
     values = np.array([[float(cell) for cell in row] for row in rows[1:]])

@@ -13,23 +13,19 @@ CONFIG = Path(__file__).parents[3] / "config"
 
 
 class PegInHoleDemo(Demo):
-    """One arm with a force sensor and a gripped plug; the socket lies where nobody sees it."""
+    """One arm with a force sensor and a gripped pin; the hole in a plate lies where nobody sees."""
 
     process: ClassVar[str] = "peg-in-hole"
-    title: ClassVar[str] = "a round plug finds its socket by touch"
-    cell: ClassVar[Path] = CONFIG / "insertion-connector.toml"
-    scenario: ClassVar[Path] = CONFIG / "insertion-connector.scenario.toml"
-    serial: ClassVar[str] = "PEG-{seed:04d}"
-    insertion_n: ClassVar[float] = 80.0
-    """Largest 20 ms mean of the true force; limits of reference cells J and P."""
-    fault_n: ClassVar[float] = 100.0
+    title: ClassVar[str] = "a pin finds its hole by touch"
+    cell: ClassVar[Path] = CONFIG / "insertion-pin.toml"
+    scenario: ClassVar[Path] = CONFIG / "insertion-pin.scenario.toml"
+    serial: ClassVar[str] = "PIN-{seed:04d}"
+    steps: ClassVar[Mapping[int, str]] = {10: "approach", 20: "touch face", 30: "search and insert"}
+    insertion_n: ClassVar[float] = 30.0
+    """Largest 20 ms mean of the true force; limits of reference cell P."""
+    fault_n: ClassVar[float] = 50.0
     """Largest 3 ms mean."""
-    fault_nm: ClassVar[float] = 2.0
-
-    @classmethod
-    def variants(cls) -> Mapping[str, type[Demo]]:
-        """The plug, and the pin in a plate."""
-        return {"connector": PegInHoleDemo, "pin": PinInPlateDemo}
+    fault_nm: ClassVar[float] = 1.0
 
     def prepare(self, control: Control) -> None:
         """The next part and the next face, with what was injected into them."""
@@ -70,18 +66,6 @@ class PegInHoleDemo(Demo):
             *(one.row(figures[one.key]) for one in self._limited()),
             Row("true force, at an instant, N", figures["force_1_ms_n"], "{:.1f}"),
         ]
-
-
-class PinInPlateDemo(PegInHoleDemo):
-    """A precision pin and its hole in a plate."""
-
-    title: ClassVar[str] = "a pin finds its hole by touch"
-    cell: ClassVar[Path] = CONFIG / "insertion-pin.toml"
-    scenario: ClassVar[Path] = CONFIG / "insertion-pin.scenario.toml"
-    serial: ClassVar[str] = "PIN-{seed:04d}"
-    insertion_n: ClassVar[float] = 30.0
-    fault_n: ClassVar[float] = 50.0
-    fault_nm: ClassVar[float] = 1.0
 
 
 def _figures(truth: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,10 +10,9 @@ from typer.testing import CliRunner
 
 from fakes.demo import registry
 from fakes.demo.app import app
-from fakes.demo.deck_to_frame import DeckToFrameDemo
-from fakes.demo.demo import Demo, Evidence, Judgement
-from fakes.demo.session import Files
-from tests.cell.own_cell import OwnCell
+from fakes.demo.demo import Evidence, Judgement
+from fakes.demo.processes.deck_to_frame import DeckToFrameDemo
+from tests.cell.rigs.own_cell import OwnCell
 
 CONFIG = Path(__file__).parents[4] / "config"
 
@@ -98,25 +97,3 @@ def test_what_is_no_demo_is_no_demo(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(registry, "entry_points", points)
     with pytest.raises(registry.UnknownProcess, match="is not a Demo"):
         registry.find("weaving")
-
-
-def test_a_process_offers_its_cells_by_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    started: list[Path] = []
-
-    def start(_shown: Demo, files: Files, *_: object) -> int:
-        started.extend([files.cell, files.scenario])
-        return 0
-
-    monkeypatch.setattr("fakes.demo.app._run", start)
-    for name in ("connector", "pin"):
-        out = str(tmp_path / name)
-        options = ["--process", "peg-in-hole", "--cell", name, "--out", out]
-        assert CliRunner().invoke(app, options).exit_code == 0
-    assert [file.name for file in started] == [
-        "insertion-connector.toml",
-        "insertion-connector.scenario.toml",
-        "insertion-pin.toml",
-        "insertion-pin.scenario.toml",
-    ]

@@ -7,8 +7,8 @@ import pytest
 
 from fakes.demo import registry
 from fakes.demo.control import Control
-from fakes.demo.demo import Demo, Evidence
-from fakes.demo.processes.peg_in_hole import PegInHoleDemo, PinInPlateDemo
+from fakes.demo.demo import Evidence
+from fakes.demo.processes.peg_in_hole import PegInHoleDemo
 from fakes.scenes.socket.scenario import SocketScenario
 from fakes.scenes.socket.scene import SocketScene
 
@@ -28,11 +28,10 @@ GOOD = {"result": "good", "run": 1}
 def judged(
     truth: dict[str, Any] | None = None,
     record: dict[str, Any] | None = None,
-    demo: Demo | None = None,
 ) -> list[str]:
     """Names of what is beyond its limit; the verdict must agree with them."""
     evidence = Evidence(GOOD, deepcopy(TRUTH) | (truth or {}), record or deepcopy(RECORD))
-    judgement = (demo or PinInPlateDemo()).judge(evidence)
+    judgement = PegInHoleDemo().judge(evidence)
     beyond = list(judgement.figures["beyond"])
     assert judgement.passed == (not beyond)
     return beyond
@@ -43,7 +42,7 @@ def test_a_pin_at_its_seat_passes() -> None:
 
 
 def test_what_the_cell_calls_bad_is_not_good() -> None:
-    assert not PinInPlateDemo().judge(Evidence({"result": "bad"}, deepcopy(TRUTH), {})).passed
+    assert not PegInHoleDemo().judge(Evidence({"result": "bad"}, deepcopy(TRUTH), {})).passed
 
 
 @pytest.mark.parametrize(
@@ -71,20 +70,13 @@ def test_every_figure_of_the_truth_has_its_limit(truth: dict[str, Any], names: l
     assert judged(truth) == names
 
 
-def test_a_plug_may_be_pressed_harder_than_a_pin() -> None:
-    pressed = {"peak_force_n": {"1_ms": 80.0, "3_ms": 75.0, "20_ms": 70.0}}
-    assert judged(pressed, demo=PegInHoleDemo()) == []
-    assert len(judged(pressed)) == 2
-
-
 def test_a_figure_of_the_record_that_failed_is_bad() -> None:
     failed = {"figures": [{"key": "capture", "value": 9.0, "verdict": "fail"}]}
     assert judged(record=failed) == ["capture of the record"]
 
 
-@pytest.mark.parametrize("variant", ["connector", "pin"])
-def test_the_truth_of_the_scene_is_what_the_demonstration_judges(variant: str) -> None:
-    demo = registry.find("peg-in-hole").variants()[variant]()
+def test_the_truth_of_the_scene_is_what_the_demonstration_judges() -> None:
+    demo = registry.find("peg-in-hole")
     world = SocketScene(SocketScenario.read(demo.scenario), 1)
     judgement = demo.judge(Evidence(GOOD, world.report(), {}))
     assert not judgement.passed
