@@ -1,7 +1,7 @@
 """What `cellctl check` says of a recipe, and the plan that is made of it."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -20,10 +20,8 @@ from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell, believed_frames, on_face, weight_of
 
 CELL = load_cell(Path(__file__).parents[4] / "config" / "insertion-pin.toml")
-SETTINGS = CELL.processes["peg-in-hole"]
-(RECIPE,) = CELL.recipes
-assert isinstance(SETTINGS, PegSettings)
-assert isinstance(RECIPE, PegRecipe)
+SETTINGS = cast(PegSettings, CELL.processes["peg-in-hole"])
+RECIPE = cast(PegRecipe, CELL.recipes[0])
 
 
 def changed(**sections: dict[str, Any]) -> PegRecipe:
