@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -34,6 +34,9 @@ demo-antenna: venv
 
 demo-antenna-calibration: venv
 	$(BIN)/cellctl demo --process antenna-module --calibrate --seed $(SEED) $(ARGS)
+
+demo-insertion: venv
+	$(BIN)/cellctl demo --process peg-in-hole --seed $(SEED) $(ARGS)
 
 demo-calibration: venv
 	$(BIN)/cellctl demo --calibrate --seed $(SEED)

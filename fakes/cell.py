@@ -133,8 +133,12 @@ class Cell:
 def _offer(robot: Robot) -> StreamOffer:
     """What a job program with streamed motion says that it can do."""
     usual = StreamOffer()
-    travel = {"travel_mm": robot.stream_travel_mm, "travel_deg": robot.stream_travel_deg}
-    return replace(usual, limits=replace(usual.limits, **travel))
+    written = {
+        "travel_mm": robot.stream_travel_mm,
+        "travel_deg": robot.stream_travel_deg,
+        "loss_ms": robot.stream_loss_ms,
+    }
+    return replace(usual, limits=replace(usual.limits, **written))
 
 
 async def _listen(name: str, port: int, starting: Awaitable[int]) -> int:

@@ -84,6 +84,8 @@ class Robot(Section):
     stream_travel_mm: float = 30.0
     """Farthest that a stream may go from where it began."""
     stream_travel_deg: float = 5.0
+    stream_loss_ms: float = 200.0
+    """Time without a setpoint after which it ends a stream."""
     home_deg: Six
     """Joint angles at switch-on."""
     controller: Controller = "protocol"

@@ -104,7 +104,7 @@ async def _outcome(
     # The robot may report its end before the guard's report of the trip has reached the daemon.
     # Then the abort is the consequence and the trip is the reason.
     except (MotionAborted, NotRearmed) as fault:
-        trip = await _late_trip(guard)
+        trip = await late_trip(guard)
         if trip is None:
             raise
         await _second_stop(robot, guard)
@@ -131,7 +131,8 @@ async def _second_stop(robot: Robot, guard: GuardPort) -> None:
         raise
 
 
-async def _late_trip(guard: GuardPort) -> GuardTrip | None:
+async def late_trip(guard: GuardPort) -> GuardTrip | None:
+    """The trip that has stopped a robot, once the guard has reported it; None when it had none."""
     try:
         async with asyncio.timeout(REPORT_WAIT_S):
             await _tripped(guard)

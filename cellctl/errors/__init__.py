@@ -11,6 +11,7 @@ CellError
 │   └── ConnectorError 46x  errors.connector    connectors and their contacts in one image
 ├── ForceError        5xx   errors.force        sensor, guard, mating
 ├── ByTouchError      54x   errors.by_touch     holes that are found by touch
+├── StreamedContactError 57x errors.streamed_contact  contact under a stream of setpoints
 ├── PluggingError     56x   errors.plugging     plan and insertion of a plug
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 │   └── ReferenceMoved 64x  errors.plug_calibration  plugging by two cameras
@@ -37,6 +38,7 @@ from cellctl.errors import (
     plugging,
     records,
     robot,
+    streamed_contact,
     vision,
 )
 from cellctl.errors.base import CellError, Reaction, catalogue
@@ -61,5 +63,6 @@ __all__ = [
     "plugging",
     "records",
     "robot",
+    "streamed_contact",
     "vision",
 ]

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellctl.geometry.pose import Array
+from cellctl.geometry.uncertain import skew
 
 GRAVITY_M_S2 = 9.80665
 """Standard gravity; a site may use its own value."""
@@ -46,6 +47,17 @@ class GravityCompensation:
     def none(cls) -> Self:
         """Subtract nothing: enough when a tare follows and the orientation does not change."""
         return cls(np.zeros((6, 3)), np.zeros(6), "none")
+
+    @classmethod
+    def rigid(cls, mass_kg: float, centre_of_mass_m: Array) -> Self:
+        """A load (kg) with its centre of mass (3,) in the sensor frame, on an ideal sensor.
+
+        From a drawing and not from an identification, so that a tare has to take the offset.
+        """
+        weight_n = mass_kg * GRAVITY_M_S2
+        return cls(
+            np.vstack([np.eye(3), skew(centre_of_mass_m)]) * weight_n, np.zeros(6), "rigid12"
+        )
 
     def load(self, base_R_sensor: Rotation) -> Array:
         """Wrench of the load at one orientation, shape (6,), or at n, shape (n, 6)."""

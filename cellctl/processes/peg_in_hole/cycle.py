@@ -1,6 +1,6 @@
 """One whole cycle by touch: face, search, insertion, pushes to the sides, verdict."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -56,21 +56,38 @@ class CycleResult:
         }
 
 
-async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
-    """From above the face to the verdict, held by the gripper still.
+def _silent(_words: str) -> None:
+    return
 
-    Raises what face, search and insertion raise; then the caller backs out. Without a touch on the
+
+async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
+    """From above the face to the verdict, held by the gripper still; see ``search_and_insert``."""
+    face = await touch_face(motions, plan.task, plan.face_radius_m, plan.height_uncertainty_m)
+    return await search_and_insert(motions, plan, face)
+
+
+async def search_and_insert(
+    motions: ContactMotions,
+    plan: CyclePlan,
+    face: TouchedFace,
+    tell: Callable[[str], None] = _silent,
+) -> CycleResult:
+    """From the touched face to the verdict; ``tell`` hears what is being done.
+
+    Raises what search and insertion raise; then the caller backs out. Without a touch on the
     part's rear the verdict rests on the grip force alone.
     """
     task = plan.task
-    face = await touch_face(motions, task, plan.face_radius_m, plan.height_uncertainty_m)
+    tell("search: " + ", then ".join(name.value for name in plan.choice.order))
     begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
     hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
     probe = TouchProbe(
         motions, task, plan.choice.parameters, hole_map, begun.time_s + task.search_limit_s
     )
     found_by = await find_hole(probe, plan.choice.order)
+    tell(f"insert: the hole was found by {found_by.value}")
     fed = await insert(motions, task)
+    tell("verify: pushed to four sides")
     capture = await measure_capture(motions, task)
     evidence = InsertionEvidence(
         depth_m=fed.depth_m - face.depth_m,

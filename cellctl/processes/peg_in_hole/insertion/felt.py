@@ -15,6 +15,8 @@ _OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
 _STAYS = 0.7
 _FOOT = 0.2
+_SEAT_ZONE_M, _WAY_M = 0.5e-3, 3e-3
+"""So far before its end a feed is slowed by the seat; so far back the way counts for friction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,13 +58,25 @@ class Standing:
 def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
     """Rise of the axial force over depth at the end of a feed, N/m; None where it cannot be told.
 
-    From the samples since the force last passed a fifth of what it came to.
+    From the sample at which the force last was below a fifth of its rise over what friction made
+    on the way, to its greatest value: after that the arm gives way.
     """
-    depth_m = np.array([sample.task_position_tip_m[2] for sample in samples])
-    axial_n = np.array([-sample.force_n[2] for sample in samples])
-    below = np.flatnonzero(axial_n < _FOOT * axial_n[-1])
-    begin = int(below[-1]) + 1 if below.size else 0
-    if len(samples) - begin < 2 or np.ptp(depth_m[begin:]) == 0:
+    # A tick that found no new force repeats the last one, at a depth that it does not belong to.
+    fresh = [
+        sample
+        for before, sample in zip([None, *samples], samples, strict=False)
+        if before is None or not np.array_equal(before.force_n, sample.force_n)
+    ]
+    axial_n = np.array([-sample.force_n[2] for sample in fresh])
+    peak = int(np.argmax(axial_n)) + 1
+    axial_n = axial_n[:peak]
+    depth_m = np.array([sample.task_position_tip_m[2] for sample in fresh[:peak]])
+    back_m = depth_m[-1] - depth_m
+    sliding = axial_n[(back_m > _SEAT_ZONE_M) & (back_m < _WAY_M)]
+    friction_n = float(np.median(sliding)) if sliding.size else 0.0
+    below = np.flatnonzero(axial_n < friction_n + _FOOT * (axial_n[-1] - friction_n))
+    begin = int(below[-1]) if below.size else 0
+    if len(axial_n) - begin < 2 or np.ptp(depth_m[begin:]) == 0:
         return None
     return float(np.polyfit(depth_m[begin:], axial_n[begin:], 1)[0])
 

@@ -21,6 +21,9 @@ _LIFT_M = 0.3e-3
 _FREE_M_S = 20e-3
 _PRESS_S = 1.0
 _ENTERED_S = 0.1
+_GIVE_WAY_S = 1.0
+_DIP_M = 0.1e-3
+"""Lower than this beneath the face an upright peg stands on no face."""
 _LOST_RATIO = 0.3
 _LOCAL_RADIUS_M = 0.25e-3
 
@@ -114,6 +117,10 @@ class TouchProbe:
         """Press; True when the peg stays below the depth of entry."""
         depth_m = self.task.fit.entry_depth_m
         pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
+        if pressed.ended is not Ended.CONDITION and _stands_lower(pressed.last):
+            # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
+            await self.motions.give_way(self.press_n, _GIVE_WAY_S)
+            pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
         entered = pressed.ended is Ended.CONDITION
         self.trace.note(pressed.last, Felt.ENTRY if entered else Felt.FACE)
         self.still_in_time(pressed.last)
@@ -166,6 +173,10 @@ Stop = Callable[[ContactSample], bool]
 
 def _never(_sample: ContactSample) -> bool:
     return False
+
+
+def _stands_lower(sample: ContactSample) -> bool:
+    return float(sample.task_position_tip_m[2]) > _DIP_M
 
 
 def held(depth_m: float) -> Stop:

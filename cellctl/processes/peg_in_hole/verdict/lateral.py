@@ -10,7 +10,8 @@ _PRESS_N = 2.0
 _SPEED_M_S = 0.5e-3
 _LEAST_PUSH_N = 3.0
 _MARGIN_M = 0.1e-3
-_SETTLE_S = 0.2
+_SETTLE_S = 1.0
+"""The arm comes back by what it had yielded under the force of the seat."""
 
 
 def push_force_n(cell: CellFigures) -> float:

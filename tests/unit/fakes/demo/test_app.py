@@ -34,8 +34,8 @@ def taken() -> Iterator[int]:
 
 def test_an_unknown_process_names_those_that_there_are() -> None:
     assert (
-        "there is no demonstration of 'weaving'; there are: antenna-module, deck-to-frame"
-        in refused("--process", "weaving")
+        "there is no demonstration of 'weaving'; there are: antenna-module, deck-to-frame, "
+        "peg-in-hole" in refused("--process", "weaving")
     )
 
 

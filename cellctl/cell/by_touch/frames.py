@@ -1,0 +1,54 @@
+"""Where task, tip and flange stand to each other during a streamed contact."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.geometry.pose import Array
+
+
+class ContactFrames:
+    """Poses that stay the same while the stream lasts.
+
+    The tip's pose in the task is written as six numbers: position (m) and the rotation vector (rad)
+    that turns the nominal attitude into it, both in the axes of the task.
+    """
+
+    def __init__(
+        self, base_T_task: RigidTransform, flange_T_tip: RigidTransform, task_R_nominal: Rotation
+    ) -> None:
+        """``task_R_nominal``: attitude of the tip at which the peg goes in; any rotation."""
+        self.base_T_task, self.flange_T_tip = base_T_task, flange_T_tip
+        self.task_R_nominal = task_R_nominal
+        # Matrices, because every tick of the stream needs them and products of poses take ten
+        # times as long.
+        self._base_T_task = base_T_task.as_matrix()
+        self._task_T_base = base_T_task.inv().as_matrix()
+        self._flange_T_tip = flange_T_tip.as_matrix()
+        self._tip_T_flange = flange_T_tip.inv().as_matrix()
+        self._task_R_nominal = task_R_nominal.as_matrix()
+
+    def tip(self, base_T_flange: RigidTransform) -> Array:
+        """Six numbers of the tip, shape (6,)."""
+        task_T_tip = self._task_T_base @ base_T_flange.as_matrix() @ self._flange_T_tip
+        turned = Rotation.from_matrix(task_T_tip[:3, :3] @ self._task_R_nominal.T)
+        return np.concatenate([task_T_tip[:3, 3], turned.as_rotvec()])
+
+    def base_T_flange(self, tip: Array) -> RigidTransform:
+        """The flange for six numbers of the tip, shape (6,)."""
+        task_T_tip = np.eye(4)
+        task_T_tip[:3, :3] = self._task_R_tip(tip)
+        task_T_tip[:3, 3] = tip[:3]
+        return RigidTransform.from_matrix(self._base_T_task @ task_T_tip @ self._tip_T_flange)
+
+    def in_task(self, tip: Array, tip_wrench: Array) -> Array:
+        """A wrench about the tip, turned from the axes of the tip to those of the task; (6,)."""
+        return np.ravel(tip_wrench.reshape(2, 3) @ self._task_R_tip(tip).T)
+
+    def _task_R_tip(self, tip: Array) -> Array:
+        return np.asarray(Rotation.from_rotvec(tip[3:]).as_matrix() @ self._task_R_nominal)
+
+
+def displaced(nominal: Array, displacement: Array) -> Array:
+    """Six numbers of the tip after a displacement in the axes of the task; all of shape (6,)."""
+    turned = Rotation.from_rotvec(displacement[3:]) * Rotation.from_rotvec(nominal[3:])
+    return np.concatenate([nominal[:3] + displacement[:3], turned.as_rotvec()])

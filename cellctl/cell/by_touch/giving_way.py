@@ -1,0 +1,73 @@
+"""Which axes give way in a motion, with gains from the figures of the cell."""
+
+import numpy as np
+
+from cellctl.cell.by_touch.contact_loop import ContactLoop
+from cellctl.cell.by_touch.streamed_motion import Press
+from cellctl.force.contact.streamed.admittance import (
+    Admittance,
+    AdmittanceBounds,
+    AdmittanceGains,
+    PushRamp,
+)
+from cellctl.force.contact.streamed.gains import damping, levers, virtual_mass
+from cellctl.force.contact.streamed.speeds import ContactWatch
+from cellctl.geometry.pose import Array
+
+X, Y, Z, TILT_X, TILT_Y, YAW = range(6)
+_SHARE_OF_STEP = 0.45
+"""Of what the controller accepts from tick to tick; path and admittance may each take as much."""
+
+
+def fastest_m_s(loop: ContactLoop) -> float:
+    """Greatest speed of the tip that the stream follows."""
+    return _SHARE_OF_STEP * loop.stream.limits.step_m / loop.period_s
+
+
+def fastest_rad_s(loop: ContactLoop) -> float:
+    """Greatest turning speed about the tip: the flange swings round it on its own lever."""
+    lever_m = float(np.linalg.norm(loop.frames.flange_T_tip.translation))
+    by_way = fastest_m_s(loop) / max(lever_m, 1e-6)
+    return min(_SHARE_OF_STEP * loop.stream.limits.step_rad / loop.period_s, by_way)
+
+
+def giving_way(
+    loop: ContactLoop,
+    push: Array,
+    follows: tuple[int, ...],
+    *,
+    spring: Array | None = None,
+    contact_must_stay: bool = False,
+) -> Press:
+    """Admittance of some axes, others stiff.
+
+    ``push`` (6,) is what the peg is to push with; ``spring`` (6,) pulls back to the nominal pose.
+    """
+    settings = loop.settings
+    weights = levers(settings.lever_m)
+    # One contact can load at most three of them: its normal and its moment lie in one plane.
+    gains = AdmittanceGains(
+        mass=virtual_mass(weights),
+        damping=damping(settings.figures, weights, min(len(follows), 3)),
+        spring=np.zeros(6) if spring is None else spring,
+        follows=np.isin(np.arange(6), follows),
+    )
+    admittance = Admittance(gains, _bounds(loop, gains), loop.period_s)
+    watch = ContactWatch(float(push[Z]), loop.period_s) if contact_must_stay else None
+    return Press(admittance, PushRamp(loop.felt, push, loop.period_s), watch)
+
+
+def _bounds(loop: ContactLoop, gains: AdmittanceGains) -> AdmittanceBounds:
+    settings, lever_m = loop.settings, loop.settings.lever_m
+    # Giving way at full speed must not take more than half of the force that is allowed.
+    by_force_m_s = 0.5 * settings.limit_n / float(gains.damping[Z])
+    speed_m_s = min(settings.touch_speed_m_s, by_force_m_s, fastest_m_s(loop))
+    speed_rad_s = min(speed_m_s / lever_m, fastest_rad_s(loop))
+    way_m = (settings.give_way_m, settings.give_way_m, settings.follow_m)
+    return AdmittanceBounds(
+        speed=np.repeat([speed_m_s, speed_rad_s], 3),
+        acceleration=np.repeat(
+            [settings.acceleration_m_s2, settings.acceleration_m_s2 / lever_m], 3
+        ),
+        way=np.array([*way_m, *(settings.give_way_rad,) * 3]),
+    )

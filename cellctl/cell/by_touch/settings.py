@@ -1,0 +1,59 @@
+"""What a streamed contact is given: figures of the cell, size of the peg, limits of the forces."""
+
+from dataclasses import dataclass
+
+from cellctl.force.contact.streamed.gains import (
+    LoopFigures,
+    check_load,
+    check_press,
+    contact_load,
+    damping,
+    levers,
+)
+from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+
+
+@dataclass(frozen=True, slots=True)
+class ContactSettings:
+    """Nothing here is a gain: those follow from the figures."""
+
+    figures: LoopFigures
+    lever_m: float
+    """Radius of the peg: the lever of a contact at its rim."""
+    press_n: float
+    """The press of the search, which must be able to move the arm."""
+    limit_n: float
+    """A force that no motion may reach, and that the guard stops at."""
+    limit_nm: float
+    lateral_spring_n_m: float = 5e3
+    """K sideways while the peg is fed."""
+    tilt_spring_nm_rad: float = 5.0
+    filter_s: float = 2e-3
+    """Time constant of the low-pass before the law; part of the dead time."""
+    acceleration_m_s2: float = 0.1
+    acceleration_rad_s2: float = 1.0
+    follow_m: float = 3e-3
+    """How far the tip may follow a press."""
+    give_way_m: float = 1.5e-3
+    """How far it may give way sideways."""
+    give_way_rad: float = 0.052
+    fastest_retreat_m_s: float = 5e-3
+    lost_tick_s: float | None = None
+    """See ``TickRules``."""
+    old_force_s: float = 5e-3
+    lost_force_s: float = 20e-3
+
+    def check(self) -> None:
+        """Raise ``LoopTooSlow`` or ``LoopUnstable`` before any contact."""
+        weights = levers(self.lever_m)
+        for axes in (1, 3):
+            every = damping(self.figures, weights, axes)
+            follows = weights > 0 if axes > 1 else weights < 0
+            follows[2] = True
+            check_load(contact_load(self.figures, self.lever_m, every, follows))
+        check_press(self.figures, self.press_n, float(damping(self.figures, weights, 1)[2]))
+
+    @property
+    def touch_speed_m_s(self) -> float:
+        """At which a new contact grows by no more than the press."""
+        return touch_speed_m_s(self.figures, self.press_n)

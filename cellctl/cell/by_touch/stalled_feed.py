@@ -1,0 +1,45 @@
+"""Speed of a feed into the hole, and when the force has stopped it."""
+
+from cellctl.cell.by_touch.motions import ContactSample, Ended
+from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.force.contact.streamed.speeds import FEED_N, feed_override, touch_speed_m_s
+
+_STALLED_SHARE = 0.1
+_STALLED_S = 0.3
+_LAST_M = 0.5e-3
+_TOUCH_SHARE = 0.8
+"""Speed over the last stretch, as a share of the feed."""
+
+
+class StalledFeed:
+    """One feed. Section 4.4 of the study of insertion by touch."""
+
+    def __init__(
+        self, figures: LoopFigures, limit_n: float, depth_m: float, period_s: float
+    ) -> None:
+        self._full_m_s = touch_speed_m_s(figures, min(FEED_N, 0.5 * limit_n))
+        self._limit_n, self._depth_m = limit_n, depth_m
+        self._most = _STALLED_S / period_s
+        self._ticks = 0
+
+    @property
+    def slowest_m_s(self) -> float:
+        """Speed that counts for the greatest time that the feed may take."""
+        return 0.2 * self._full_m_s
+
+    def speed_m_s(self, sample: ContactSample) -> float:
+        """Speed of the next tick; negative to back off."""
+        near = self._depth_m - float(sample.task_position_tip_m[2]) < _LAST_M
+        full_m_s = self._full_m_s * (_TOUCH_SHARE if near else 1.0)
+        return full_m_s * feed_override(_axial_n(sample), self._limit_n)
+
+    def stalled(self, sample: ContactSample) -> Ended | None:
+        """``FORCE`` once the feed has stood for a while, or the limit is passed."""
+        share = feed_override(_axial_n(sample), self._limit_n)
+        self._ticks = self._ticks + 1 if share < _STALLED_SHARE else 0
+        passed = _axial_n(sample) > self._limit_n
+        return Ended.FORCE if passed or self._ticks > self._most else None
+
+
+def _axial_n(sample: ContactSample) -> float:
+    return -float(sample.force_n[2])

@@ -1,0 +1,248 @@
+"""Motions by touch for any robot that follows a stream, with the force guard beside it."""
+
+import asyncio
+from collections.abc import Callable, Coroutine
+from typing import Any
+
+import numpy as np
+
+from cellctl.cell.by_touch.contact_loop import ContactLoop
+from cellctl.cell.by_touch.giving_way import (
+    TILT_X,
+    TILT_Y,
+    YAW,
+    X,
+    Y,
+    Z,
+    fastest_m_s,
+    fastest_rad_s,
+    giving_way,
+)
+from cellctl.cell.by_touch.motions import (
+    Condition,
+    ContactMotion,
+    ContactMotions,
+    ContactSample,
+    Ended,
+    Vector,
+)
+from cellctl.cell.by_touch.stalled_feed import StalledFeed
+from cellctl.cell.by_touch.streamed_motion import Press, StreamedMotion
+from cellctl.force.contact.streamed.path import PathFollower, straight
+from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+from cellctl.geometry.pose import Array
+
+_TURN_LEVER_M = 0.1
+"""A turn on the way counts as the way of a point so far from the tip."""
+_LATEST_RATIO, _LATEST_S = 3.0, 10.0
+"""A motion may take so much longer than its way at full speed, before it is given up."""
+_IN_CONTACT_N = 2.0
+_PULL_RATIO = 2.0
+"""Of the press: a greater pull on the way out means that the peg is held."""
+
+
+class StreamedContact(ContactMotions):
+    """See ``ContactMotions``; it is made by ``streamed_contact`` and lasts as long as its stream.
+
+    Raises ``StreamLate``, ``ContactLost``, ``AdmittanceSaturated``, the fault of a guard that has
+    tripped, or what the stream raises; the robot is then stopped when the stream is left.
+    """
+
+    def __init__(self, loop: ContactLoop) -> None:
+        self._loop, self._settings = loop, loop.settings
+        self._pressed_n = 0.0
+        """With which the last motion pressed, and a push sideways goes on to press."""
+
+    async def move_free(
+        self, task_position_tip_m: Vector, task_rotation_tip_rad: Vector, speed_m_s: float
+    ) -> ContactMotion:
+        """See ``ContactMotions``."""
+        self._pressed_n = 0.0
+        target = np.concatenate([task_position_tip_m, task_rotation_tip_rad])
+        points, lengths = straight(self._loop.tip_command, target, _TURN_LEVER_M)
+        path = self._path(points, lengths)
+        touched = _force_above(self._settings.press_n)
+        speed = min(speed_m_s, fastest_m_s(self._loop), fastest_rad_s(self._loop) * _TURN_LEVER_M)
+        return await self._run(path, lambda _sample: speed, _first(touched, _arrived(path)), speed)
+
+    async def touch(
+        self, direction: Vector, travel_m: float, force_n: float, speed_m_s: float | None = None
+    ) -> ContactMotion:
+        """See ``ContactMotions``."""
+        across = abs(float(direction[2])) < 1e-9
+        if not across:
+            self._pressed_n = 0.0
+        target = self._loop.tip_command.copy()
+        target[:3] += travel_m * np.asarray(direction)
+        path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
+        allowed = touch_speed_m_s(self._settings.figures, force_n)
+        speed = min(speed_m_s or allowed, fastest_m_s(self._loop))
+        press = self._press_along(self._pressed_n) if across and self._pressed_n else None
+
+        def touched(sample: ContactSample) -> Ended | None:
+            return Ended.FORCE if -float(sample.force_n @ direction) > force_n else None
+
+        end = _first(touched, _arrived(path))
+        return await self._run(path, lambda _sample: speed, end, speed, press)
+
+    async def press(
+        self, force_n: float, hold_s: float, until: Condition | None = None
+    ) -> ContactMotion:
+        """See ``ContactMotions``; raises ``ContactLost`` unless a condition waits for that."""
+        self._pressed_n = force_n
+        press = self._press_along(force_n, contact_must_stay=until is None)
+        return await self._hold(press, hold_s, until)
+
+    async def slide(
+        self,
+        way_m: Vector,
+        press_n: float,
+        speed_m_s: float,
+        until: Condition,
+        side_force_n: float,
+    ) -> ContactMotion:
+        """See ``ContactMotions``."""
+        self._pressed_n = press_n
+        corners = np.tile(self._loop.tip_command, (len(way_m) + 1, 1))
+        corners[1:, :2] = way_m
+        lengths = np.linalg.norm(np.diff(corners[:, :2], axis=0), axis=1)
+        path = self._path(corners, lengths)
+        speed = min(speed_m_s, fastest_m_s(self._loop))
+
+        def held(sample: ContactSample) -> Ended | None:
+            side_n = float(np.hypot(*sample.force_n[:2]))
+            return Ended.FORCE if side_n > side_force_n else None
+
+        end = _first(_when(until), held, _arrived(path))
+        press = self._press_along(press_n)
+        return await self._run(path, lambda _sample: speed, end, speed, press)
+
+    async def turn(
+        self, task_rotation_tip_rad: Vector, hold_force_n: Vector, speed_rad_s: float
+    ) -> ContactMotion:
+        """See ``ContactMotions``; while it is held, the attitude gives way against a spring."""
+        target = self._loop.tip_command.copy()
+        target[3:] = task_rotation_tip_rad
+        points, lengths = straight(self._loop.tip_command, target, 1.0)
+        path = self._path(points, lengths, self._settings.acceleration_rad_s2)
+        speed = min(speed_rad_s, fastest_rad_s(self._loop))
+        held = tuple(int(axis) for axis in np.flatnonzero(hold_force_n))
+        press = None
+        if held:
+            push = np.concatenate([hold_force_n, np.zeros(3)])
+            press = giving_way(self._loop, push, (*held, TILT_X, TILT_Y), spring=self._springs())
+        return await self._run(path, lambda _sample: speed, _arrived(path), speed, press)
+
+    async def give_way(self, press_n: float, hold_s: float) -> ContactMotion:
+        """See ``ContactMotions``; raises ``ContactLost``."""
+        self._pressed_n = press_n
+        push = np.array([0.0, 0.0, press_n, 0.0, 0.0, 0.0])
+        axes = (X, Y, Z, TILT_X, TILT_Y, YAW)
+        return await self._hold(
+            giving_way(self._loop, push, axes, contact_must_stay=press_n > 0), hold_s, None
+        )
+
+    async def feed(
+        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+    ) -> ContactMotion:
+        """See ``ContactMotions``; ends by ``FORCE`` when the force has stopped the feed."""
+        self._pressed_n = 0.0
+        target = self._loop.tip_command.copy()
+        target[2] = depth_m
+        path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
+        feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
+        press = giving_way(self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._springs())
+        end = _first(_when(until), feed.stalled, _arrived(path))
+        return await self._run(path, feed.speed_m_s, end, feed.slowest_m_s, press)
+
+    async def back_out(self, height_m: float) -> ContactMotion:
+        """See ``ContactMotions``; ends by ``FORCE`` when something holds the peg back."""
+        self._pressed_n = 0.0
+        points = self._loop.trail.out(self._loop.tip_command, height_m)
+        lengths = np.linalg.norm(np.diff(points[:, :3], axis=0), axis=1)
+        path = self._path(points, lengths)
+        settings = self._settings
+        slow = min(settings.touch_speed_m_s, fastest_m_s(self._loop))
+        fast = min(settings.fastest_retreat_m_s, fastest_m_s(self._loop))
+
+        def speed(sample: ContactSample) -> float:
+            touching = float(np.linalg.norm(sample.force_n)) > _in_contact_n(sample)
+            return slow if touching else fast
+
+        def held(sample: ContactSample) -> Ended | None:
+            pulled = float(sample.force_n[2]) > _PULL_RATIO * settings.press_n
+            return Ended.FORCE if pulled else None
+
+        return await self._run(path, speed, _first(held, _arrived(path)), slow)
+
+    async def hold_while(self, work: Coroutine[Any, Any, None]) -> None:
+        """Stand in the stream while something else is done; raises what either of them raises."""
+        task = asyncio.create_task(work)
+        try:
+            while not task.done():
+                await self._loop.send(self._loop.tip_command)
+            await task
+        finally:
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+
+    def _press_along(self, force_n: float, *, contact_must_stay: bool = False) -> Press:
+        push = np.array([0.0, 0.0, force_n, 0.0, 0.0, 0.0])
+        return giving_way(self._loop, push, (Z,), contact_must_stay=contact_must_stay)
+
+    def _springs(self) -> Array:
+        settings = self._settings
+        lateral, tilt = settings.lateral_spring_n_m, settings.tilt_spring_nm_rad
+        return np.array([lateral, lateral, 0.0, tilt, tilt, 0.0])
+
+    def _path(
+        self, points: Array, lengths: Array, acceleration: float | None = None
+    ) -> PathFollower:
+        most = acceleration or self._settings.acceleration_m_s2
+        return PathFollower(points, lengths, most, self._loop.period_s)
+
+    async def _hold(self, press: Press, hold_s: float, until: Condition | None) -> ContactMotion:
+        here = self._loop.tip_command
+        path = self._path(np.stack([here, here]), np.zeros(1))
+        end = _when(until)
+        return await StreamedMotion(self._loop, path, lambda _sample: 0.0, end, hold_s, press).run()
+
+    async def _run(
+        self,
+        path: PathFollower,
+        speed: Callable[[ContactSample], float],
+        end: Callable[[ContactSample], Ended | None],
+        slowest: float,
+        press: Press | None = None,
+    ) -> ContactMotion:
+        limit_s = _LATEST_S + _LATEST_RATIO * path.remaining / slowest
+        return await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
+
+
+End = Callable[[ContactSample], Ended | None]
+
+
+def _first(*ends: End) -> End:
+    def end(sample: ContactSample) -> Ended | None:
+        return next((ended for one in ends if (ended := one(sample)) is not None), None)
+
+    return end
+
+
+def _arrived(path: PathFollower) -> End:
+    return lambda _sample: Ended.TRAVEL if path.arrived else None
+
+
+def _when(until: Condition | None) -> End:
+    return lambda sample: Ended.CONDITION if until is not None and until(sample) else None
+
+
+def _force_above(limit_n: float) -> End:
+    def end(sample: ContactSample) -> Ended | None:
+        return Ended.FORCE if float(np.linalg.norm(sample.force_n)) > limit_n else None
+
+    return end
+
+
+def _in_contact_n(sample: ContactSample) -> float:
+    return max(_IN_CONTACT_N, 4.0 * sample.force_sigma_n)

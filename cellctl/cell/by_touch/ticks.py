@@ -1,0 +1,39 @@
+"""What is told of every tick of a streamed contact to whoever records or draws it."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+from cellctl.cell.by_touch.motions import ContactSample
+from cellctl.force.contact.streamed.ticks import Pace
+from cellctl.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactTick:
+    """One tick."""
+
+    sample: ContactSample
+    tip_command: Array
+    """(6,): position (m) and rotation vector (rad) that were sent for it."""
+    age_s: float
+    """Time since the tick before."""
+    force_age_s: float
+    pace: Pace
+    """How the next setpoint follows."""
+    late: int
+    """Setpoints that came too late since the stream began."""
+
+
+class TickObserver(ABC):
+    """Called in the loop, between two ticks: keep it short, and raise nothing."""
+
+    @abstractmethod
+    def take(self, tick: ContactTick) -> None:
+        """A tick has passed."""
+
+
+class NoObserver(TickObserver):
+    """Looks away."""
+
+    def take(self, tick: ContactTick) -> None:
+        """Keep nothing of it."""

@@ -1,0 +1,52 @@
+"""Brings the arm home, out of the hole first where a run has left it there."""
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.free_moves import move_joint_free
+from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.roles import HOME
+from cellctl.processes.peg_in_hole.stations import PegCell, peg_recipes, weight_of
+
+_CLEAR_M = 15e-3
+"""Over the face a joint move may begin."""
+_BESIDE_M = 50e-3
+"""Farther than this from the axis of a hole nothing stands in the way."""
+_PULL = WrenchTolerance(force_n=20.0, moment_n_m=2.0)
+"""What drawing a peg out may change: more, and it is held, which is for a person to see."""
+_SLOW_M_S, _SLOW_M_S2 = 5e-3, 0.05
+
+
+async def leave_hole(cell: PegCell) -> None:
+    """Along the axis of the hole until the peg is clear of it, then home; raises the guard's trip.
+
+    There is no gripper in the process: the part comes along, as it is held.
+    """
+    recipes = peg_recipes(cell.cell.config)
+    for recipe in recipes:
+        await _out_of(cell, recipe)
+    if recipes:
+        await cell.arm.guard.set_gravity_compensation(weight_of(recipes[0]))
+    home_rad = np.radians(cell.arm.config.poses_deg[HOME])
+    await move_joint_free(cell.cell, cell.arm, home_rad)
+
+
+async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
+    base_T_hole = pose_from_xyzabc(recipe.base_T_hole.pose)
+    here = cell.robot.state().base_T_flange
+    tip = base_T_hole.inv() * here * pose_from_xyzabc(recipe.flange_T_tip)
+    x_m, y_m, height_m = tip.translation.tolist()
+    uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
+    missing_m = _CLEAR_M + uncertain_m - height_m
+    if np.hypot(x_m, y_m) > _BESIDE_M or missing_m <= 0:
+        return
+    up = base_T_hole.rotation.apply([0.0, 0.0, missing_m])
+    target = RigidTransform.from_translation(up) * here
+    wrench_frame = pose_from_xyzabc(recipe.flange_T_tip)
+    async with guarded_moves(cell.cell, cell.arm, wrench_frame, _PULL) as move:
+        await move(
+            cell.robot.move_linear(target, speed_m_s=_SLOW_M_S, acceleration_m_s2=_SLOW_M_S2)
+        )
+    await cell.arm.guard.disarm()

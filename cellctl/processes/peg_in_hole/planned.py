@@ -1,0 +1,50 @@
+"""From the recipe and the cell's figures to the plan of one cycle; nothing moves here."""
+
+from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.choice import choose_search
+from cellctl.processes.peg_in_hole.cycle import CyclePlan
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.task import CellFigures, FitGeometry, ForceLimits, SearchTask
+from cellctl.processes.peg_in_hole.verdict.judgement import SeatLimits
+
+_MS = 1e-3
+
+
+def cycle_plan(recipe: PegRecipe, settings: PegSettings) -> CyclePlan:
+    """Raises ``SearchImpossible`` or ``HeightTooNoisy`` with the figures that say why."""
+    task = search_task(recipe, settings)
+    return CyclePlan(
+        task,
+        choose_search(task, recipe.search),
+        SeatLimits(recipe.seat.least_n, recipe.seat.most_n),
+        recipe.base_T_hole.face_radius_mm * MM,
+        recipe.base_T_hole.height_uncertainty_mm * MM,
+        recipe.seat.grip_n,
+    )
+
+
+def search_task(recipe: PegRecipe, settings: PegSettings) -> SearchTask:
+    """The task in SI units."""
+    fit, forces, place = recipe.fit, recipe.forces, recipe.base_T_hole
+    outer_mm = fit.outer_radius_mm
+    return SearchTask(
+        FitGeometry(
+            fit.peg_radius_mm * MM,
+            fit.clearance_mm * MM,
+            fit.hole_chamfer_mm * MM,
+            fit.peg_chamfer_mm * MM,
+            fit.depth_mm * MM,
+            None if outer_mm is None else outer_mm * MM,
+        ),
+        CellFigures(
+            settings.stiffness_n_mm / MM,
+            settings.dead_time_ms * _MS,
+            place.uncertainty_mm * MM,
+            settings.repeatability_mm * MM,
+            settings.height_sigma_mm * MM,
+            settings.force_sigma_n,
+            fit.friction,
+        ),
+        ForceLimits(forces.search_n, forces.insertion_n, forces.fault_n, forces.fault_nm),
+    )

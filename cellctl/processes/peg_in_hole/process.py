@@ -1,0 +1,100 @@
+"""The process: a peg finds its hole by touch and is inserted (study of insertion by touch)."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.recipe import Recipe
+from cellctl.errors.by_touch import HoleAbsent, HoleBlocked, PegJammed, PegNotInserted, PegWedged
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.roles import ROLES
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.records.entries import RunRecord
+from cellctl.records.report.sections import ProcessPages, ReadArtefact
+from cellctl.runtime.process import Prepared, Process, RunContext
+from cellctl.runtime.steps import Steps
+
+if TYPE_CHECKING:
+    from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
+    from cellctl.processes.peg_in_hole.state import AtHome
+    from cellctl.processes.peg_in_hole.stations import PegCell
+
+# What computes is imported where it is used: whoever only reads a cell file loads this module too,
+# and an operator's command must not wait for searches and force.
+
+
+class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
+    """System C: approach, touch the face, search, insert, verify."""
+
+    name = "peg-in-hole"
+    recipe_model = PegRecipe
+    settings_model = PegSettings
+    roles = ROLES
+    spoiled_by = frozenset({PegNotInserted, PegJammed, PegWedged, HoleBlocked, HoleAbsent})
+
+    @classmethod
+    def check(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        key: str,
+        folder: Path,  # noqa: ARG003 - no files
+    ) -> Iterable[ConfigIssue]:
+        """Devices on the same arm, and a task that a search can solve."""
+        from cellctl.processes.peg_in_hole.checks import recipe_issues
+
+        return recipe_issues(cell, cast(PegRecipe, recipe), key)
+
+    async def prepare(self, recipe: Recipe) -> "Prepared[PegFacts]":
+        """Choose the search and refuse a task or a loop that cannot be held."""
+        from cellctl.processes.peg_in_hole.planned import cycle_plan
+        from cellctl.processes.peg_in_hole.run import PegFacts
+
+        peg = cast(PegRecipe, recipe)
+        cell = self.cell(peg)
+        return Prepared(PegFacts.of(cell, peg, cycle_plan(peg, cell.settings)), ())
+
+    def open(self, prepared: "Prepared[PegFacts]", context: RunContext) -> "PegRun":
+        """Facts, record and board."""
+        from cellctl.processes.peg_in_hole.run import PegRun
+
+        return PegRun.of(prepared.facts, self.services.board, context)
+
+    async def begin(self, run: "PegRun") -> "AtHome":
+        """The arm at home, out of the hole first."""
+        from cellctl.processes.peg_in_hole.leaving import leave_hole
+        from cellctl.processes.peg_in_hole.state import AtHome
+
+        run.say("to the beginning")
+        await leave_hole(run.facts.cell)
+        return AtHome(run)
+
+    def steps(self, recipe: Recipe) -> "Steps[AtHome, Any]":  # noqa: ARG002 - alike for all
+        """Approach, touch the face, search and insert."""
+        from cellctl.processes.peg_in_hole.steps import INSERTION
+
+        return INSERTION
+
+    async def clear(self) -> None:
+        """Out of the hole along its axis, home; the part comes along."""
+        from cellctl.processes.peg_in_hole.leaving import leave_hole
+        from cellctl.processes.peg_in_hole.stations import peg_recipes
+
+        recipes = peg_recipes(self.services.cell.config)
+        if recipes:
+            await leave_hole(self.cell(recipes[0]))
+
+    @classmethod
+    def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
+        """The search on its face, force over depth, every item of the verdict."""
+        from cellctl.processes.peg_in_hole.report.pages import pages
+
+        return pages(record, read)
+
+    def cell(self, recipe: PegRecipe) -> "PegCell":
+        """The devices in the roles of a recipe."""
+        from cellctl.processes.peg_in_hole.stations import PegCell
+
+        return PegCell.of(self.services.cell, recipe)

@@ -1,0 +1,85 @@
+"""One product of the process: a peg or a plug, its hole, and what it may feel like."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from cellctl.config.base import Section, WrittenPose
+from cellctl.config.recipe import Recipe
+from cellctl.processes.peg_in_hole.choice import SearchName
+
+_Length = Annotated[float, Field(gt=0, le=500)]
+_Chamfer = Annotated[float, Field(ge=0, le=20)]
+_Force = Annotated[float, Field(gt=0, le=500)]
+_Coordinate = Annotated[float, Field(ge=-1000, le=1000)]
+
+
+class Fit(Section):
+    """Peg and hole by the drawing, mm."""
+
+    peg_radius_mm: _Length
+    clearance_mm: Annotated[float, Field(gt=0, le=5)]
+    """Radius of the bore less that of the peg."""
+    hole_chamfer_mm: _Chamfer = 0.0
+    peg_chamfer_mm: _Chamfer = 0.0
+    depth_mm: _Length
+    """From the face to the seat."""
+    outer_radius_mm: _Length | None = None
+    """Of a raised plug that has the hole; left out for a hole in a plate."""
+    friction: Annotated[float, Field(gt=0, lt=1)] = 0.2
+
+
+class Place(Section):
+    """Where the hole is believed to be, and how far off it may be."""
+
+    pose: WrittenPose
+    """base_T_hole: the middle of the hole on its face, z out of it."""
+    uncertainty_mm: Annotated[float, Field(gt=0, le=20)]
+    """Radius that holds 99 of 100 true places, along the face."""
+    height_uncertainty_mm: Annotated[float, Field(gt=0, le=10)]
+    face_radius_mm: _Length
+    """The face is touched on a circle of this radius: on the face, beside the hole."""
+
+
+class Forces(Section):
+    """What may be felt at the tip."""
+
+    search_n: _Force
+    """Pressed with while searching, and touched with."""
+    insertion_n: _Force
+    """Largest force of the insertion."""
+    fault_n: _Force
+    """The guard stops at it."""
+    fault_nm: Annotated[float, Field(gt=0, le=100)]
+
+
+class Seat(Section):
+    """What a good part feels like at its seat."""
+
+    least_n: _Force
+    most_n: _Force
+    grip_n: Annotated[float, Field(gt=0, le=5000)] | None = None
+    """Force along the axis at which the part slips in the gripper, measured at commissioning. Where
+    it is left out, nothing is called inserted."""
+
+
+class Load(Section):
+    """What hangs behind the force sensor, by the drawing; a search tilts it."""
+
+    mass_kg: Annotated[float, Field(gt=0, le=100)]
+    com_in_sensor_mm: tuple[_Coordinate, _Coordinate, _Coordinate]
+
+
+class PegRecipe(Recipe):
+    """One part and its hole."""
+
+    process: Literal["peg-in-hole"]
+    fit: Fit
+    base_T_hole: Place
+    flange_T_tip: WrittenPose
+    """How the part is held: the middle of its foremost circle, z into the hole."""
+    load: Load
+    forces: Forces
+    seat: Seat
+    search: SearchName | None = None
+    """Left out: what the figures of the task decide (docs/insertion-by-touch.md)."""

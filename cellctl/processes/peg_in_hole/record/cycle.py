@@ -1,0 +1,68 @@
+"""Search, insertion and verdict in the record: figures with limits, path and map as documents."""
+
+from math import isfinite
+
+import numpy as np
+
+from cellctl.calibration.checks import LimitCheck
+from cellctl.processes.peg_in_hole.cycle import CycleResult
+from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.run import PegRun
+from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
+from cellctl.processes.peg_in_hole.search.probe import SearchTrace
+from cellctl.records.entries import Figure
+from cellctl.records.figures import Limit, figure
+
+_M_TO_MM = 1e3
+_MAP_CELLS = 61
+"""A drawing needs no more along one side."""
+
+
+async def record_cycle(run: PegRun, result: CycleResult) -> None:
+    """Everything that the verdict rests on, also of a part that it rejects."""
+    await run.recorder.document(keys.CYCLE, result.to_record())
+    await run.recorder.document(keys.TRACE, trace_record(result.trace))
+    await run.recorder.document(keys.MAP, map_record(result.hole_map))
+    points = result.trace.points
+    searched_s = points[-1].time_s - points[0].time_s if points else 0.0
+    most_n = run.facts.plan.task.limits.insertion_n
+    await run.recorder.figures(
+        [
+            figure(keys.SEARCH_TIME, searched_s, "s"),
+            figure(keys.TOUCHES, float(len(points)), ""),
+            figure(keys.PEAK, result.fed.greatest_force_n, "N", limit=Limit(upper=most_n)),
+            *(_figure(check) for check in result.judgement.checks),
+        ]
+    )
+
+
+def _figure(check: LimitCheck) -> Figure:
+    limit = Limit(upper=check.limit) if check.side == "max" else Limit(lower=check.limit)
+    value = check.value if isfinite(check.value) else None
+    return figure(keys.check(check.name), value, check.unit, limit=limit)
+
+
+def trace_record(trace: SearchTrace) -> dict[str, object]:
+    """Path of the search: place on the face and depth in mm, and what was felt there."""
+    return {
+        "points": [
+            {
+                "time_s": point.time_s,
+                "x_mm": point.x_m * _M_TO_MM,
+                "y_mm": point.y_m * _M_TO_MM,
+                "depth_mm": point.depth_m * _M_TO_MM,
+                "felt": point.felt.value,
+            }
+            for point in trace.points
+        ]
+    }
+
+
+def map_record(hole_map: HoleMap) -> dict[str, object]:
+    """What is left of the belief, in parts of its greatest value, coarse enough for a drawing."""
+    step = max(1, len(hole_map.axis_m) // _MAP_CELLS)
+    weights = hole_map.weights[::step, ::step]
+    return {
+        "reach_mm": hole_map.reach_m * _M_TO_MM,
+        "weights": np.round(weights / weights.max(), 3).tolist(),
+    }

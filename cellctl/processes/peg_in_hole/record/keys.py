@@ -1,0 +1,21 @@
+"""Names that the record of an insertion uses; a report finds its figures by them.
+
+They never change: stores keep runs for years, and evaluation compares runs of all of them.
+"""
+
+FACE, INSERTION = "face", "insertion"
+"""Streams; their ticks are files of these names."""
+FACE_HEIGHT, FACE_TILT = "face.height", "face.tilt"
+CHOICE, CYCLE, TRACE, MAP = "search.choice", "insertion.result", "search.trace", "search.map"
+SEARCH_TIME, TOUCHES = "search.time", "search.touches"
+PEAK = "insertion.greatest_force"
+
+
+def ticks(stream: str) -> str:
+    """Name of the file with the ticks of a stream."""
+    return f"{stream}.csv"
+
+
+def check(name: str) -> str:
+    """Key of an item of the verdict."""
+    return "verdict." + name.replace(" ", "_")

@@ -1,0 +1,66 @@
+"""Pictures of one insertion: the search on its face, and what was felt on the way in."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from cellctl.geometry.pose import Array
+from cellctl.plot_style import ACCENT, GOOD, LIMIT, MUTED, SECOND, envelope, style, to_svg
+
+_COLOURS = {"face": MUTED, "dip": SECOND, "edge": ACCENT, "wall": LIMIT, "entry": GOOD}
+"""By what was felt."""
+
+
+def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
+    """Where the peg touched, over what is still believed of the hole; depth along the path. SVG."""
+    points = trace["points"]
+    x, y, depth, time_s = (
+        np.array([point[name] for point in points])
+        for name in ("x_mm", "y_mm", "depth_mm", "time_s")
+    )
+    with style():
+        figure = Figure(figsize=(7.2, 3.4), layout="constrained")
+        face, path = figure.subplots(1, 2)
+        reach = belief["reach_mm"]
+        face.imshow(
+            np.array(belief["weights"]).T,
+            origin="lower",
+            extent=(-reach, reach, -reach, reach),
+            cmap="Greys",
+            vmin=0.0,
+            vmax=2.0,
+        )
+        face.plot(x, y, color=MUTED, linewidth=0.5)
+        for felt, colour in _COLOURS.items():
+            chosen = np.array([point["felt"] == felt for point in points])
+            if chosen.any():
+                face.plot(x[chosen], y[chosen], ".", color=colour, label=felt)
+                path.plot(time_s[chosen] - time_s[0], depth[chosen], ".", color=colour)
+        face.set_xlabel("x on the face, mm")
+        face.set_ylabel("y, mm")
+        face.legend(loc="upper right", fontsize=7)
+        path.plot(time_s - time_s[0], depth, color=MUTED, linewidth=0.5)
+        path.invert_yaxis()
+        path.set_xlabel("time of the search, s")
+        path.set_ylabel("depth below the face, mm")
+        return to_svg(figure)
+
+
+def insertion_picture(ticks: Mapping[str, Array]) -> str:
+    """Force along the axis and across it, and moment, over depth below the face. SVG."""
+    with style():
+        figure = Figure(figsize=(7.2, 3.6), layout="constrained")
+        force, moment = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        depth = ticks["depth_mm"]
+        across_n = np.hypot(ticks["fx_n"], ticks["fy_n"])
+        force.plot(*envelope(depth, across_n), color=SECOND, linewidth=0.8, label="√(Fx² + Fy²)")
+        force.plot(*envelope(depth, -ticks["fz_n"]), color=ACCENT, linewidth=0.9, label="−Fz")
+        across_nm = np.hypot(ticks["mx_nm"], ticks["my_nm"])
+        moment.plot(*envelope(depth, across_nm), color=SECOND, linewidth=0.8)
+        force.set_ylabel("force, N")
+        moment.set_ylabel("√(Mx² + My²), N·m")
+        moment.set_xlabel("depth below the face, mm")
+        force.legend(loc="upper left")
+        return to_svg(figure)

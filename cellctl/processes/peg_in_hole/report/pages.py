@@ -1,0 +1,94 @@
+"""The pages that an insertion adds to the report of its run."""
+
+from collections.abc import Iterator
+
+from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.report.drawings import insertion_picture, search_picture
+from cellctl.processes.peg_in_hole.tick_log import read_ticks
+from cellctl.processes.peg_in_hole.verdict.judgement import DEPTH, RESISTED, SLIP
+from cellctl.records.entries import RunRecord
+from cellctl.records.report.sections import (
+    Drawing,
+    FactList,
+    ProcessPages,
+    ReadArtefact,
+    ReportBlock,
+    ReportSection,
+    Tile,
+)
+
+_TILES = (
+    (keys.SEARCH_TIME, "Search", "s", 0),
+    (keys.PEAK, "Greatest force", "N", 1),
+    (keys.check(DEPTH), "From its seat", "mm", 2),
+    (keys.check(RESISTED), "Walls felt", "of 4", 0),
+    (keys.check(SLIP), "Force over grip force", "", 2),
+)
+
+
+def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
+    """Headline figures, the search, the insertion."""
+    sections = (
+        ReportSection("Search", tuple(_search(record))),
+        ReportSection("Insertion", tuple(_insertion(record, read))),
+    )
+    return ProcessPages(
+        tiles=tuple(_tiles(record)),
+        sections=tuple(section for section in sections if section.blocks),
+    )
+
+
+def _tiles(record: RunRecord) -> Iterator[Tile]:
+    for key, title, unit, digits in _TILES:
+        found = record.newest_figures.get(key)
+        if found is None or found.value is None:
+            continue
+        passed = None if found.verdict is None else found.verdict.value == "pass"
+        bound = ""
+        if found.upper is not None:
+            bound = f"at most {found.upper:g} {unit}"
+        elif found.lower is not None:
+            bound = f"at least {found.lower:g} {unit}"
+        yield Tile(title, f"{found.value:.{digits}f} {unit}".rstrip(), bound.rstrip(), passed)
+
+
+def _search(record: RunRecord) -> Iterator[ReportBlock]:
+    choice, trace = record.document(keys.CHOICE), record.document(keys.TRACE)
+    if choice:
+        yield FactList(
+            (
+                ("strategies, in their order", ", ".join(choice["order"])),
+                *((one["name"], _computed(one)) for one in choice["parameters"]),
+            )
+        )
+    if trace and trace["points"]:
+        yield Drawing(
+            search_picture(trace, record.document(keys.MAP)),
+            "Left: where the peg touched the face, by what was felt; dark is where the hole is "
+            "still believed. Right: depth of each touch.",
+        )
+
+
+def _computed(parameter: dict[str, object]) -> str:
+    value = parameter["value"]
+    assert isinstance(value, float)
+    return f"{value:.4g} {parameter['unit']} = {parameter['formula']}"
+
+
+def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
+    for artefact in record.artefacts:
+        if artefact.name != keys.ticks(keys.INSERTION):
+            continue
+        try:
+            ticks = read_ticks(read(artefact).decode())
+        except (ValueError, UnicodeDecodeError):
+            # The file is exported as it is and listed with its hash; there is nothing to draw.
+            continue
+        yield Drawing(
+            insertion_picture(ticks),
+            "Forces and moments of the hole on the peg about its tip, over the whole stream.",
+        )
+    result = record.document(keys.CYCLE)
+    if result:
+        recoveries = ", ".join(result["recoveries"]) or "none"
+        yield FactList((("found by", result["found_by"]), ("recoveries", recoveries)))

@@ -1,0 +1,63 @@
+"""What every step of one insertion works with: devices, plan, recording."""
+
+from dataclasses import dataclass
+from typing import Self
+
+from cellctl.cell.by_touch.settings import ContactSettings
+from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.cycle import CyclePlan
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.stations import PegCell
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.runtime.process import RunContext
+from cellctl.runtime.progress import ProgressBoard
+
+_FOLLOW_MARGIN_M = 2e-3
+_MS = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class PegFacts:
+    """What is known before a run."""
+
+    cell: PegCell
+    recipe: PegRecipe
+    plan: CyclePlan
+    contact: ContactSettings
+
+    @classmethod
+    def of(cls, cell: PegCell, recipe: PegRecipe, plan: CyclePlan) -> Self:
+        """Raises ``LoopTooSlow`` or ``LoopUnstable``: the arm could not be let follow a force."""
+        task, lost_ms = plan.task, cell.settings.lost_tick_ms
+        settings = ContactSettings(
+            figures=LoopFigures(task.cell.stiffness_n_m, task.cell.dead_time_s),
+            lever_m=task.fit.peg_radius_m,
+            press_n=plan.choice.parameters.press_n.value,
+            limit_n=task.limits.fault_n,
+            limit_nm=task.limits.fault_nm,
+            follow_m=recipe.fit.depth_mm * MM + _FOLLOW_MARGIN_M,
+            lost_tick_s=None if lost_ms is None else lost_ms * _MS,
+            old_force_s=cell.settings.old_force_ms * _MS,
+            lost_force_s=cell.settings.lost_force_ms * _MS,
+        )
+        settings.check()
+        return cls(cell, recipe, plan, settings)
+
+
+@dataclass(frozen=True, slots=True)
+class PegRun:
+    """One open run."""
+
+    facts: PegFacts
+    board: ProgressBoard
+    recorder: RunRecorder
+
+    @classmethod
+    def of(cls, facts: PegFacts, board: ProgressBoard, context: RunContext) -> Self:
+        """A run whose record was opened."""
+        return cls(facts, board, context.recorder)
+
+    def say(self, message: str) -> None:
+        """Tell line and terminal what is being done."""
+        self.board.update(message=message)

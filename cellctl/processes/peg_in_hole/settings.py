@@ -1,0 +1,29 @@
+"""Settings of the process for all of its recipes: ``[processes.peg-in-hole]``."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from cellctl.config.base import Section
+
+
+class PegSettings(Section):
+    """What was measured of arm, sensor and loop in contact."""
+
+    stiffness_n_mm: Annotated[float, Field(ge=1, le=10_000)]
+    """Of arm and contact in series at the tip, along the axis of the hole."""
+    dead_time_ms: Annotated[float, Field(ge=1, le=200)]
+    """From a force at the tip to a motion of the tip in answer."""
+    repeatability_mm: Annotated[float, Field(gt=0, le=1)]
+    """Of the arm along a search, standard deviation."""
+    height_sigma_mm: Annotated[float, Field(gt=0, le=1)]
+    """Of one reading of the height in contact, standard deviation."""
+    force_sigma_n: Annotated[float, Field(gt=0, le=10)]
+    """Of the mean of ten samples of one component of the force, standard deviation."""
+    lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] | None = None
+    """A tick of the stream that comes later than this ends the contact at standstill; left out: 50
+    ms, or ten periods of the stream where they are less."""
+    old_force_ms: Annotated[float, Field(ge=1, le=1000)] = 5.0
+    """A force older than this lets the arm go no further."""
+    lost_force_ms: Annotated[float, Field(ge=5, le=1000)] = 20.0
+    """A force older than this ends the contact."""

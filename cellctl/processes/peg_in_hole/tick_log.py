@@ -1,0 +1,67 @@
+"""Every tick of a streamed contact, for the record: where the tip was and what it felt."""
+
+import csv
+import io
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cellctl.cell.by_touch.ticks import ContactTick, TickObserver
+from cellctl.geometry.pose import Array
+
+COLUMNS = (
+    "time_s", "x_mm", "y_mm", "depth_mm", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm",
+)  # fmt: skip
+"""Time from the first tick, tip in frame A, force and moment of the hole on the peg about it."""
+_M_TO_MM = 1e3
+
+
+@dataclass(slots=True)
+class TickLog(TickObserver):
+    """Kept in memory until the stream has ended; at 50 ticks a second that is little."""
+
+    rows: list[tuple[float, ...]] = field(default_factory=list)
+    begun_s: float | None = None
+
+    def take(self, tick: ContactTick) -> None:
+        """See ``TickObserver``."""
+        sample = tick.sample
+        if self.begun_s is None:
+            self.begun_s = sample.time_s
+        self.rows.append(
+            (
+                sample.time_s - self.begun_s,
+                *(sample.task_position_tip_m * _M_TO_MM).tolist(),
+                *sample.force_n.tolist(),
+                *sample.moment_nm.tolist(),
+            )
+        )
+
+    def text(self) -> str:
+        """As CSV with a head line; four decimals are finer than sensor and encoders."""
+        out = io.StringIO()
+        writer = csv.writer(out, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        writer.writerows([f"{value:.4f}" for value in row] for row in self.rows)
+        return out.getvalue()
+
+    @property
+    def peaks(self) -> Array:
+        """Greatest magnitude of each component of force and moment, shape (6,)."""
+        if not self.rows:
+            return np.full(6, np.nan)
+        return np.asarray(np.abs(np.array(self.rows)[:, 4:]).max(axis=0))
+
+
+def read_ticks(text: str) -> dict[str, Array]:
+    """The columns by name; raises ``ValueError`` for what is no such table."""
+    try:
+        rows = list(csv.reader(io.StringIO(text)))
+    except csv.Error as error:
+        raise ValueError(f"no table of ticks: {error}") from error
+    if len(rows) < 2 or tuple(rows[0]) != COLUMNS:
+        raise ValueError("no table of ticks")
+    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
+    if values.ndim != 2 or values.shape[1] != len(COLUMNS):
+        raise ValueError("rows of different lengths")
+    return {name: values[:, index] for index, name in enumerate(COLUMNS)}

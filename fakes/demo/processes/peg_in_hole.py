@@ -1,0 +1,82 @@
+"""The demonstration of a part that finds its hole by touch, held against the true world."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, ClassVar
+
+from fakes.demo.control import Control
+from fakes.demo.demo import Demo, Evidence, Judgement, Message, Row
+from fakes.demo.processes.force_row import force_row
+from fakes.demo.processes.limited import Limited, failed_figures
+
+CONFIG = Path(__file__).parents[3] / "config"
+
+
+class PegInHoleDemo(Demo):
+    """One arm with a force sensor and a gripped pin; the hole in a plate lies where nobody sees."""
+
+    process: ClassVar[str] = "peg-in-hole"
+    title: ClassVar[str] = "a pin finds its hole by touch"
+    cell: ClassVar[Path] = CONFIG / "insertion-pin.toml"
+    scenario: ClassVar[Path] = CONFIG / "insertion-pin.scenario.toml"
+    serial: ClassVar[str] = "PIN-{seed:04d}"
+    steps: ClassVar[Mapping[int, str]] = {10: "approach", 20: "touch face", 30: "search and insert"}
+    insertion_n: ClassVar[float] = 30.0
+    """Largest 20 ms mean of the true force; limits of reference cell P."""
+    fault_n: ClassVar[float] = 50.0
+    """Largest 3 ms mean."""
+    fault_nm: ClassVar[float] = 1.0
+
+    def prepare(self, control: Control) -> None:
+        """The next part and the next face, with what was injected into them."""
+        control.request("load")
+
+    def judge(self, evidence: Evidence) -> Judgement:
+        """In its own hole and at its seat, not slipped, and never pressed too hard."""
+        figures = _figures(evidence.truth)
+        beyond = [one.name for one in self._limited() if not one.within(figures[one.key])]
+        beyond += [] if figures["seated"] else ["seated"]
+        beyond += [f"{key} of the record" for key in failed_figures(evidence.record)]
+        figures["beyond"] = beyond
+        return Judgement(evidence.good and not beyond, figures, self._rows(figures))
+
+    def rows(self, now: Message) -> Mapping[str, str]:
+        """The force on the part."""
+        return {"force z": force_row(now)}
+
+    def _limited(self) -> Sequence[Limited]:
+        return (
+            Limited("true depth short of the seat, mm", "short_mm", -0.3, 0.3, "{:.3f}"),
+            Limited("slip in the fingers, true, mm", "slip_mm", 0.0, 0.15, "{:.3f}"),
+            Limited(
+                "true force, 20 ms mean, N", "force_20_ms_n", 0.0, self.insertion_n, "{:.1f}"
+            ),
+            Limited("true force, 3 ms mean, N", "force_3_ms_n", 0.0, self.fault_n, "{:.1f}"),
+            Limited(
+                "true moment at the tip, 3 ms mean, N·m", "moment_3_ms_nm", 0.0, self.fault_nm,
+                "{:.2f}",
+            ),
+        )  # fmt: skip
+
+    def _rows(self, figures: Mapping[str, Any]) -> list[Row]:
+        seated, wrong = figures["seated"], ", ".join(figures["hole_faults"]) or "none"
+        return [
+            Row("in its hole and seated", seated, limit="True", within=seated),
+            Row("wrong with the hole", wrong, limit="none", within=wrong == "none"),
+            *(one.row(figures[one.key]) for one in self._limited()),
+            Row("true force, at an instant, N", figures["force_1_ms_n"], "{:.1f}"),
+        ]
+
+
+def _figures(truth: Mapping[str, Any]) -> dict[str, Any]:
+    force, moment = truth["peak_force_n"], truth["peak_moment_nm"]
+    return {
+        "seated": truth["seated"],
+        "hole_faults": truth["hole_faults"],
+        "short_mm": truth["seat_depth_mm"] - truth["depth_mm"],
+        "slip_mm": abs(truth["slip_mm"]),
+        "force_1_ms_n": force["1_ms"],
+        "force_3_ms_n": force["3_ms"],
+        "force_20_ms_n": force["20_ms"],
+        "moment_3_ms_nm": moment["3_ms"],
+    }

@@ -1,0 +1,99 @@
+"""The demonstration holds an inserted part against the truth by every limit of its cell."""
+
+from copy import deepcopy
+from typing import Any
+
+import pytest
+
+from fakes.demo import registry
+from fakes.demo.control import Control
+from fakes.demo.demo import Evidence
+from fakes.demo.processes.peg_in_hole import PegInHoleDemo
+from fakes.scenes.socket.scenario import SocketScenario
+from fakes.scenes.socket.scene import SocketScene
+
+TRUTH: dict[str, Any] = {
+    "seated": True,
+    "hole_faults": [],
+    "depth_mm": 11.98,
+    "seat_depth_mm": 12.0,
+    "slip_mm": 0.0,
+    "peak_force_n": {"1_ms": 33.0, "3_ms": 31.0, "20_ms": 18.0},
+    "peak_moment_nm": {"1_ms": 0.4, "3_ms": 0.3, "20_ms": 0.2},
+}
+RECORD: dict[str, Any] = {"figures": [{"key": "capture", "value": 1.0, "verdict": "pass"}]}
+GOOD = {"result": "good", "run": 1}
+
+
+def judged(
+    truth: dict[str, Any] | None = None,
+    record: dict[str, Any] | None = None,
+) -> list[str]:
+    """Names of what is beyond its limit; the verdict must agree with them."""
+    evidence = Evidence(GOOD, deepcopy(TRUTH) | (truth or {}), record or deepcopy(RECORD))
+    judgement = PegInHoleDemo().judge(evidence)
+    beyond = list(judgement.figures["beyond"])
+    assert judgement.passed == (not beyond)
+    return beyond
+
+
+def test_a_pin_at_its_seat_passes() -> None:
+    assert judged() == []
+
+
+def test_what_the_cell_calls_bad_is_not_good() -> None:
+    assert not PegInHoleDemo().judge(Evidence({"result": "bad"}, deepcopy(TRUTH), {})).passed
+
+
+@pytest.mark.parametrize(
+    ("truth", "names"),
+    [
+        ({"seated": False}, ["seated"]),
+        ({"seated": False, "depth_mm": 8.0}, ["true depth short of the seat, mm", "seated"]),
+        ({"slip_mm": 0.2}, ["slip in the fingers, true, mm"]),
+        ({"slip_mm": -0.2}, ["slip in the fingers, true, mm"]),
+        (
+            {"peak_force_n": {"1_ms": 90.0, "3_ms": 40.0, "20_ms": 31.0}},
+            ["true force, 20 ms mean, N"],
+        ),
+        (
+            {"peak_force_n": {"1_ms": 90.0, "3_ms": 51.0, "20_ms": 20.0}},
+            ["true force, 3 ms mean, N"],
+        ),
+        (
+            {"peak_moment_nm": {"1_ms": 2.0, "3_ms": 1.1, "20_ms": 0.2}},
+            ["true moment at the tip, 3 ms mean, N·m"],
+        ),
+    ],
+)
+def test_every_figure_of_the_truth_has_its_limit(truth: dict[str, Any], names: list[str]) -> None:
+    assert judged(truth) == names
+
+
+def test_a_figure_of_the_record_that_failed_is_bad() -> None:
+    failed = {"figures": [{"key": "capture", "value": 9.0, "verdict": "fail"}]}
+    assert judged(record=failed) == ["capture of the record"]
+
+
+def test_the_truth_of_the_scene_is_what_the_demonstration_judges() -> None:
+    demo = registry.find("peg-in-hole")
+    world = SocketScene(SocketScenario.read(demo.scenario), 1)
+    judgement = demo.judge(Evidence(GOOD, world.report(), {}))
+    assert not judgement.passed
+    assert "seated" in judgement.figures["beyond"]
+    assert demo.cell.is_file()
+
+
+def test_every_job_begins_with_the_next_part() -> None:
+    asked: list[str] = []
+
+    class Hands(Control):
+        def __init__(self) -> None:
+            """No wire in between."""
+
+        def request(self, cmd: str, **_: Any) -> dict[str, Any]:
+            asked.append(cmd)
+            return {}
+
+    PegInHoleDemo().prepare(Hands())
+    assert asked == ["load"]
