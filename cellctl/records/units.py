@@ -20,6 +20,10 @@ _UNITS = {
 }
 """Longest first: `_n_m` is not `_m`."""
 
+SIX_MM_DEG = "_mm_deg"
+"""Ends the key of six numbers: components of a pose or of an error, in the order of ``SIX``."""
+SIX = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
+
 
 def without_unit(key: str) -> tuple[str, str]:
     """A key without its unit, and the unit: ``stop_latency_ms`` is ("stop_latency", "ms")."""

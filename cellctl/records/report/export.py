@@ -9,11 +9,12 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.records import RecordNotWritten, ValueRefused
+from cellctl.records.artefacts import CELL_FILE
 from cellctl.records.entries import RunRecord
 from cellctl.records.gauges import part_verdict
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages
-from cellctl.records.report.view import build_view
+from cellctl.records.report.view import ReportSources, build_view
 from cellctl.records.store import RunStore
 
 REPORT, RECORD = "report.html", "run.json"
@@ -46,14 +47,24 @@ def export_run(
             # So that a report can be sent as one file.
             inline = f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
             addresses[artefact.name] = inline if single_file else name.as_posix()
-    calibrations = {stored.id: stored for stored in store.calibrations()}
     brought = pages(record, lambda artefact: store.artefacts.get(artefact.sha256))
-    view = build_view(record, calibrations, brought, addresses, store.ledger_head())
+    view = build_view(record, brought, _sources(store, record, addresses))
     page = render(view)
     _write(folder / REPORT, page.encode())
     plain = {**document(record), "ledger_head": str(view.ledger_head)}
     _write(folder / RECORD, (json.dumps(plain, indent=1) + "\n").encode())
     return folder / REPORT
+
+
+def _sources(store: RunStore, record: RunRecord, addresses: Mapping[str, str]) -> ReportSources:
+    cells = [artefact for artefact in record.artefacts if artefact.name == CELL_FILE]
+    return ReportSources(
+        calibrations={stored.id: stored for stored in store.calibrations()},
+        audit=store.audit_log(),
+        ledger_head=store.ledger_head(),
+        cell=json.loads(store.artefacts.get(cells[-1].sha256)) if cells else {},
+        addresses=addresses,
+    )
 
 
 def document(record: RunRecord) -> Mapping[str, Any]:

@@ -7,6 +7,7 @@ from typing import Any
 from cellctl.errors.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, parse_curve
 from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.report.acceptance import acceptance
 from cellctl.processes.antenna_module.report.force_by_depth import force_by_depth
 from cellctl.processes.antenna_module.report.terms import error_terms
 from cellctl.records.entries import Figure, RunRecord
@@ -14,6 +15,7 @@ from cellctl.records.report.sections import (
     Drawing,
     FactList,
     Heading,
+    Part,
     ProcessPages,
     ReadArtefact,
     ReportBlock,
@@ -41,6 +43,8 @@ def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
     )
     return ProcessPages(
         tiles=tuple(_tiles(record)),
+        acceptance=acceptance(record),
+        parts=(Part("module", record.head.serial), Part("board", "")),
         sections=tuple(section for section in sections if section.blocks),
     )
 
