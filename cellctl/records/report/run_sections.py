@@ -136,7 +136,7 @@ def _fit_row(entry: RecordedPose, fit: Mapping[str, Any]) -> TableRow:
         str(fit.get("verdict", MISSING)),
         quantity(fit.get("sigma_factor"), ""),
     )
-    explained = None not in (chi2, limit) and chi2 <= limit
+    explained = chi2 is not None and limit is not None and chi2 <= limit
     mark = RowMark.GOOD if explained else RowMark.NONE
     return TableRow(tuple(TableCell(text) for text in texts), mark)
 

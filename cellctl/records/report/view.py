@@ -72,7 +72,9 @@ class ReportView:
     verdict_class: str
     fault: FaultBox | None
     tiles: tuple[Tile, ...]
-    before_calibration: tuple[ReportSection, ...]
+    before_signatures: tuple[ReportSection, ...]
+    """What has to fit on the first page, with the signatures."""
+    after_signatures: tuple[ReportSection, ...]
     calibrations: tuple[CalibrationLine, ...]
     heads: tuple[HeadLine, ...]
     poses: tuple[PoseLine, ...]
@@ -96,11 +98,11 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
         verdict_class=verdict_class,
         fault=fault_box(record, audit),
         tiles=pages.tiles or _tiles(record),
-        before_calibration=_filled(
-            acceptance(record, pages.acceptance),
+        before_signatures=_filled(
             identification(record.head, pages.parts, audit),
-            timeline(record, audit),
+            acceptance(record, pages.acceptance),
         ),
+        after_signatures=_filled(timeline(record, audit)),
         calibrations=tuple(calibration_lines(record.head.calibration_ids, stored)),
         heads=tuple(head_lines(used)),
         poses=tuple(pose_lines(used)),
