@@ -69,12 +69,12 @@ def chosen(trials: Sequence[Trial], only: Sequence[str], tenth: int | None) -> l
 class Campaign:
     """Tries one cell of the table after the other, on one running fake cell as long as it can."""
 
-    def __init__(self, out: Path, seed: int, console: Console) -> None:
+    def __init__(self, out: Path, file: Path, seed: int, console: Console) -> None:
         out.mkdir(parents=True, exist_ok=True)
-        self._out, self._seed, self._console = out, seed, console
+        self._out, self._file, self._seed, self._console = out, file, seed, console
         self._bench: Bench | None = None
         self._benches = 0
-        self.results = table.load(out / "faults.json")
+        self.results = table.load(file)
         self.not_reached: dict[str, str] = {}
 
     def run(self, trials: Sequence[Trial]) -> None:
@@ -107,7 +107,7 @@ class Campaign:
     def _keep(self, seen: Observation) -> None:
         self.not_reached.pop(seen.key, None)
         self.results[seen.key] = seen
-        table.save(self._out / "faults.json", self.results)
+        table.save(self._file, self.results)
 
     def _bench_for(self, phase: Phase) -> Bench:
         if phase.fresh and self._bench is not None and not self._bench.fresh:
@@ -137,24 +137,25 @@ def campaign(  # noqa: PLR0917  # options of the command line
     ] = None,
     tenth: Annotated[int | None, typer.Option(help="A tenth of the cells, by this seed.")] = None,
     seed: Annotated[int, typer.Option(help="Of the fake cell.")] = 1,
-    out: Annotated[Path, typer.Option(help="Folder for the results.")] = Path("runs/faults"),
+    out: Annotated[Path, typer.Option(help="Folder of the tried cells.")] = Path("runs/faults"),
     page: Annotated[Path | None, typer.Option(help="Where the table goes as Markdown.")] = None,
     list_only: Annotated[  # noqa: FBT002  # a flag of the command line
         bool, typer.Option("--list", help="Only name the cells.")
     ] = False,
 ) -> None:
-    """Try the faults; results in faults.json and fault-matrix.md of the folder."""
+    """Try the faults; results are kept as JSON beside the page, which is made of them."""
     console = Console(highlight=False, soft_wrap=True, markup=False)
     trials = chosen(all_trials(), only or [], tenth)
     if list_only:
         console.print("\n".join(trial.key for trial in trials))
         raise typer.Exit
-    work, interrupted = Campaign(out, seed, console), False
+    page = page or out / "fault-matrix.md"
+    work, interrupted = Campaign(out, page.with_suffix(".json"), seed, console), False
     try:
         work.run(trials)
     except KeyboardInterrupt:
         interrupted = True
-    (page or out / "fault-matrix.md").write_text(table.markdown(work.results), encoding="utf-8")
+    page.write_text(table.markdown(work.results), encoding="utf-8")
     code = _summary(console, work, trials)
     raise typer.Exit(INTERRUPTED if interrupted else code)
 

@@ -75,6 +75,8 @@ class Observation:
     """It did so only after the daemon had been started again."""
     lost_s: float
     """Time that the PC did not give to the fake world."""
+    software: str
+    """Version and revision that were tried."""
 
     @property
     def key(self) -> str:

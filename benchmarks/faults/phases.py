@@ -9,7 +9,7 @@ from functools import partial
 
 from benchmarks.faults.bench import ARMS, OVER, Bench
 from benchmarks.faults.line import Shown
-from fakes.demo.deck_calibration import PROCEDURES
+from fakes.demo.processes.deck_calibration import PROCEDURES
 
 PRODUCTION, MAINTENANCE = 1, 2
 TOUCHED_N = 8.0

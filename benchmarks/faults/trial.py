@@ -11,6 +11,7 @@ from benchmarks.faults.kinds import Fault, demanded
 from benchmarks.faults.line import Shown
 from benchmarks.faults.observation import Expected, Moved, Observation
 from benchmarks.faults.phases import PRODUCTION, Phase, start_run
+from cellctl.version import software
 from fakes.demo.control import Refused
 
 QUIET_S = 2.0
@@ -67,6 +68,7 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
         idle_again=found.idle,
         restarted=found.restarted,
         lost_s=after["lost_s"] - truth["lost_s"],
+        software=software(),
     )
 
 

@@ -21,9 +21,9 @@ from cellctl.interfaces.ft_sensor import FtHealth
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.protocol import Frame, StreamDecoder, command
 from drivers.ftsensor.sri.sampler import Sampler
-from drivers.robot.siasun import decoder
 from drivers.robot.siasun import protocol as sjl
-from drivers.robot.siasun.records import Status
+from drivers.robot.siasun.codec import decoder
+from drivers.robot.siasun.codec.records import Status
 from drivers.robot.siasun.stop_channel import flange_state
 
 GUARD_MODULE = "benchmarks.guard.child"

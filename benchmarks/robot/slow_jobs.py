@@ -21,7 +21,7 @@ from statistics import median
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
-from tests.wire.job_rig import JobRig, job_rig
+from tests.wire.jobs.job_rig import JobRig, job_rig
 
 STATEMENTS_MS = (1.0, 2.0, 5.0, 10.0, 20.0)
 SPEED_M_S = 0.02

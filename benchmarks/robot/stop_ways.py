@@ -16,9 +16,9 @@ from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.world.robot import RobotArm
-from tests.wire.duco_rig import duco_rig
-from tests.wire.job_rig import JobRig, job_rig
+from tests.wire.jobs.job_rig import JobRig, job_rig
 from tests.wire.proxy import ChaosProxy
+from tests.wire.siasun_rpc.duco_rig import duco_rig
 
 STATEMENT_S = 0.001
 WATCHDOG_MS = 300

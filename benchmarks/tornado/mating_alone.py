@@ -8,7 +8,7 @@ from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.trial import Trial, run_trial
 from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
-from fakes.demo.deck_to_frame import LIMITED
+from fakes.demo.processes.deck_to_frame import LIMITED
 
 STIFFNESS_N_M = 3e6
 """The stiffest contact of the scenario: forces grow fastest."""

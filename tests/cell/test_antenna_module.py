@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from tests.cell.own_cell import OwnCell
+from tests.cell.rigs.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "antenna-module")

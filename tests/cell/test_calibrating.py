@@ -6,8 +6,8 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.runtime.jobs.factory import PLANNED
-from fakes.demo.deck_calibration import PROCEDURES
-from tests.cell.own_cell import OwnCell
+from fakes.demo.processes.deck_calibration import PROCEDURES
+from tests.cell.rigs.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(900), pytest.mark.long]
 

@@ -9,7 +9,7 @@ import cv2
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.own_cell import OwnCell, cellctl
+from tests.cell.rigs.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(300)
 

@@ -17,7 +17,7 @@ from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
 from fakes.wire.sri.box import SriBox
-from tests.cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
+from tests.cell.rigs.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
 from tests.ports import free_ports
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.own_cell import OwnCell
+from tests.cell.rigs.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 

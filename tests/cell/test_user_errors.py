@@ -8,9 +8,9 @@ from shutil import copytree
 import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
-from tests.cell.endings import refuses, taken, waits
-from tests.cell.outside_plc import OutsidePlc
-from tests.cell.own_cell import ROOT, OwnCell, cellctl
+from tests.cell.rigs.endings import refuses, taken, waits
+from tests.cell.rigs.outside_plc import OutsidePlc
+from tests.cell.rigs.own_cell import ROOT, OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(120)
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.cell.outside_plc import HOLDING, INPUT, OutsidePlc
-from tests.cell.own_cell import OwnCell, cellctl
+from tests.cell.rigs.outside_plc import HOLDING, INPUT, OutsidePlc
+from tests.cell.rigs.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(180)
 

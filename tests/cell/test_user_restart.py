@@ -7,8 +7,8 @@ import time
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.outside_plc import OutsidePlc
-from tests.cell.own_cell import OwnCell, cellctl
+from tests.cell.rigs.outside_plc import OutsidePlc
+from tests.cell.rigs.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(180)
 

@@ -12,8 +12,8 @@ import pytest
 
 from cellctl.records.entries import RunRecord
 from cellctl.records.store import RunStore
-from tests.cell.outside_plc import OutsidePlc
-from tests.cell.own_cell import Program, free_port
+from tests.cell.rigs.outside_plc import OutsidePlc
+from tests.cell.rigs.own_cell import Program, free_port
 from tests.guides.package import ROOT, install, run, write_files
 
 GUIDE = ROOT / "docs" / "writing-a-process.md"

@@ -15,9 +15,9 @@ from drivers.camera.gige.driver import GigeCamera
 from drivers.camera.gige.pixels import decoded
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Format, expected_image
 from fakes.wire.cameras.image_server import ImageServer
-from tests.contracts.camera import CameraContract, SingleCameraBench
 from tests.contracts.inprocess.camera import InProcessCamera
-from tests.wire.camera_bench import PictureTaker, pixels
+from tests.contracts.suites.camera import CameraContract, SingleCameraBench
+from tests.wire.cameras.camera_bench import PictureTaker, pixels
 
 
 class InProcessBench(SingleCameraBench):

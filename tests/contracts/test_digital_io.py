@@ -10,8 +10,8 @@ from cellctl.interfaces.digital_io import DigitalIo
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.driver import ModbusCouplerIo
 from fakes.wire.couplers.coupler import CouplerServer
-from tests.contracts.digital_io import INPUTS, OUTPUTS, DigitalIoBench, DigitalIoContract
 from tests.contracts.inprocess.digital_io import InProcessIo
+from tests.contracts.suites.digital_io import INPUTS, OUTPUTS, DigitalIoBench, DigitalIoContract
 from tests.wire.proxy import ChaosProxy
 
 INPUT_ADDRESSES = {"door": 3, "tray": 12}

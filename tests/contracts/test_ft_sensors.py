@@ -9,9 +9,9 @@ from cellctl.interfaces.ft_sensor import FtSensor
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.driver import SriSensor
 from fakes.wire.sri.box import SriBox
-from tests.contracts.ft_sensor import FtBench, FtSensorContract
 from tests.contracts.inprocess.ft_sensor import InProcessSensor
 from tests.contracts.loop_thread import LoopThread
+from tests.contracts.suites.ft_sensor import FtBench, FtSensorContract
 
 WRENCH = (10.0, -20.0, -1962.0, 1.5, -2.5, 0.25)
 

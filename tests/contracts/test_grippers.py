@@ -7,9 +7,9 @@ import pytest
 from cellctl.clock import now_s
 from cellctl.interfaces.gripper import Gripper
 from drivers.gripper.pneumatic.driver import PneumaticGripper
-from tests.contracts.gripper import GripperBench, GripperContract
 from tests.contracts.inprocess.gripper import InProcessGripper
-from tests.wire.gripper_rig import GripperRig, gripper_rig
+from tests.contracts.suites.gripper import GripperBench, GripperContract
+from tests.wire.modbus.gripper_rig import GripperRig, gripper_rig
 
 
 class InProcessBench(GripperBench):

@@ -22,8 +22,8 @@ from fakes.wire.cameras.target_server import TargetServer
 from fakes.world.targets import SeenTarget
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
-from tests.contracts.stereo_camera import CameraBench, StereoCameraContract
-from tests.contracts.target_tracker import TargetTrackerContract, TrackerBench
+from tests.contracts.suites.stereo_camera import CameraBench, StereoCameraContract
+from tests.contracts.suites.target_tracker import TargetTrackerContract, TrackerBench
 from tests.wire.ramp import Ramp
 
 TARGETS: dict[str, Array] = {

@@ -23,15 +23,15 @@ from cellctl.interfaces import (
     StreamingRobot,
     TargetTracker,
 )
-from tests.contracts.camera import CameraContract
-from tests.contracts.digital_io import DigitalIoContract
-from tests.contracts.ft_sensor import FtSensorContract
-from tests.contracts.gripper import GripperContract
-from tests.contracts.robot import RobotContract
-from tests.contracts.stereo_camera import StereoCameraContract
-from tests.contracts.stop_channel import StopChannelContract
-from tests.contracts.streaming_robot import StreamingRobotContract
-from tests.contracts.target_tracker import TargetTrackerContract
+from tests.contracts.suites.camera import CameraContract
+from tests.contracts.suites.digital_io import DigitalIoContract
+from tests.contracts.suites.ft_sensor import FtSensorContract
+from tests.contracts.suites.gripper import GripperContract
+from tests.contracts.suites.robot import RobotContract
+from tests.contracts.suites.stereo_camera import StereoCameraContract
+from tests.contracts.suites.stop_channel import StopChannelContract
+from tests.contracts.suites.streaming_robot import StreamingRobotContract
+from tests.contracts.suites.target_tracker import TargetTrackerContract
 
 KINDS: dict[str, tuple[type, type]] = {
     "cellctl.robot": (Robot, RobotContract),

@@ -16,10 +16,10 @@ from cellctl.interfaces import Robot
 from drivers.robot.siasun.driver import SiasunRobot
 from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
-from tests.contracts.robot import RobotBench, RobotContract
-from tests.contracts.streaming_robot import StreamingBench, StreamingRobotContract
-from tests.wire.job_rig import JobRig, job_rig
-from tests.wire.sjl_rig import Rig, sjl_rig
+from tests.contracts.suites.robot import RobotBench, RobotContract
+from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
+from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.wire.siasun.sjl_rig import Rig, sjl_rig
 
 
 class InProcessBench(RobotBench):

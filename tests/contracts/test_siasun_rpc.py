@@ -11,10 +11,10 @@ from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun_rpc.driver import SiasunRpcRobot
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
 from tests.contracts.loop_thread import LoopThread
-from tests.contracts.robot import RobotBench, RobotContract
-from tests.contracts.stop_channel import StopBench, StopChannelContract
-from tests.contracts.streaming_robot import StreamingBench, StreamingRobotContract
-from tests.wire.duco_rig import READY_DEG, DucoRig, duco_rig
+from tests.contracts.suites.robot import RobotBench, RobotContract
+from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
+from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
+from tests.wire.siasun_rpc.duco_rig import READY_DEG, DucoRig, duco_rig
 
 
 class RpcBench(RobotBench):

@@ -10,9 +10,9 @@ from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from tests.contracts.inprocess.stop_channel import InProcessStopChannel
 from tests.contracts.loop_thread import LoopThread
-from tests.contracts.stop_channel import StopBench, StopChannelContract
-from tests.wire.job_rig import JobRig, job_rig
-from tests.wire.sjl_rig import READY_DEG, Rig, sjl_rig
+from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
+from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.wire.siasun.sjl_rig import READY_DEG, Rig, sjl_rig
 
 
 class InProcessBench(StopBench):

@@ -7,8 +7,8 @@ import os
 
 import pytest
 
-from tests.cell.endings import refuses, taken
-from tests.cell.own_cell import OwnCell, cellctl
+from tests.cell.rigs.endings import refuses, taken
+from tests.cell.rigs.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(120)
 

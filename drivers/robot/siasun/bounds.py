@@ -11,9 +11,9 @@ from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
+from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.config import MotionLimits
 from drivers.robot.siasun.kinematics import Kinematics
-from drivers.robot.siasun.records import StreamFigures, StreamOption
 
 STEP_MAX_ANGLE_DEG = 0.5
 """The controller refuses a STEP that turns further (protocol, section 4)."""

@@ -6,11 +6,11 @@ from contextlib import asynccontextmanager
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, ProtocolViolation
 from cellctl.errors.robot import MotionRejected
+from drivers.robot.siasun.codec.records import Answer, Record, Six, Tick
+from drivers.robot.siasun.codec.words import Words
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
-from drivers.robot.siasun.records import Answer, Record, Six, Tick
 from drivers.robot.siasun.running_command import RunningCommand
-from drivers.robot.siasun.words import Words
 
 
 class CommandChannel:

@@ -15,10 +15,10 @@ from cellctl.errors.link import (
     VersionMismatch,
 )
 from drivers.robot.siasun import faults
-from drivers.robot.siasun.decoder import RecordReader
-from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
-from drivers.robot.siasun.records import Hello, Record
-from drivers.robot.siasun.words import Words, words_of
+from drivers.robot.siasun.codec.decoder import RecordReader
+from drivers.robot.siasun.codec.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
+from drivers.robot.siasun.codec.records import Hello, Record
+from drivers.robot.siasun.codec.words import Words, words_of
 
 _log = logging.getLogger(__name__)
 

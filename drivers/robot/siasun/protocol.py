@@ -6,7 +6,7 @@ stop channel, so they stay free of arrays.
 
 from collections.abc import Sequence
 
-from drivers.robot.siasun.records import StreamFigures
+from drivers.robot.siasun.codec.records import StreamFigures
 
 VERSION = "1"
 

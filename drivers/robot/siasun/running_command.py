@@ -9,7 +9,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, ProtocolViolation, ReplyTimeout
 from cellctl.errors.robot import MotionRejected
 from drivers.robot.siasun import faults
-from drivers.robot.siasun.records import (
+from drivers.robot.siasun.codec.records import (
     Aborted,
     Ack,
     Answer,

@@ -10,9 +10,9 @@ from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleDat
 from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.robot import RobotMode, RobotState
+from drivers.robot.siasun.codec.records import Record, Status, StopDone
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
-from drivers.robot.siasun.records import Record, Status, StopDone
 
 BEATS_PER_DEADMAN = 4
 REPEAT_STOP_S = 0.3

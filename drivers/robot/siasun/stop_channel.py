@@ -17,11 +17,11 @@ from cellctl.errors.link import (
 from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults
+from drivers.robot.siasun.codec.decoder import RecordReader
+from drivers.robot.siasun.codec.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
+from drivers.robot.siasun.codec.records import Hello, Record, Status, StopDone
+from drivers.robot.siasun.codec.words import words_of
 from drivers.robot.siasun.config import SiasunStopChannelConfig
-from drivers.robot.siasun.decoder import RecordReader
-from drivers.robot.siasun.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
-from drivers.robot.siasun.records import Hello, Record, Status, StopDone
-from drivers.robot.siasun.words import words_of
 
 _CHUNK_BYTES = 4096
 _READS_PER_POLL = 8

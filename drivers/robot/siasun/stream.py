@@ -10,8 +10,8 @@ from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
 from drivers.robot.siasun import protocol
 from drivers.robot.siasun.bounds import Bounds
+from drivers.robot.siasun.codec.records import Six, Tick
 from drivers.robot.siasun.connection import SjlChannel
-from drivers.robot.siasun.records import Six, Tick
 from drivers.robot.siasun.running_command import RunningCommand
 
 

@@ -6,8 +6,8 @@ from typing import cast
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
+from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.messages import Request
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import write_pose
 

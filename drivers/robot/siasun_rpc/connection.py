@@ -8,8 +8,8 @@ from collections.abc import Callable
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from drivers.robot.siasun_rpc import faults, protocol
-from drivers.robot.siasun_rpc.framing import MessageReader
-from drivers.robot.siasun_rpc.messages import MethodUnknown, Request, Value
+from drivers.robot.siasun_rpc.codec.framing import MessageReader
+from drivers.robot.siasun_rpc.codec.messages import MethodUnknown, Request, Value
 
 LINGER_S = 0.2
 """Time for what was sent last to leave; it may be a stop."""

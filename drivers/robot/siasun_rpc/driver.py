@@ -30,13 +30,13 @@ from cellctl.interfaces.streaming_robot import (
 )
 from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
+from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.kinematics import Kinematics
-from drivers.robot.siasun.records import StreamFigures, StreamOption
 from drivers.robot.siasun_rpc import calls
-from drivers.robot.siasun_rpc.background import BackgroundTasks
+from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.link import RpcLink
-from drivers.robot.siasun_rpc.messages import Request
+from drivers.robot.siasun_rpc.connections.background import BackgroundTasks
+from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.motion import Motion
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready

@@ -7,9 +7,9 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import NotRearmed
 from drivers.robot.siasun_rpc import faults
+from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.link import RpcLink
-from drivers.robot.siasun_rpc.messages import Request
+from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready
 from drivers.robot.siasun_rpc.vendor import TaskState

@@ -13,15 +13,15 @@ from thrift.Thrift import TApplicationException, TException, TMessageType, TType
 from thrift.transport.TTransport import TMemoryBuffer
 
 from cellctl.errors.link import ProtocolViolation
-from drivers.robot.siasun_rpc.framing import MAX_MESSAGE_BYTES
-from drivers.robot.siasun_rpc.messages import (
+from drivers.robot.siasun_rpc.codec.framing import MAX_MESSAGE_BYTES
+from drivers.robot.siasun_rpc.codec.messages import (
     SEQUENCE_NUMBER,
     Argument,
     MethodUnknown,
     Request,
     Value,
 )
-from drivers.robot.siasun_rpc.signatures import NO_TRIGGER, SIGNATURES, TRIGGER_FIELDS
+from drivers.robot.siasun_rpc.codec.signatures import NO_TRIGGER, SIGNATURES, TRIGGER_FIELDS
 
 _WIRE_TYPES = {
     "b": TType.BOOL, "y": TType.BYTE, "h": TType.I16, "i": TType.I32, "d": TType.DOUBLE,

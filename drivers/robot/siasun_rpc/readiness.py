@@ -2,7 +2,7 @@
 
 from cellctl.errors.robot import ControllerFault, NotRearmed
 from drivers.robot.siasun_rpc import faults
-from drivers.robot.siasun_rpc.state_frame import StateFrame
+from drivers.robot.siasun_rpc.codec.state_frame import StateFrame
 from drivers.robot.siasun_rpc.vendor import OperationMode, Power, SafetyState, name
 from drivers.robot.siasun_rpc.watch import SAFE, Report
 

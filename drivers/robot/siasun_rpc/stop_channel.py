@@ -7,10 +7,10 @@ from typing import cast
 from cellctl.clock import now_s
 from cellctl.errors.link import ConnectTimeout, LinkLost, ProtocolViolation
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
-from drivers.robot.siasun_rpc.blocking_line import BlockingLine
+from drivers.robot.siasun_rpc.codec.guard_calls import packed
+from drivers.robot.siasun_rpc.codec.messages import Request, Value
 from drivers.robot.siasun_rpc.config import SiasunRpcStopChannelConfig
-from drivers.robot.siasun_rpc.guard_calls import packed
-from drivers.robot.siasun_rpc.messages import Request, Value
+from drivers.robot.siasun_rpc.connections.blocking_line import BlockingLine
 
 WORDS = 32_767
 """Stops are counted from 1 to here and then from 1 again: a word may have a sign."""

@@ -19,9 +19,9 @@ from cellctl.errors.robot import NotRearmed, SetpointRefused, StreamSilent, Stre
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun_rpc import calls
+from drivers.robot.siasun_rpc.codec.messages import Request, Value
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
-from drivers.robot.siasun_rpc.link import RpcLink
-from drivers.robot.siasun_rpc.messages import Request, Value
+from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.motion import Motion
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.vendor import TaskState

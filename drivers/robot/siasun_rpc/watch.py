@@ -20,12 +20,12 @@ from cellctl.geometry.euler import angles_of, rotation_of
 from cellctl.geometry.euler_order import EulerOrder
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.robot import RobotMode, RobotState
+from drivers.robot.siasun_rpc.codec.messages import Request, Value
+from drivers.robot.siasun_rpc.codec.state_frame import StateFrame
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
-from drivers.robot.siasun_rpc.frame_stream import FrameStream
-from drivers.robot.siasun_rpc.messages import Request, Value
+from drivers.robot.siasun_rpc.connections.frame_stream import FrameStream
 from drivers.robot.siasun_rpc.protocol import request
-from drivers.robot.siasun_rpc.state_frame import StateFrame
 from drivers.robot.siasun_rpc.vendor import OperationMode, Power, SafetyState
 
 SAFE = frozenset({SafetyState.RUN.value, SafetyState.REDUCED.value})

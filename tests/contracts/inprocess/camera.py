@@ -5,7 +5,7 @@ import asyncio
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
-from tests.wire.camera_bench import pixels
+from tests.wire.cameras.camera_bench import pixels
 
 
 class InProcessCamera(Camera):

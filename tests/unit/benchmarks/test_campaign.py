@@ -4,7 +4,7 @@ from io import StringIO
 
 from rich.console import Console
 
-from benchmarks.campaign import decay
+from benchmarks.campaign import decay, told
 
 FIRST, SECOND = [0.1, -0.2, 0.3, 0.01, 0.02, -0.03], [0.01, 0.0, -0.02, 0.001, 0.002, 0.003]
 
@@ -17,3 +17,10 @@ def test_each_look_has_its_errors_and_how_many_runs_needed_it() -> None:
     cells = [[cell for cell in row if cell not in {"│", "/"}] for row in rows]
     assert cells[0][:5] == ["1", "2", "1", "0.0550", "0.1000"]
     assert cells[1][:5] == ["2", "1", "1", "0.0100", "0.0100"]
+
+
+def test_a_bad_part_that_was_called_good_is_told_from_one_that_was_not() -> None:
+    assert told({"passed": True, "result": "good"}) == "good"
+    assert told({"passed": False, "result": "good"}) == "CALLED GOOD, IS NOT"
+    for result in ({"result": "bad"}, {"result": "none"}, {}):
+        assert told({"passed": False, **result}) == "not good, and called so"

@@ -22,7 +22,7 @@ from cellctl.interfaces.camera import PixelFormat
 from fakes.gentl.cameras import FakeCameras, expected_image
 from fakes.wire.cameras.frame_server import FrameServer
 from fakes.wire.cameras.image_server import ImageServer
-from tests.wire.camera_bench import PictureTaker, pixels
+from tests.wire.cameras.camera_bench import PictureTaker, pixels
 from tests.wire.gige.conftest import LEFT, RIGHT, camera
 from tests.wire.ramp import Ramp
 

@@ -1,38 +1,25 @@
-"""The jobs of `make soak-cameras`, a few times each, and the scales they are weighed on."""
+"""`make soak-cameras`, a few times each, and the scales that its figures are weighed on."""
 
 import os
-from pathlib import Path
-
-import pytest
+import subprocess
+import sys
 
 from benchmarks.cameras.kept import Kept, kept
-from benchmarks.cameras.soak import SERIAL, soak_grabs, soak_openings, soak_pulls
-from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
 
 
-@pytest.fixture
-def one_camera(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> FakeCameras:
-    fakes = FakeCameras(tmp_path / "soaked", [FakeCamera(SERIAL, width=64, height=48)])
-    monkeypatch.setenv(ENVIRONMENT, str(fakes.path))
-    return fakes
-
-
-async def test_openings(producer: Path, one_camera: FakeCameras) -> None:
-    done = await soak_openings(producer, one_camera, 5)
-    assert done.clean, done
-    assert one_camera.exposures(SERIAL) == 5
-
-
-async def test_cable_pulls(producer: Path, one_camera: FakeCameras) -> None:
-    done = await soak_pulls(producer, one_camera, 5)
-    assert done.clean, done
-
-
-async def test_images(producer: Path, one_camera: FakeCameras) -> None:
-    done = await soak_grabs(producer, one_camera, 200)
-    assert done.clean, done
-    assert done.library is not None
-    assert done.library[0].threads > 0
+def test_a_short_soak() -> None:
+    # In a process of its own: that of the tests keeps what other tests have not let go yet.
+    times = ["--cycles", "5", "--pulls", "5", "--grabs", "200"]
+    done = subprocess.run(
+        [sys.executable, "-m", "benchmarks.cameras.soak", *times],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"COLUMNS": "160"},
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    for job in ("open, grab, close", "cable pulls", "images"):
+        assert any(job in line and "flat" in line for line in done.stdout.splitlines()), job
 
 
 def test_what_is_kept_is_seen() -> None:

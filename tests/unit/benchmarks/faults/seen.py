@@ -19,4 +19,5 @@ CALM = Observation(
     idle_again=True,
     restarted=False,
     lost_s=0.1,
+    software="cellctl 0 (abc)",
 )

@@ -56,7 +56,7 @@ def without_cells(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def play(monkeypatch: pytest.MonkeyPatch, out: Path, *outcomes: object) -> Campaign:
     monkeypatch.setattr(campaign, "run_trial", Played(*outcomes))
-    return Campaign(out, 1, Console(file=io.StringIO()))
+    return Campaign(out, out / "matrix.json", 1, Console(file=io.StringIO()))
 
 
 def test_one_cell_serves_as_long_as_it_comes_back_to_idle(
@@ -74,10 +74,10 @@ def test_an_interrupted_campaign_goes_on_where_it_was(
     with pytest.raises(KeyboardInterrupt):
         play(monkeypatch, tmp_path, CALM, KeyboardInterrupt()).run(TRIALS)
     assert Cell.closed == 1
-    assert list(table.load(tmp_path / "faults.json")) == [TRIALS[0].key]
+    assert list(table.load(tmp_path / "matrix.json")) == [TRIALS[0].key]
     work = play(monkeypatch, tmp_path, CALM, CALM)
     work.run(TRIALS)
-    assert len(table.load(tmp_path / "faults.json")) == len(TRIALS)
+    assert len(table.load(tmp_path / "matrix.json")) == len(TRIALS)
 
 
 def test_a_phase_that_is_not_reached_is_tried_again_in_another_cell(

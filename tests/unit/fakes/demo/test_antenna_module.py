@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from fakes.demo.antenna_module import AntennaModuleDemo
 from fakes.demo.control import Control
 from fakes.demo.demo import Evidence
+from fakes.demo.processes.antenna_module import AntennaModuleDemo
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.scene import AntennaBench
 

@@ -10,9 +10,9 @@ from typer.testing import CliRunner
 
 from fakes.demo import registry
 from fakes.demo.app import app
-from fakes.demo.deck_to_frame import DeckToFrameDemo
 from fakes.demo.demo import Evidence, Judgement
-from tests.cell.own_cell import OwnCell
+from fakes.demo.processes.deck_to_frame import DeckToFrameDemo
+from tests.cell.rigs.own_cell import OwnCell
 
 CONFIG = Path(__file__).parents[4] / "config"
 

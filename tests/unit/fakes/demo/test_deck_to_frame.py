@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from fakes.demo.deck_to_frame import DeckToFrameDemo
 from fakes.demo.demo import Evidence
+from fakes.demo.processes.deck_to_frame import DeckToFrameDemo
 
 TRUTH: dict[str, Any] = {
     "pins": {name: {"offset_mm": 0.03, "gauge_mm": 5.97} for name in ("P1", "P5")},

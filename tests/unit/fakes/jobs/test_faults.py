@@ -10,8 +10,8 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError
 from cellctl.errors.robot import MotionAborted
 from cellctl.interfaces.robot import RobotState
-from drivers.robot.siasun.records import Status
-from tests.wire.job_rig import JobRig, job_rig
+from drivers.robot.siasun.codec.records import Status
+from tests.wire.jobs.job_rig import JobRig, job_rig
 
 
 @pytest.fixture

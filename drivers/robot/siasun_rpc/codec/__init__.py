@@ -1,0 +1,1 @@
+"""Calls, replies and state frames: bytes to values and back, without I/O."""

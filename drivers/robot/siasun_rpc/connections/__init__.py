@@ -1,0 +1,1 @@
+"""The connections to one controller, of the daemon and of the guard."""

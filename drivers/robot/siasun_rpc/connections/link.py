@@ -1,0 +1,219 @@
+"""All connections to one controller: they stand together and fall together."""
+
+import asyncio
+import contextlib
+from collections.abc import Callable, Coroutine
+from typing import cast
+
+from cellctl.errors.base import CellError
+from cellctl.errors.link import ConnectTimeout, LinkError, LinkLost
+from drivers.robot.siasun_rpc.codec.messages import MethodUnknown
+from drivers.robot.siasun_rpc.config import SiasunRpcConfig
+from drivers.robot.siasun_rpc.connection import RpcConnection
+from drivers.robot.siasun_rpc.connections.background import BackgroundTasks
+from drivers.robot.siasun_rpc.connections.frame_stream import FrameStream
+from drivers.robot.siasun_rpc.features import Features, features
+from drivers.robot.siasun_rpc.protocol import request
+from drivers.robot.siasun_rpc.watch import StateWatch
+
+STOP = request("stop", False)  # noqa: FBT003 - "block": the reply is not to wait for standstill
+VERSION = request("get_robot_version")
+BEATS_PER_DEADMAN = 4
+RECONNECT_S = 0.3
+REPEAT_STOP_S = 0.3
+
+
+class RpcLink:
+    """Four connections to the service and one to the state stream.
+
+    ``motion`` carries what moves the arm, ``control`` the stop and what is asked beside a motion,
+    a third one the questions of ``watch``, a fourth one the heartbeats. A fault of any of them ends
+    all: an arm of which one part is not known is not known. Before they are dropped a stop is sent,
+    and they are opened again until ``close``; ``on_lost`` hears of each loss.
+    """
+
+    def __init__(
+        self, robot: str, config: SiasunRpcConfig, on_lost: Callable[[LinkError], None]
+    ) -> None:
+        self._robot = robot
+        self._config = config
+        self._on_lost = on_lost
+        self.up = False
+        self._wanted = False
+        """Between ``open`` and ``close``."""
+        self.features = Features("", streams=False)
+        self._new_session()
+        self.watch = StateWatch(robot, config, self._asking, self._frames)
+        self._jobs = BackgroundTasks()
+        self._reopening: asyncio.Task[None] | None = None
+        self._down: asyncio.Future[None] | None = None
+        """Carries the fault that has ended the present connections."""
+
+    async def open(self) -> None:
+        """Connect, ask for the version, wait for a first state. Sends nothing that moves or
+        switches anything. Idempotent. ``ConnectTimeout``, ``VersionMismatch`` or another fault of
+        the link."""
+        if self.up or self._reopening is not None:
+            return
+        await self._open()
+        self._wanted = True
+
+    def _new_session(self) -> None:
+        """Connections that nothing of an earlier session can reach: neither its late end nor a
+        reply that comes after all."""
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        self.control = RpcConnection(f"{self._robot} control", self.drop)
+        self._asking = RpcConnection(f"{self._robot} state", self.drop)
+        self._beating = RpcConnection(f"{self._robot} heartbeat", self.drop)
+        self._frames = FrameStream(f"{self._robot} state stream", self.drop)
+
+    async def _open(self) -> None:
+        config = self._config
+        self._new_session()
+        self.watch.follow(self._asking, self._frames)
+        self._down = asyncio.get_running_loop().create_future()
+        self.up = True
+        try:
+            async with asyncio.timeout(config.connect_timeout_s):
+                for one in (self.motion, self.control, self._asking, self._beating):
+                    await one.open(config.host, config.rpc_port)
+                await self._frames.open(config.host, config.state_port)
+                self.features = await self._ask_version()
+                self._jobs.start(self._keep(self._beat()))
+                self._jobs.start(self._keep(self.watch.run()))
+                await self._first_state(self._down)
+        except TimeoutError:
+            self._hang_up()
+            place = f"{config.host}:{config.rpc_port} and {config.state_port}"
+            facts = f"{self._robot}: no state within {config.connect_timeout_s:g} s from {place}"
+            raise ConnectTimeout(facts) from None
+        except BaseException:
+            self._hang_up()
+            raise
+
+    def facts(self) -> dict[str, str]:
+        """What is known of the controller, in words by name."""
+        service = "connected" if self.up else "not connected"
+        return {
+            "service": f"{service}, four connections and the state stream",
+            "controller software": self.features.version or "names no version",
+            "streamed motion": "known" if self.features.streams else "not known to this driver",
+            "tool and work object": f"{self._config.tool} and {self._config.work_frame}",
+            "dead man": f"{self._config.heartbeat_ms} ms",
+        }
+
+    def drop(self, fault: LinkError) -> None:
+        """End everything because of a fault, after a last stop if that can still be sent."""
+        if not self.up:
+            return
+        self.control.send(STOP)
+        self._hang_up()
+        if self._down is not None and not self._down.done():
+            self._down.set_exception(fault)
+            self._down.exception()  # it is told by ``on_lost``, and only ``open`` asks here
+        self._on_lost(fault)
+        if self._wanted and self._reopening is None:
+            self._reopening = asyncio.create_task(self._reopen())
+
+    def close(self) -> None:
+        """Drop all connections and open them no more. Idempotent."""
+        self._wanted = False
+        if self._reopening is not None:
+            self._reopening.cancel()
+            self._reopening = None
+        self._hang_up()
+
+    async def stop_until_standing(self) -> None:
+        """Ask the arm to stop until it is reported to stand. The caller limits the time."""
+        while True:
+            await self.control.exchange(STOP, timeout_s=self._config.reply_timeout_s)
+            standing = asyncio.ensure_future(self.watch.stands(self._config.stop_timeout_s))
+            try:
+                await asyncio.wait({standing}, timeout=REPEAT_STOP_S)
+                if standing.done():
+                    return standing.result()
+            finally:
+                standing.cancel()
+
+    async def _reopen(self) -> None:
+        """Until it is back. The arm is stopped before anything else: nobody has seen what it did
+        meanwhile."""
+        while not self.up:
+            await asyncio.sleep(RECONNECT_S)
+            # Whoever uses the robot has been told of the loss, and hears of it at every call.
+            with contextlib.suppress(CellError):
+                await self._open()
+                await self.control.exchange(STOP, timeout_s=self._config.reply_timeout_s)
+        self._reopening = None
+
+    def _hang_up(self) -> None:
+        self.up = False
+        self._jobs.cancel()
+        for one in (self.motion, self.control, self._asking, self._beating):
+            one.close()
+        self._frames.close()
+
+    async def renew_motion(self) -> None:
+        """Replace the motion connection by a new one; replies to the old one are not awaited."""
+        self.motion.close()
+        if not self.up:
+            return
+        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        try:
+            async with asyncio.timeout(self._config.connect_timeout_s):
+                await self.motion.open(self._config.host, self._config.rpc_port)
+        except TimeoutError:
+            self.drop(LinkLost(f"{self.motion}: no new connection"))
+        except LinkError as fault:
+            self.drop(fault)
+
+    async def vendor_errors(self) -> list[str]:
+        """The controller's own list of errors, for a text; empty when it cannot be had."""
+        try:
+            (texts,) = await self.control.exchange(
+                request("get_last_error"), timeout_s=self._config.reply_timeout_s
+            )
+        except CellError:
+            return []  # the fault that made somebody ask is told without it
+        return cast(list[str], texts)
+
+    async def _first_state(self, down: "asyncio.Future[None]") -> None:
+        first = asyncio.ensure_future(self.watch.until_first(self._config.connect_timeout_s))
+        try:
+            await asyncio.wait({first, down}, return_when=asyncio.FIRST_COMPLETED)
+            if down.done():
+                down.result()
+            first.result()
+        finally:
+            first.cancel()
+
+    async def _ask_version(self) -> Features:
+        try:
+            (version,) = await self.control.exchange(
+                VERSION, timeout_s=self._config.reply_timeout_s
+            )
+        except MethodUnknown:
+            return features(None)
+        return features(cast(str, version))
+
+    async def _keep(self, job: Coroutine[None, None, None]) -> None:
+        """A job that ends, by whatever, takes the link with it: nobody would watch the arm."""
+        session = self._down
+        try:
+            await job
+        except LinkError as fault:
+            if self._down is session:
+                self.drop(fault)
+        finally:
+            # Cancelled by the end of its session, it may come here when the next one has begun.
+            if self._down is session:
+                self.drop(LinkLost(f"{self._robot}: heartbeat or state has ended"))
+
+    async def _beat(self) -> None:
+        interval_s = self._config.heartbeat_ms / 1000.0 / BEATS_PER_DEADMAN
+        beat = request("rpc_heartbeat", self._config.heartbeat_ms)
+        loop = asyncio.get_running_loop()
+        while True:
+            due_s = loop.time() + interval_s
+            await self._beating.exchange(beat, timeout_s=self._config.silence_s)
+            await asyncio.sleep(max(0.0, due_s - loop.time()))

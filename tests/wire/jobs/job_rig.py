@@ -1,0 +1,102 @@
+"""The SIASUN driver against the shipped job files, run by the interpreter."""
+
+import asyncio
+import time
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
+from drivers.robot.siasun.driver import SiasunRobot
+from fakes.jobs.controller import JobController
+from fakes.jobs.program import load_program
+from fakes.scenario import load
+from fakes.sections import Channel
+from fakes.world.robot import RobotArm
+from fakes.world.truth import draw
+from tests.ports import free_ports
+from tests.wire.proxy import ChaosProxy
+from tests.wire.scenarios import as_on_a_real_cell
+from tests.wire.siasun.sjl_rig import READY_DEG, SCENARIO
+
+JOBS = Path(__file__).parents[3] / "drivers" / "robot" / "siasun" / "job"
+
+
+@dataclass
+class JobRig:
+    """Driver, controller and the wires between them."""
+
+    robot: SiasunRobot
+    controller: JobController
+    arm: RobotArm
+    wires: dict[Channel, ChaosProxy]
+    settings: SiasunConfig
+    guard: SiasunStopChannelConfig
+
+    async def connect(self) -> None:
+        """Start the controller as soon as the driver listens, which saves it a retry."""
+        connecting = asyncio.create_task(self.robot.connect())
+        async with asyncio.timeout(2.0):
+            while self.robot._state.channel._server is None:  # noqa: ASYNC110  no event for it
+                await asyncio.sleep(0)
+        self.controller.start()
+        await connecting
+
+    def turn(self) -> None:
+        """A job begins a motion, with the contact of STA closed as if the daemon were there."""
+        self.controller.memory.outputs["DO", 9] = 1
+        self.controller._programs["TURN"] = load_program(Path(__file__).parent / "TURN.job")
+        self.controller._begin("TURN", background=False)
+
+
+@asynccontextmanager
+async def job_rig(
+    *,
+    channels: tuple[Channel, ...] = ("CMD", "STA"),
+    statement_s: float = 0.0002,
+    **changes: object,
+) -> AsyncIterator[JobRig]:
+    """Wired up but neither end started; both are stopped at the end."""
+    scenario = as_on_a_real_cell(load(SCENARIO))
+    command_port, state_port, guard_port = free_ports(3)
+    settings = SiasunConfig.model_validate(
+        {
+            "robot_name": "SR500A",
+            "command_port": command_port,
+            "state_port": state_port,
+            "connect_timeout_s": 3.0,
+            "workspace_min_mm": (900.0, -900.0, 300.0),
+            "workspace_max_mm": (2500.0, 900.0, 2200.0),
+            "joints_min_deg": (-360.0,) * 6,
+            "joints_max_deg": (360.0,) * 6,
+            "max_speed_mm_s": 250.0,
+            "max_joint_speed_percent": 100,
+        }
+        | changes
+    )
+    targets: dict[Channel, int] = {"CMD": command_port, "STA": state_port, "GRD": guard_port}
+    async with AsyncExitStack() as stack:
+        wires = {
+            channel: await stack.enter_async_context(ChaosProxy(targets[channel]))
+            for channel in channels
+        }
+        arm = RobotArm(scenario.robots["main"], draw(scenario, seed=1).robots["main"], seed=1)
+        arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
+        started_s = time.monotonic() - arm.standstill_s
+        controller = JobController(
+            arm,
+            lambda: time.monotonic() - started_s,
+            {channel: wire.port for channel, wire in wires.items()},
+            JOBS,
+            statement_s=statement_s,
+        )
+        robot = SiasunRobot("main", settings)
+        stack.push_async_callback(controller.stop)
+        stack.push_async_callback(robot.disconnect)
+        guard = SiasunStopChannelConfig(
+            robot_name="SR500A", guard_port=guard_port, connect_timeout_s=3.0
+        )
+        yield JobRig(robot, controller, arm, wires, settings, guard)
