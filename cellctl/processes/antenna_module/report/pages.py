@@ -11,6 +11,7 @@ from cellctl.processes.antenna_module.report.acceptance import acceptance
 from cellctl.processes.antenna_module.report.force_by_depth import force_by_depth
 from cellctl.processes.antenna_module.report.terms import error_terms
 from cellctl.records.entries import Figure, RunRecord
+from cellctl.records.parts import mate_serial
 from cellctl.records.report.sections import (
     Drawing,
     FactList,
@@ -44,7 +45,7 @@ def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
     return ProcessPages(
         tiles=tuple(_tiles(record)),
         acceptance=acceptance(record),
-        parts=(Part("module", record.head.serial), Part("board", "")),
+        parts=(Part("module", record.head.serial), Part("board", mate_serial(record))),
         sections=tuple(section for section in sections if section.blocks),
     )
 

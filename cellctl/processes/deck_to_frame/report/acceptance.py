@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from cellctl.geometry.uncertain import COVERAGE_FACTOR
 from cellctl.processes.deck_to_frame.record import keys
 from cellctl.records.entries import RunRecord
+from cellctl.records.parts import mate_serial
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
@@ -63,8 +64,8 @@ WORDS: Mapping[str, str] = {
 
 
 def parts(record: RunRecord) -> tuple[Part, ...]:
-    """The deck carries the serial number of the run; that of the frame nobody gives to the cell."""
-    return (Part("deck", record.head.serial), Part("frame", ""))
+    """The deck carries the serial number of the run."""
+    return (Part("deck", record.head.serial), Part("frame", mate_serial(record)))
 
 
 def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:

@@ -23,7 +23,9 @@ from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.records import RunStore
 from cellctl.records.curve_file import encode_curve
+from cellctl.records.entries import Document
 from cellctl.records.mcap_reading import MEDIA_TYPE
+from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read, text_of
@@ -95,6 +97,15 @@ def test_the_report_says_what_an_auditor_asks(store: RunStore, tmp_path: Path) -
     local = [address for address in page.addresses if not address.startswith("#")]
     assert all((exported / address).is_file() for address in local)
     assert len([a for a in local if a.endswith(".png")]) == 8
+
+
+def test_deck_and_frame_have_their_serial_numbers(store: RunStore, tmp_path: Path) -> None:
+    run = start(store, "SAT-0042")
+    store.add(run, Document(PARTS, {MATE_SERIAL: "FRAME-0007"}))
+    text = " ".join(text_of(export_run(store, run, tmp_path / "a", pages=pages)).split())
+    assert "serial number, deck SAT-0042 serial number, frame FRAME-0007" in text
+    nameless = " ".join(text_of(export_run(store, start(store), tmp_path, pages=pages)).split())
+    assert "serial number, frame not recorded" in nameless
 
 
 def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
