@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from cellctl.records.units import SIX, SIX_MM_DEG, label, words
+from cellctl.records.units import SIX, SIX_MM_DEG, WRITTEN_POSE, WRITTEN_POSES, label, words
 
 _DECIMALS = {"mm": 4, "°": 5}
 """Of errors and their deviations: 0.1 µm, and what that is at an arm's length."""
@@ -31,7 +31,7 @@ def facts(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
         elif any(isinstance(one, _NESTED) for one in value):
             continue
         elif key.endswith(SIX_MM_DEG) and len(value) == len(SIX):
-            yield prefix + words(key.removesuffix(SIX_MM_DEG)), _six(value)
+            yield prefix + words(key.removesuffix(SIX_MM_DEG)), _six(key, value)
         else:
             yield prefix + name, with_unit(plain(value), unit)
 
@@ -44,10 +44,13 @@ def _deep(document: Mapping[str, Any]) -> bool:
     )
 
 
-def _six(values: Sequence[float | None]) -> str:
+def _six(key: str, values: Sequence[float | None]) -> str:
     """Six components of a pose or of an error, each with its axis and unit."""
-    pairs = zip(SIX, values, strict=True)
-    return ", ".join(f"{axis} {quantity(value, unit)}" for (axis, unit), value in pairs)
+    names = WRITTEN_POSE if key in WRITTEN_POSES else SIX
+    pairs = zip(names, values, strict=True)
+    return ", ".join(
+        f"{axis} {with_unit(fixed(value, decimals(unit)), unit)}" for (axis, unit), value in pairs
+    )
 
 
 def with_unit(text: str, unit: str) -> str:

@@ -30,7 +30,7 @@ _FITS = {
     keys.LOOP: "greatest residual of a hole, deck before mating",
     "seated": "greatest residual of a hole, seated deck",
 }
-WORDS: Mapping[str, str] = {
+_WORDS = {
     "approach.speed": "approach: speed, derived",
     "approach.predicted_peak": "approach: greatest force predicted",
     "approach.touch": "approach: force at which the touch is noticed",
@@ -60,7 +60,14 @@ WORDS: Mapping[str, str] = {
     f"{keys.GAP_BY_VISION}_{keys.UNCERTAINTY}": "seated deck: expanded uncertainty of the gap",
     f"{keys.SEAT_ROTATION}_{keys.UNCERTAINTY}": "seated deck: expanded uncertainty of the rotation",
 }
-"""Standard terms for the figures without a limit."""
+
+
+def words(record: RunRecord) -> Mapping[str, str]:
+    """Standard terms for the figures without a limit, by their keys."""
+    prefix = f"{keys.PIN_OFFSETS}_{keys.UNCERTAINTY}."
+    holes = [key for key in record.newest_figures if key.startswith(prefix)]
+    title = "seated deck: expanded uncertainty of the offset at hole "
+    return {**_WORDS, **{key: title + key.removeprefix(prefix) for key in holes}}
 
 
 def parts(record: RunRecord) -> tuple[Part, ...]:
@@ -76,7 +83,12 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
             tuple(_seated(record)),
             "deck against frame after release, by the stereo heads, in the axes of the frame",
         ),
-        RequirementGroup("Mating", tuple(_found(record, _MATING)), "deck frame, gravity removed"),
+        RequirementGroup(
+            "Mating",
+            tuple(_found(record, _MATING)),
+            "in the axes of the deck, gravity removed; without U, because the certificate of the "
+            "force sensor is not part of the record",
+        ),
         RequirementGroup(
             "Deck at the stand-off, before mating",
             tuple(_before_mating(record)),

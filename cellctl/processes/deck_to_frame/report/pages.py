@@ -1,6 +1,6 @@
 """The pages that an assembly adds to the report of its run."""
 
-from cellctl.processes.deck_to_frame.report.acceptance import WORDS, acceptance, parts
+from cellctl.processes.deck_to_frame.report.acceptance import acceptance, parts, words
 from cellctl.processes.deck_to_frame.report.force_section import force_section, recordings
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM, plug_gauges
 from cellctl.processes.deck_to_frame.report.hole_table import TABULATED, hole_blocks
@@ -40,7 +40,7 @@ def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
         tiles=tiles(record, curves.values()),
         acceptance=acceptance(record),
         parts=parts(record),
-        words=WORDS,
+        words=words(record),
         sections=tuple(section for section in sections if section.blocks),
         shows=frozenset({RecordPart.PASSES, RecordPart.GAUGES}),
         tabulated=TABULATED,

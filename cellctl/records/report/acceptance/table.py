@@ -75,7 +75,7 @@ def _places(expanded: float) -> int:
 
 def _rounded(value: float | None, unit: str, places: int | None) -> str:
     if places is None or value is None:
-        return quantity(value, unit)
+        return quantity(value, unit).replace("-", "−")
     return with_unit(fixed(value, places), unit)
 
 
