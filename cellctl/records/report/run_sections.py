@@ -43,10 +43,13 @@ _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.N
 _VERDICTS = {Verdict.PASS: "within", Verdict.FAIL: "beyond", None: MISSING}
 
 
-def further_figures(record: RunRecord, titles: Mapping[str, str]) -> ReportSection:
+def further_figures(
+    record: RunRecord, titles: Mapping[str, str], shown: frozenset[str]
+) -> ReportSection:
     """Figures without a limit, and what the process knows besides figures.
 
-    ``titles`` are what a process calls its figures, by their keys.
+    ``titles`` are what a process calls its figures, by their keys; ``shown`` are the keys of the
+    documents that it shows itself.
     """
     figures = tuple(
         (titles.get(entry.key, entry.label), quantity(entry.value, entry.unit))
@@ -56,7 +59,9 @@ def further_figures(record: RunRecord, titles: Mapping[str, str]) -> ReportSecti
     # Each key once, in the order in which it was recorded first; ``record.document`` merges what
     # came later.
     keys = dict.fromkeys(
-        entry.key for entry in record.documents if not entry.key.endswith(REPLAY_INPUT)
+        entry.key
+        for entry in record.documents
+        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in shown
     )
     documents = tuple(fact for key in keys for fact in facts(record.document(key)))
     lists = (FactList(figures), FactList(documents))

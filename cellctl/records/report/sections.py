@@ -138,6 +138,8 @@ class ProcessPages:
     """After the poses, in this order."""
     shows: frozenset[RecordPart] = frozenset()
     """Parts that ``sections`` show, so that they are not shown twice."""
+    documents: frozenset[str] = frozenset()
+    """Keys of the run's documents that ``sections`` show."""
     tabulated: frozenset[str] = frozenset()
     """Keys of a pose's detail that ``sections`` show."""
 

@@ -112,7 +112,7 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
             run_sections.fits(record),
             *pages.sections,
             *run_sections.unless_shown(record, pages.shows),
-            run_sections.further_figures(record, pages.words),
+            run_sections.further_figures(record, pages.words, pages.documents),
         ),
         pictures=picture_groups(sources.addresses),
         alarms=alarm_lines(record),

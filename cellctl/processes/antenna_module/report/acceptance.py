@@ -35,6 +35,12 @@ _GROUPS = (
         },
     ),
 )
+WORDS = {
+    keys.REGRIPS: "times that the module was put back and gripped again",
+    keys.PEAK: "greatest force of the contact springs along the axis",
+    keys.REFERENCE_MOVED: "greatest movement of the reference marks since the teaching",
+}
+"""Standard terms for the figures without a limit."""
 
 
 def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:

@@ -22,12 +22,12 @@ from cellctl.records.report.sections import (
 from cellctl.records.report.text import fixed
 
 _LOOP_CAPTION = (
-    "Error of every component by iteration, with two standard deviations; green: within the "
+    "Error of every component by iteration, with two standard deviations; shaded: within the "
     "threshold. Linear inside the threshold, logarithmic outside. On the right of each title the "
     "last value."
 )
 _GAUGE_CAPTION = (
-    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Green: offset below 0.2 mm."
+    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Shaded: offset below 0.2 mm."
 )
 
 
