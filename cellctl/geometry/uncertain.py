@@ -11,10 +11,6 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
 
-COVERAGE_FACTOR = 2.0
-"""An expanded uncertainty is so many standard deviations: one of 44 values lies beyond it on the
-side of the limit (JCGM 100, 6.2; JCGM 106, 8.3)."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UncertainPose:

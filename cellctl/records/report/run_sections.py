@@ -11,7 +11,8 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.figures import NO_LIMIT
-from cellctl.records.gauges import gauge_limits, judge_gauge
+from cellctl.records.gauges import GAUGE_HOLES, gauge_limits, judge_gauge
+from cellctl.records.parts import PARTS
 from cellctl.records.report.sections import (
     FactList,
     Heading,
@@ -37,6 +38,7 @@ from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
+_ON_FIRST_PAGE = frozenset({GAUGE_HOLES, PARTS})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}
@@ -61,7 +63,7 @@ def further_figures(
     keys = dict.fromkeys(
         entry.key
         for entry in record.documents
-        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in shown
+        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in _ON_FIRST_PAGE | shown
     )
     documents = tuple(fact for key in keys for fact in facts(record.document(key)))
     lists = (FactList(figures), FactList(documents))

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.geometry.pose import MM, Array
-from cellctl.geometry.uncertain import COVERAGE_FACTOR, UncertainPose
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.rigid_fit import by_pose

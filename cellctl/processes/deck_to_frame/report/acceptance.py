@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from cellctl.geometry.uncertain import COVERAGE_FACTOR
+from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.processes.deck_to_frame.record import keys
 from cellctl.records.entries import RunRecord
 from cellctl.records.parts import mate_serial

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from cellctl.geometry.uncertain import COVERAGE_FACTOR
+from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
 from cellctl.records.gauges import gauge_limits, judge_gauge
