@@ -54,7 +54,7 @@ def _rows(group: RequirementGroup, phases: Mapping[int, str]) -> Iterator[TableR
         unit = entry.unit
         # Two figures of an uncertainty mean something, and the value has as many decimals
         # (JCGM 100, 7.2.6); so has what it is compared with.
-        places = None if entry.expanded is None else _places(entry.expanded)
+        places = _places(entry.expanded)
         texts = (
             entry.title,
             _rounded(entry.value, unit, places),
@@ -67,9 +67,10 @@ def _rows(group: RequirementGroup, phases: Mapping[int, str]) -> Iterator[TableR
         yield TableRow(tuple(TableCell(text) for text in texts), mark)
 
 
-def _places(expanded: float) -> int:
-    if not expanded > 0:
-        return 0
+def _places(expanded: float | None) -> int | None:
+    """Decimals of an uncertainty with two figures; None where there is none to go by."""
+    if expanded is None or not expanded > 0:
+        return None
     return max(0, 1 - math.floor(math.log10(expanded)))
 
 

@@ -57,6 +57,19 @@ def test_a_guarded_figure_shows_the_required_and_the_accepted_limit(store: RunSt
     assert len(rows) == 2, "the figure is not shown a second time among the others"
 
 
+def test_a_value_without_any_uncertainty_keeps_its_figures(store: RunStore) -> None:
+    run = start(store)
+    store.add(
+        run,
+        figure("offset", 0.02076, "mm", limit=Limit(upper=0.2)),
+        figure("offset_uncertainty", 0.0, "mm"),
+    )
+    found = guarded(store.run(run), "offset", "offset", "offset_uncertainty")
+    assert found is not None
+    rows = rows_of(store.run(run), RequirementGroup("Seat", (found,)))
+    assert rows[1][1:5] == ("0.02076 mm", "0 mm", "≤ 0.2 mm", "≤ 0.2 mm")
+
+
 def test_figures_that_no_process_names_follow_and_a_bad_one_says_so(store: RunStore) -> None:
     run = start(store)
     store.add(
