@@ -24,8 +24,8 @@ def during(record: RunRecord, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, 
     within = [
         entry for entry in audit if begin <= entry.time and (end is None or entry.time <= end)
     ]
-    # The last start is that of this run, since nothing is started while it lasts; what was commanded
-    # before that belongs to another one.
+    # The last start is that of this run, since nothing is started while it lasts; what was
+    # commanded before that belongs to another one.
     starts = [index for index, entry in enumerate(within) if entry.action == "start"]
     return tuple(within[starts[-1] :] if starts else within)
 
