@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.cli.process_pages import pages_of
+from cellctl.cli.run_report import report
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
@@ -91,8 +92,11 @@ def export(
     with _store(data_dir) as store:
         folder = out or Path(f"run-{run}")
         pages = pages_of(store.run(run).head.process)
-        report = export_run(store, run, folder, pages=pages, single_file=single_file)
-    typer.echo(report)
+        written = export_run(store, run, folder, pages=pages, single_file=single_file)
+    typer.echo(written)
+
+
+app.command("report")(report)
 
 
 @app.command()

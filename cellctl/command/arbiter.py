@@ -166,6 +166,7 @@ class CommandArbiter:
             detail |= {
                 "recipe": command.recipe_id,
                 "serial": command.serial,
+                "mate_serial": command.mate_serial,
                 "options": int(command.options),
             }
         if command.alarm_ack_id:

@@ -41,7 +41,8 @@ def validate_parameters(command: UnitCommand) -> RejectCode:
         return RejectCode.NONE
     # Only a Start names a part. A PLC may leave anything well formed in the register otherwise.
     serial_missing = command.cntrl_cmd == Command.START and not command.serial
-    if serial_missing or not _CHARSET.fullmatch(command.serial):
+    serials = (command.serial, command.mate_serial)
+    if serial_missing or not all(_CHARSET.fullmatch(serial) for serial in serials):
         return RejectCode.SERIAL_INVALID
     if not _CHARSET.fullmatch(command.order):
         return RejectCode.ORDER_INVALID

@@ -167,3 +167,16 @@ class DiskSilent(RecordsError):
     cause = "Disk overloaded or failing, or a file system that hangs."
     remedy = "The command was not carried out: give it again. Check the disk if it happens again."
     reaction = Reaction.WARN
+
+
+class PdfNotMade(RecordsError):
+    """The report cannot be laid out as PDF on this computer."""
+
+    number = 818
+    text = "The report could not be made as PDF"
+    cause = "The libraries of the system that lay out text (Pango, HarfBuzz) are not installed."
+    remedy = (
+        "Install them: apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0. The "
+        "report as HTML needs none of them."
+    )
+    reaction = Reaction.WARN

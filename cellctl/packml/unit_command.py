@@ -49,6 +49,8 @@ class UnitCommand:
     options: Options = Options.NONE
     serial: str = ""
     """Serial number of the part."""
+    mate_serial: str = ""
+    """Serial number of the part that it is joined to; empty where nobody names it."""
     order: str = ""
     """Operator or order, as the line names it."""
     alarm_ack_id: int = 0

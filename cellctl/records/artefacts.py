@@ -6,6 +6,9 @@ from pathlib import Path
 from cellctl.atomic_files import write_durably
 from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
 
+CELL_FILE = "cell.json"
+"""Name of the artefact with the cell file that a run was made with."""
+
 
 class ArtefactFolder:
     """A folder of files by content."""

@@ -6,10 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cellctl.records.entries import Figure, Verdict
-from cellctl.records.units import without_unit, words
-
-_SIX_MM_DEG = "_mm_deg"
-_SIX = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
+from cellctl.records.units import SIX, SIX_MM_DEG, without_unit, words
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +95,9 @@ def _split(
 def _numbers(key: str, value: Any, outer_unit: str) -> Iterator[Number]:
     """Name, number and unit of each figure that a value holds; none for texts and lists."""
     name, unit = without_unit(key)
-    if key.endswith(_SIX_MM_DEG) and isinstance(value, Sequence) and len(value) == len(_SIX):
-        base = key.removesuffix(_SIX_MM_DEG)
-        for (axis, axis_unit), number in zip(_SIX, value, strict=True):
+    if key.endswith(SIX_MM_DEG) and isinstance(value, Sequence) and len(value) == len(SIX):
+        base = key.removesuffix(SIX_MM_DEG)
+        for (axis, axis_unit), number in zip(SIX, value, strict=True):
             yield f"{base}.{axis}", number, axis_unit
     # In Python a bool is an int, but a yes or no is no figure.
     elif isinstance(value, int | float) and not isinstance(value, bool):

@@ -20,6 +20,14 @@ _UNITS = {
 }
 """Longest first: `_n_m` is not `_m`."""
 
+SIX_MM_DEG = "_mm_deg"
+"""Ends the key of six numbers: components of a pose or of an error, in the order of ``SIX``."""
+SIX = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
+WRITTEN_POSE = (("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("A", "°"), ("B", "°"), ("C", "°"))
+"""A pose in its written form (docs/decisions/0001)."""
+WRITTEN_POSES = frozenset({"xyz_abc_mm_deg", "commanded_mm_deg"})
+"""Keys with a pose and not with an error."""
+
 
 def without_unit(key: str) -> tuple[str, str]:
     """A key without its unit, and the unit: ``stop_latency_ms`` is ("stop_latency", "ms")."""

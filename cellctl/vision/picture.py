@@ -17,7 +17,9 @@ _GREEN, _YELLOW, _RED, _BLACK = (60, 220, 60), (0, 220, 255), (60, 60, 255), (0,
 # OpenCV draws with fixed-point coordinates: five bits show a 32nd of a pixel. Whole pixels would
 # hide what is measured here.
 _SHIFT = 5
-_INSET_PX, _INSET_ZOOM_SPAN = 360, 1.5
+INSET_PX = 360
+"""Side of the magnified view of a hole."""
+_INSET_ZOOM_SPAN = 1.5
 _RESIDUAL_SCALE_PX_PER_MM = 2000.0
 
 
@@ -27,8 +29,9 @@ def annotate(
     side: Side,
     residuals_px: Sequence[Array] | None = None,
 ) -> Picture:
-    """Fitted ellipses, centres and names on the image, with a magnified inset of each hole.
+    """Fitted ellipses, centres and names on the image; below it each hole magnified.
 
+    Shape (height + ``INSET_PX``, width, 3): nothing lies over what was measured.
     ``residuals_px``, shape (2,) per hole, are drawn as arrows, magnified; see ``residual_arrows``.
     """
     picture = _coloured(image)
@@ -40,8 +43,8 @@ def annotate(
         _label(picture, f"{hole.name} {hole.diameter_m / MM:.2f}", corner, 1.1)
         if residuals_px is not None:
             _arrow(picture, centre, residuals_px[index])
-    _insets(picture, image, measurement, side)
-    return picture
+    strip = _insets(image, measurement, side)
+    return np.asarray(np.vstack([picture, strip]), dtype=np.uint8)
 
 
 def residual_arrows(residuals_m: Array) -> list[Array]:
@@ -59,27 +62,29 @@ def _of(hole: HoleMeasurement, side: Side) -> tuple[Ellipse, Array]:
     return hole.right_ellipse, hole.right_px
 
 
-def _insets(picture: Picture, image: Image, measurement: PairMeasurement, side: Side) -> None:
-    """Magnified holes along the lower edge, with the ellipse one pixel thin."""
+def _insets(image: Image, measurement: PairMeasurement, side: Side) -> Picture:
+    """A strip of magnified holes, with the ellipse one pixel thin; as many as the width takes."""
     height, width = image.shape
+    strip: Picture = np.zeros((INSET_PX, width, 3), np.uint8)
     for index, hole in enumerate(measurement.holes):
-        left = index * (_INSET_PX + 8)
-        if left + _INSET_PX > width or height < _INSET_PX:
-            return
+        left = index * (INSET_PX + 8)
+        if left + INSET_PX > width:
+            break
         ellipse, centre = _of(hole, side)
         half = int(np.ceil(ellipse.semi_axes_px[0] * _INSET_ZOOM_SPAN)) + 2
         x0, y0 = (int(value) - half for value in np.rint(centre))
         if x0 < 0 or y0 < 0 or x0 + 2 * half + 1 > width or y0 + 2 * half + 1 > height:
             continue
         cut = image[y0 : y0 + 2 * half + 1, x0 : x0 + 2 * half + 1]
-        zoom = _INSET_PX / cut.shape[0]
-        inset = _coloured(cv2.resize(cut, (_INSET_PX, _INSET_PX), interpolation=cv2.INTER_NEAREST))
+        zoom = INSET_PX / cut.shape[0]
+        inset = _coloured(cv2.resize(cut, (INSET_PX, INSET_PX), interpolation=cv2.INTER_NEAREST))
         # Nearest-neighbour zoom puts the middle of pixel (0, 0) at (zoom - 1) / 2.
         offset = np.array([x0, y0]) - (zoom - 1.0) / (2.0 * zoom)
         _draw_ellipse(inset, ellipse, zoom, offset, 1)
         _cross(inset, (centre - offset) * zoom, 8)
         _label(inset, hole.name, np.array([8.0, 26.0]), 0.8)
-        picture[height - _INSET_PX :, left : left + _INSET_PX] = inset
+        strip[:, left : left + INSET_PX] = inset
+    return strip
 
 
 def _draw_ellipse(

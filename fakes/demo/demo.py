@@ -78,6 +78,8 @@ class Demo(ABC):
     recipe: ClassVar[int] = 1
     serial: ClassVar[str] = "SAT-{seed:04d}"
     """Serial number of the part."""
+    mate_serial: ClassVar[str] = ""
+    """Of the part that it is joined to, in the same form."""
     procedures: ClassVar[Sequence[Procedure]] = ()
     """All calibrations of the cell in their order, for ``--calibrate``."""
     steps: ClassVar[Mapping[int, str]] = {}

@@ -152,7 +152,9 @@ class Session:
     def _produce(self) -> int:
         self._demo.prepare(self._control)
         serial = self._demo.serial.format(seed=self._seed)
-        result = self._line("--recipe", str(self._demo.recipe), "--serial", serial)
+        mate = self._demo.mate_serial.format(seed=self._seed)
+        parts = ("--serial", serial, "--mate-serial", mate)
+        result = self._line("--recipe", str(self._demo.recipe), *parts)
         faults = self._faults()
         truth = self._control.request("truth")["truth"]
         self._console.print("writing record and report …")

@@ -9,6 +9,7 @@ import cv2
 import pytest
 
 from cellctl.records.store import RunStore
+from cellctl.vision.picture import INSET_PX
 from tests.cell.rigs.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(300)
@@ -60,7 +61,7 @@ def _record_is_complete(out: Path, result: dict[str, Any]) -> None:
     for picture in report.glob("*.jpg"):
         image = cv2.imread(str(picture))
         assert image is not None
-        assert image.shape[:2] == (2048, 2448), picture.name
+        assert image.shape[:2] == (2048 + INSET_PX, 2448), picture.name
         assert f'src="{picture.name}"' in page, f"{picture.name} is not in the report"
     captions = ("by iteration", "over time", "over travel", "plug gauge")
     drawings = re.findall(r"<figure>\s*<svg.*?</figure>", page, re.DOTALL)

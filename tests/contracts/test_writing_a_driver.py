@@ -10,7 +10,14 @@ from pathlib import Path
 
 import pytest
 
-from tests.guides.package import ROOT, install, run, write_files
+from tests.guides.package import (
+    ROOT,
+    contract_of,
+    install,
+    registry_beside,
+    style_of,
+    write_files,
+)
 
 GUIDE = ROOT / "docs" / "writing-a-driver.md"
 FOLDER = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
@@ -38,9 +45,7 @@ def test_the_folder_is_complete(written: Path) -> None:
 
 
 def test_the_contract_holds(written: Path, installed: Path) -> None:
-    options = ["-c", str(written / "pyproject.toml"), "-p", "no:cacheprovider", "-p", "no:xdist"]
-    tests = str(written / "contract")
-    done = run("pytest", *options, "-q", "-W", "error", tests, path=(ROOT, installed))
+    done = contract_of(written, installed)
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout
 
@@ -60,20 +65,14 @@ def test_the_core_finds_the_driver(installed: Path) -> None:
 
 
 def test_our_own_tests_pass_beside_it(installed: Path) -> None:
-    registry = "tests/contracts/test_registry.py"
-    options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-v"]
-    done = run("pytest", *options, registry, path=(installed,))
+    done = registry_beside(installed)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "test_implements_its_interface[cellctl.target_tracker:acme] PASSED" in done.stdout
 
 
 def test_the_code_has_the_style_of_the_house(written: Path) -> None:
-    files = [str(path) for path in written.glob("**/*.py")]
-    elsewhere = "D1,INP,I001"  # tests need no docstrings; order of imports depends on the tree
-    done = run("ruff", "check", "--config", "pyproject.toml", "--ignore", elsewhere, *files)
-    assert done.returncode == 0, done.stdout + done.stderr
-    done = run("ruff", "format", "--check", "--config", "pyproject.toml", *files)
-    assert done.returncode == 0, done.stdout + done.stderr
+    for done in style_of(written):
+        assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_every_interface_is_listed() -> None:

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -26,6 +27,26 @@ def install(folder: Path, site: Path) -> None:
     offline = ["--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
     done = run("pip", "install", "--quiet", *offline, "--target", str(site), str(folder))
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def contract_of(folder: Path, site: Path) -> "subprocess.CompletedProcess[str]":
+    """The contract that a guide puts its package to, as ``make test`` would run it."""
+    options = ["-c", str(folder / "pyproject.toml"), "-p", "no:cacheprovider", "-p", "no:xdist"]
+    return run("pytest", *options, "-q", "-W", "error", str(folder / "contract"), path=(ROOT, site))
+
+
+def registry_beside(site: Path) -> "subprocess.CompletedProcess[str]":
+    """What this repository asks of every installed driver, with the package beside it."""
+    options = ["-p", "no:cacheprovider", "-p", "no:xdist", "-v"]
+    return run("pytest", *options, "tests/contracts/test_registry.py", path=(site,))
+
+
+def style_of(folder: Path) -> "Iterator[subprocess.CompletedProcess[str]]":
+    """Linter and formatter over the files of a guide."""
+    files = [str(path) for path in folder.glob("**/*.py")]
+    elsewhere = "D1,INP,I001"  # tests need no docstrings; order of imports depends on the tree
+    yield run("ruff", "check", "--config", "pyproject.toml", "--ignore", elsewhere, *files)
+    yield run("ruff", "format", "--check", "--config", "pyproject.toml", *files)
 
 
 def run(*arguments: str, path: tuple[Path, ...] = ()) -> "subprocess.CompletedProcess[str]":

@@ -49,6 +49,8 @@ class StartCommand(Message):
     serial: Serial
     recipe: Annotated[str, Field(max_length=64)] = ""
     """Name or number; empty for the only recipe of the cell."""
+    mate_serial: Annotated[str, Field(max_length=24)] = ""
+    """Of the part that it is joined to."""
     order: Annotated[str, Field(max_length=16)] = ""
     dry_run: bool = False
     single_step: bool = False

@@ -121,6 +121,7 @@ class Terminal:
                     recipe_id=self._recipe_id(request.recipe),
                     options=_options(request),
                     serial=request.serial,
+                    mate_serial=request.mate_serial,
                     order=request.order,
                 )
             case ProcedureCommand():

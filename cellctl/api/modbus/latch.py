@@ -1,10 +1,10 @@
 """The handshake with the line PLC: when its registers are a command, and what becomes of it.
 
-Registers 0 to 26 are read as a command at the moment when ``cmd_seq`` changes. The first number
-after a start of the cell is suspect, because it may have been in the PLC for days. Only 1 is
-accepted, with which a PLC says that it begins anew; and not even 1 when that was the last number
-before the start. Commands that can only halt the unit are accepted with any first number: an old
-Stop does no harm, and a new one that is ignored leaves a robot moving.
+Registers 0 to 26 and 28 to 39 are read as a command at the moment when ``cmd_seq`` changes. The
+first number after a start of the cell is suspect, because it may have been in the PLC for days.
+Only 1 is accepted, with which a PLC says that it begins anew; and not even 1 when that was the last
+number before the start. Commands that can only halt the unit are accepted with any first number: an
+old Stop does no harm, and a new one that is ignored leaves a robot moving.
 """
 
 from collections.abc import Sequence
@@ -102,6 +102,7 @@ def _parse(holding: Sequence[int], order: WordOrder) -> UnitCommand:
         recipe_id=_number(holding, "recipe_id"),
         options=Options(_number(holding, "options")),
         serial=str(decode(item("serial"), holding, order)),
+        mate_serial=str(decode(item("mate_serial"), holding, order)),
         order=str(decode(item("order"), holding, order)),
         alarm_ack_id=_number(holding, "alarm_ack_id"),
     )

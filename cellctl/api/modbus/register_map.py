@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 4
+MAP_VERSION = 5
 
 
 class Kind(StrEnum):
@@ -57,7 +57,8 @@ HOLDING: tuple[Item, ...] = (
     _text(6, "serial", 24, "serial number of the part, A-Z 0-9 . _ -"),
     _text(18, "order", 16, "operator or order, A-Z 0-9 . _ -"),
     Item(26, "alarm_ack_id", "number of the alarm to acknowledge, 0 for none"),
-    Item(27, "cmd_seq", "a change commits registers 0-26; 0 means no command"),
+    Item(27, "cmd_seq", "a change commits registers 0-26 and 28-39; 0 means no command"),
+    _text(28, "mate_serial", 24, "serial number of the part it is joined to, or empty; as serial"),
     Item(40, "plc_heartbeat", "counter, in a request of its own"),
 )
 

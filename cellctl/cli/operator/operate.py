@@ -70,6 +70,9 @@ def start(
     recipe: Annotated[
         str, typer.Option(help="Name or number; default: the only recipe of the cell.")
     ] = "",
+    mate_serial: Annotated[
+        str, typer.Option(help="Serial number of the part it is joined to, such as the frame.")
+    ] = "",
     order: Annotated[str, typer.Option(help="Operator or order for the record.")] = "",
     *,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="End before the mating.")] = False,
@@ -83,6 +86,7 @@ def start(
     request = made(
         StartCommand,
         serial=serial,
+        mate_serial=mate_serial,
         recipe=recipe,
         order=order,
         dry_run=dry_run,

@@ -71,16 +71,17 @@ export function longPress(button, act) {
 function startDialog() {
   const recipes = cell.description?.recipes || [];
   const serial = h("input", { id: "serial", maxlength: 24, pattern: "[A-Z0-9._\\-]+", autocomplete: "off", required: true });
+  const mate = h("input", { id: "mate-serial", maxlength: 24, pattern: "[A-Z0-9._\\-]*", autocomplete: "off" });
   const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
   const dry = h("input", { type: "checkbox", id: "dry" });
   const dialog = h("dialog", { "aria-label": t("cmd_start") });
   const go = longPress(h("button", { type: "button" }, t("start_hold")), () => {
-    if (!serial.reportValidity()) return;
+    if (!serial.reportValidity() || !mate.reportValidity()) return;
     dialog.close();
-    give("start", { request: "start", serial: serial.value, recipe: recipe.value, dry_run: dry.checked });
+    give("start", { request: "start", serial: serial.value, mate_serial: mate.value, recipe: recipe.value, dry_run: dry.checked });
   });
   dialog.append(h("h2", {}, t("cmd_start")), h("form", { onsubmit: (event) => event.preventDefault() },
-    h("label", {}, t("serial"), serial), h("label", {}, t("recipe"), recipe), h("label", {}, t("dry_run"), dry)),
+    h("label", {}, t("serial"), serial), h("label", {}, t("mate_serial"), mate), h("label", {}, t("recipe"), recipe), h("label", {}, t("dry_run"), dry)),
   h("p", {}, t("does_start")), h("div", { class: "row" }, go,
     h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))));
   dialog.addEventListener("close", () => dialog.remove());

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from datetime import MAXYEAR
 from typing import Any
 
 import numpy as np
@@ -61,13 +62,29 @@ def calibration_lines(
                 serial_number=(found.serial_number if found else "") or MISSING,
                 id=identity,
                 made=when(found.made) if found else MISSING,
-                valid_until=when(found.valid_until) if found else MISSING,
+                valid_until=_valid_until(found) if found else MISSING,
                 software=found.software if found else MISSING,
-                verdict=str(found.record.get("verdict", MISSING)) if found else "not in this store",
+                verdict=_verdict(found) if found else "not in this store",
                 checks=_checks(found.record) if found else MISSING,
             )
         )
     return lines
+
+
+def _valid_until(found: Calibration) -> str:
+    if found.invalidated is not None:
+        return f"invalidated {when(found.invalidated)}: {found.invalidated_reason}"
+    # The calibrations that are shipped for the fake cell never expire.
+    return "no expiry" if found.valid_until.year == MAXYEAR else when(found.valid_until)
+
+
+def _verdict(found: Calibration) -> str:
+    """In its own words; of a payload identification, which has none, whether it was accepted."""
+    verdict = found.record.get("verdict")
+    if verdict is not None:
+        return str(verdict)
+    accepted = found.record.get("accepted")
+    return MISSING if accepted is None else ("pass" if accepted else "fail")
 
 
 def pose_lines(records: Sequence[Calibration]) -> list[PoseLine]:

@@ -9,11 +9,13 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.records import RecordNotWritten, ValueRefused
+from cellctl.records.artefacts import CELL_FILE
 from cellctl.records.entries import RunRecord
 from cellctl.records.gauges import part_verdict
+from cellctl.records.report.pdf import to_pdf
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages
-from cellctl.records.report.view import build_view
+from cellctl.records.report.view import ReportSources, ReportView, build_view
 from cellctl.records.store import RunStore
 
 REPORT, RECORD = "report.html", "run.json"
@@ -36,24 +38,60 @@ def export_run(
     record = store.run(number)
     addresses: dict[str, str] = {}
     for artefact in record.artefacts:
-        data = store.artefacts.get(artefact.sha256)
         # Names come from the record of a process: one with ``..`` would be written outside of the
         # folder.
         name = _safe(artefact.name)
         if not single_file:
-            _write(folder / name, data)
+            _write(folder / name, store.artefacts.get(artefact.sha256))
         if artefact.media_type.startswith("image/"):
-            # So that a report can be sent as one file.
-            inline = f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
-            addresses[artefact.name] = inline if single_file else name.as_posix()
-    calibrations = {stored.id: stored for stored in store.calibrations()}
-    brought = pages(record, lambda artefact: store.artefacts.get(artefact.sha256))
-    view = build_view(record, calibrations, brought, addresses, store.ledger_head())
-    page = render(view)
-    _write(folder / REPORT, page.encode())
+            addresses[artefact.name] = name.as_posix()
+    if single_file:
+        addresses = _inside(store, record)
+    view = _view(store, record, pages, addresses)
+    _write(folder / REPORT, render(view).encode())
     plain = {**document(record), "ledger_head": str(view.ledger_head)}
     _write(folder / RECORD, (json.dumps(plain, indent=1) + "\n").encode())
     return folder / REPORT
+
+
+def write_report(
+    store: RunStore, number: int, path: Path, *, pages: ReportBuilder = no_pages, pdf: bool = False
+) -> None:
+    """Write the report of a run as one file, HTML or PDF, with its pictures inside.
+
+    Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten`` and ``PdfNotMade``.
+    """
+    record = store.run(number)
+    page = render(_view(store, record, pages, _inside(store, record)))
+    _write(path, to_pdf(page) if pdf else page.encode())
+
+
+def _inside(store: RunStore, record: RunRecord) -> dict[str, str]:
+    """Addresses of the pictures that hold their bytes, so that a report can be sent as one file."""
+    return {
+        artefact.name: f"data:{artefact.media_type};base64,{base64.b64encode(data).decode()}"
+        for artefact in record.artefacts
+        if artefact.media_type.startswith("image/")
+        for data in (store.artefacts.get(artefact.sha256),)
+    }
+
+
+def _view(
+    store: RunStore, record: RunRecord, pages: ReportBuilder, addresses: Mapping[str, str]
+) -> ReportView:
+    brought = pages(record, lambda artefact: store.artefacts.get(artefact.sha256))
+    return build_view(record, brought, _sources(store, record, addresses))
+
+
+def _sources(store: RunStore, record: RunRecord, addresses: Mapping[str, str]) -> ReportSources:
+    cells = [artefact for artefact in record.artefacts if artefact.name == CELL_FILE]
+    return ReportSources(
+        calibrations={stored.id: stored for stored in store.calibrations()},
+        audit=store.audit_log(),
+        ledger_head=store.ledger_head(),
+        cell=json.loads(store.artefacts.get(cells[-1].sha256)) if cells else {},
+        addresses=addresses,
+    )
 
 
 def document(record: RunRecord) -> Mapping[str, Any]:

@@ -6,7 +6,8 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from cellctl.records.report import text
-from cellctl.records.report.sections import Drawing, FactList, Heading, ReportBlock
+from cellctl.records.report.acceptance.identification import SIGNATURES
+from cellctl.records.report.sections import Drawing, FactList, Heading, Note, ReportBlock
 from cellctl.records.report.view import ReportView
 
 
@@ -33,6 +34,7 @@ def render(view: ReportView) -> str:
         run=view.record.head,
         record=view.record,
         css=Markup(css),  # a file of this package
+        signatures=SIGNATURES,
         duration=text.duration(view.record.head.started, view.record.head.ended),
     )
 
@@ -46,5 +48,7 @@ def _block_kind(block: ReportBlock) -> str:
             return "drawing"
         case FactList():
             return "facts"
+        case Note():
+            return "note"
         case _:
             return "table"

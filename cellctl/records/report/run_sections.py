@@ -1,21 +1,22 @@
 """Sections that any run has, whatever its process."""
 
 from collections.abc import Mapping
+from typing import Any
 
 from cellctl.records.entries import (
-    Figure,
     Gauge,
     LoopPass,
-    Phase,
     RecordedPose,
     RunRecord,
     Verdict,
 )
 from cellctl.records.figures import NO_LIMIT
-from cellctl.records.gauges import gauge_limits, judge_gauge
+from cellctl.records.gauges import GAUGE_HOLES, gauge_limits, judge_gauge
+from cellctl.records.parts import PARTS
 from cellctl.records.report.sections import (
     FactList,
     Heading,
+    Note,
     RecordPart,
     ReportSection,
     ReportTable,
@@ -26,10 +27,10 @@ from cellctl.records.report.sections import (
 from cellctl.records.report.text import (
     MISSING,
     decimals,
-    duration,
     facts,
     fixed,
     number,
+    plain,
     quantity,
     when,
 )
@@ -37,43 +38,49 @@ from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
+_ON_FIRST_PAGE = frozenset({GAUGE_HOLES, PARTS})
+FIT = "fit"
+"""Entry of a pose's detail, with what ``_fit_row`` shows."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}
 _VERDICTS = {Verdict.PASS: "within", Verdict.FAIL: "beyond", None: MISSING}
 
 
-def judged_figures(record: RunRecord) -> ReportSection:
-    """Figures with a limit: what was required, what was found."""
-    labels = _phase_labels(record)
-    judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
-    columns = ("figure", "value", "at least", "at most", "verdict", "phase")
-    rows = tuple(_figure_row(entry, labels) for entry in judged)
-    return ReportSection(
-        "Figures and limits", (ReportTable(columns, rows, numbers=False),) if rows else ()
-    )
+def further_figures(
+    record: RunRecord, titles: Mapping[str, str], shown: frozenset[str]
+) -> ReportSection:
+    """Figures without a limit, and what the process knows besides figures.
 
-
-def further_figures(record: RunRecord) -> ReportSection:
-    """Figures without a limit, and what the process knows besides figures."""
+    ``titles`` are what a process calls its figures, by their keys; ``shown`` are the keys of the
+    documents that it shows itself.
+    """
     figures = tuple(
-        (entry.label, quantity(entry.value, entry.unit))
+        (titles.get(entry.key, entry.label), quantity(entry.value, entry.unit))
         for entry in record.newest_figures.values()
         if entry.verdict is None
     )
     # Each key once, in the order in which it was recorded first; ``record.document`` merges what
     # came later.
     keys = dict.fromkeys(
-        entry.key for entry in record.documents if not entry.key.endswith(REPLAY_INPUT)
+        entry.key
+        for entry in record.documents
+        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in _ON_FIRST_PAGE | shown
     )
     documents = tuple(fact for key in keys for fact in facts(record.document(key)))
     lists = (FactList(figures), FactList(documents))
     return ReportSection("Further figures", tuple(entry for entry in lists if entry.facts))
 
 
-def phases(record: RunRecord) -> ReportSection:
-    """When which phase began and how long it took."""
-    rows = tuple(_phase_row(entry) for entry in record.phases)
-    table = ReportTable(("phase", "number", "began", "duration"), rows, numbers=False)
-    return ReportSection("Phases", (table,) if rows else ())
+def fits(record: RunRecord) -> ReportSection:
+    """Whether the stated uncertainties explain the residuals of each fit (chi-square test)."""
+    found = ((entry, entry.detail.get(FIT)) for entry in record.poses)
+    rows = tuple(_fit_row(entry, fit) for entry, fit in found if fit)
+    columns = ("fit of", "χ²", "degrees of freedom", "limit of χ²", "verdict", "σ multiplied by")
+    note = Note(
+        "Test of the stated uncertainties, not of the part: where it is not passed, the standard "
+        "deviations of the pose are multiplied, and its expanded uncertainty grows with them."
+    )
+    table = ReportTable(columns, rows, numbers=False)
+    return ReportSection("Fit statistics", (table, note) if rows else ())
 
 
 def poses(record: RunRecord, tabulated: frozenset[str]) -> ReportSection:
@@ -126,23 +133,19 @@ def unless_shown(record: RunRecord, shown: frozenset[RecordPart]) -> tuple[Repor
     return tuple(make(record) for part, make in sections.items() if part not in shown)
 
 
-def _figure_row(entry: Figure, labels: Mapping[int, str]) -> TableRow:
+def _fit_row(entry: RecordedPose, fit: Mapping[str, Any]) -> TableRow:
+    chi2, limit = fit.get("chi2"), fit.get("chi2_limit")
     texts = (
-        entry.label,
-        *(quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper)),
-        _VERDICTS[entry.verdict],
-        labels.get(entry.phase or 0, MISSING),
+        words(entry.key),
+        quantity(chi2, ""),
+        plain(fit.get("freedom")),
+        quantity(limit, ""),
+        str(fit.get("verdict", MISSING)),
+        quantity(fit.get("sigma_factor"), ""),
     )
-    return TableRow(tuple(TableCell(text) for text in texts), _MARKS[entry.verdict])
-
-
-def _phase_labels(record: RunRecord) -> Mapping[int, str]:
-    return {phase.id: phase.label for phase in record.phases}
-
-
-def _phase_row(entry: Phase) -> TableRow:
-    texts = (entry.label, str(entry.number), when(entry.began), duration(entry.began, entry.ended))
-    return TableRow(tuple(TableCell(text) for text in texts))
+    explained = chi2 is not None and limit is not None and chi2 <= limit
+    mark = RowMark.GOOD if explained else RowMark.NONE
+    return TableRow(tuple(TableCell(text) for text in texts), mark)
 
 
 def _pose_row(entry: RecordedPose, tabulated: frozenset[str]) -> TableRow:
@@ -151,7 +154,7 @@ def _pose_row(entry: RecordedPose, tabulated: frozenset[str]) -> TableRow:
     rest = {
         key: value
         for key, value in entry.detail.items()
-        if key not in tabulated and value not in ((), [], {})
+        if key not in tabulated | {FIT} and value not in ((), [], {})
     }
     return TableRow(
         cells=(

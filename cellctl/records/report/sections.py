@@ -4,11 +4,12 @@ A process knows what its run means, this package knows how a report looks. A ``R
 process returns ``ProcessPages``; it never writes HTML.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from enum import Enum
 
 from cellctl.records.entries import Artefact, RunRecord
+from cellctl.records.report.acceptance.requirement import RequirementGroup
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,8 @@ class RowMark(Enum):
     BAD = "bad"
     LIMIT = "threshold"
     """The limits of the columns above it."""
+    GROUP = "group"
+    """The heading of the rows below it: one cell over the whole width."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +87,14 @@ class Heading:
     """``small`` is something to worry about."""
 
 
-ReportBlock = Heading | ReportTable | Drawing | FactList
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A paragraph in small print."""
+
+    text: str
+
+
+ReportBlock = Heading | ReportTable | Drawing | FactList | Note
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +103,15 @@ class ReportSection:
 
     title: str
     blocks: tuple[ReportBlock, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One of the parts that a run is about."""
+
+    role: str
+    serial: str
+    """Empty where nobody has named it."""
 
 
 class RecordPart(Enum):
@@ -107,11 +126,20 @@ class ProcessPages:
     """What a process adds to the report of its run."""
 
     tiles: tuple[Tile, ...] = ()
-    """Headline figures, in place of the figures with limits."""
+    """Headline figures, in place of the first figures with limits."""
+    acceptance: tuple[RequirementGroup, ...] = ()
+    """Requirements of the acceptance table, those that decide about the part first. Figures with a
+    limit that are not among them follow by themselves."""
+    parts: tuple[Part, ...] = ()
+    """The parts of the run with their serial numbers; by default the one that the run names."""
+    words: Mapping[str, str] = field(default_factory=dict)
+    """What the figures without a limit are called in standard terms, by their keys."""
     sections: tuple[ReportSection, ...] = ()
     """After the poses, in this order."""
     shows: frozenset[RecordPart] = frozenset()
     """Parts that ``sections`` show, so that they are not shown twice."""
+    documents: frozenset[str] = frozenset()
+    """Keys of the run's documents that ``sections`` show."""
     tabulated: frozenset[str] = frozenset()
     """Keys of a pose's detail that ``sections`` show."""
 

@@ -1,25 +1,56 @@
 """Writes numbers and keys of the record as words for people."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from cellctl.records.units import label
+from cellctl.records.units import SIX, SIX_MM_DEG, WRITTEN_POSE, WRITTEN_POSES, label, words
 
 _DECIMALS = {"mm": 4, "°": 5}
 """Of errors and their deviations: 0.1 µm, and what that is at an arm's length."""
 MISSING = "–"
+_NESTED = (Mapping, list, tuple)
 
 
 def facts(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, str]]:
-    """Label and value of every entry, nested ones with their path."""
+    """Label and value of every entry, nested ones with their path, those of lists with a number.
+
+    Matrices, and lists of documents that hold further ones, are left out: they are for programs,
+    which read the record.
+    """
     for key, value in document.items():
+        name, unit = label(key)
         if isinstance(value, Mapping):
-            yield from facts(value, f"{prefix}{label(key)[0]}: ")
-        else:
-            name, unit = label(key)
+            yield from facts(value, f"{prefix}{name}: ")
+        elif not isinstance(value, list | tuple):
             yield prefix + name, with_unit(plain(value), unit)
+        elif all(isinstance(one, Mapping) and not _deep(one) for one in value) and value:
+            for index, one in enumerate(value, start=1):
+                yield from facts(one, f"{prefix}{name} {index}: ")
+        elif any(isinstance(one, _NESTED) for one in value):
+            continue
+        elif key.endswith(SIX_MM_DEG) and len(value) == len(SIX):
+            yield prefix + words(key.removesuffix(SIX_MM_DEG)), _six(key, value)
+        else:
+            yield prefix + name, with_unit(plain(value), unit)
+
+
+def _deep(document: Mapping[str, Any]) -> bool:
+    """Whether a document holds more than numbers, texts and plain lists of them."""
+    lists = [value for value in document.values() if isinstance(value, list | tuple)]
+    return any(isinstance(value, Mapping) for value in document.values()) or any(
+        isinstance(one, _NESTED) for value in lists for one in value
+    )
+
+
+def _six(key: str, values: Sequence[float | None]) -> str:
+    """Six components of a pose or of an error, each with its axis and unit."""
+    names = WRITTEN_POSE if key in WRITTEN_POSES else SIX
+    pairs = zip(names, values, strict=True)
+    return ", ".join(
+        f"{axis} {with_unit(fixed(value, decimals(unit)), unit)}" for (axis, unit), value in pairs
+    )
 
 
 def with_unit(text: str, unit: str) -> str:

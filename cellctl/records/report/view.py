@@ -1,11 +1,28 @@
 """What the report shows, worked out from the record; the template only places it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from cellctl.records.entries import Calibration, Figure, RunRecord, RunResult, Verdict
+from cellctl.records.entries import (
+    AuditEntry,
+    Calibration,
+    Figure,
+    RunRecord,
+    RunResult,
+    Verdict,
+)
 from cellctl.records.gauges import part_verdict
 from cellctl.records.report import run_sections
+from cellctl.records.report.acceptance.faults import (
+    AlarmLine,
+    FaultBox,
+    alarm_lines,
+    fault_box,
+)
+from cellctl.records.report.acceptance.identification import devices, identification
+from cellctl.records.report.acceptance.table import acceptance
+from cellctl.records.report.acceptance.timeline import during, timeline
 from cellctl.records.report.calibration_view import (
     CalibrationLine,
     HeadLine,
@@ -31,54 +48,75 @@ _VERDICTS = {
 
 
 @dataclass(frozen=True, slots=True)
+class ReportSources:
+    """What a report needs besides the record of its run."""
+
+    calibrations: Mapping[str, Calibration]
+    """Of the store, by identity."""
+    audit: Sequence[AuditEntry]
+    """The audit log of the store, oldest first."""
+    ledger_head: LedgerHead
+    """Of the store when the report is made."""
+    cell: Mapping[str, Any]
+    """The cell file that the run was made with; empty where the run has none."""
+    addresses: Mapping[str, str]
+    """Of the pictures, by the names of their files."""
+
+
+@dataclass(frozen=True, slots=True)
 class ReportView:
     """Everything that the template needs."""
 
     record: RunRecord
     verdict: str
     verdict_class: str
+    fault: FaultBox | None
     tiles: tuple[Tile, ...]
-    before_calibration: tuple[ReportSection, ...]
+    before_signatures: tuple[ReportSection, ...]
+    """What has to fit on the first page, with the signatures."""
+    after_signatures: tuple[ReportSection, ...]
     calibrations: tuple[CalibrationLine, ...]
     heads: tuple[HeadLine, ...]
     poses: tuple[PoseLine, ...]
     after_calibration: tuple[ReportSection, ...]
     pictures: tuple[PictureGroup, ...]
+    alarms: tuple[AlarmLine, ...]
     ledger_head: LedgerHead
     """Of the store when the report was made."""
 
 
-def build_view(
-    record: RunRecord,
-    calibrations: Mapping[str, Calibration],
-    pages: ProcessPages,
-    addresses: Mapping[str, str],
-    ledger_head: LedgerHead,
-) -> ReportView:
-    """Calibrations by identity, what the process brings, and addresses of pictures by name."""
+def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -> ReportView:
+    """What the process brings and what any run has, in the order of the report."""
     verdict, verdict_class = _verdict(record)
+    stored, audit = sources.calibrations, during(record, sources.audit)
     # A calibration that the run names but that this store does not hold is listed all the same, in
     # ``calibration_lines``.
-    used = [calibrations[i] for i in record.head.calibration_ids.values() if i in calibrations]
+    used = [stored[i] for i in record.head.calibration_ids.values() if i in stored]
     return ReportView(
         record=record,
         verdict=verdict,
         verdict_class=verdict_class,
+        fault=fault_box(record, audit),
         tiles=pages.tiles or _tiles(record),
-        before_calibration=_filled(
-            run_sections.judged_figures(record), run_sections.phases(record)
+        before_signatures=_filled(
+            identification(record.head, pages.parts, audit),
+            acceptance(record, pages.acceptance),
         ),
-        calibrations=tuple(calibration_lines(record.head.calibration_ids, calibrations)),
+        after_signatures=_filled(timeline(record, audit)),
+        calibrations=tuple(calibration_lines(record.head.calibration_ids, stored)),
         heads=tuple(head_lines(used)),
         poses=tuple(pose_lines(used)),
         after_calibration=_filled(
+            devices(sources.cell),
             run_sections.poses(record, pages.tabulated),
+            run_sections.fits(record),
             *pages.sections,
             *run_sections.unless_shown(record, pages.shows),
-            run_sections.further_figures(record),
+            run_sections.further_figures(record, pages.words, pages.documents),
         ),
-        pictures=picture_groups(addresses),
-        ledger_head=ledger_head,
+        pictures=picture_groups(sources.addresses),
+        alarms=alarm_lines(record),
+        ledger_head=sources.ledger_head,
     )
 
 

@@ -15,8 +15,9 @@ from cellctl.packml.unit_command import UnitCommand
 from cellctl.records import motion_file
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.disk_space import require_space
-from cellctl.records.entries import RunResult
+from cellctl.records.entries import Document, RunResult
 from cellctl.records.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
+from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
 from cellctl.runtime.jobs.provenance import cell_artefact, provenance
@@ -130,6 +131,9 @@ class JobRecord:
         )
         for artefact in made_with.artefacts():
             await self.store.do(RunStore.add_artefact, self.number, *artefact)
+        if self._command.mate_serial:
+            named = Document(PARTS, {MATE_SERIAL: self._command.mate_serial})
+            await self.store.do(RunStore.add, self.number, named)
 
     async def _write_procedure(self, number: int, label: str) -> None:
         cell_file = cell_artefact(self._cell.config)

@@ -30,6 +30,7 @@ class AntennaModuleDemo(Demo):
     cell: ClassVar[Path] = CONFIG / "antenna.toml"
     scenario: ClassVar[Path] = CONFIG / "antenna.scenario.toml"
     serial: ClassVar[str] = "MOD-{seed:04d}"
+    mate_serial: ClassVar[str] = "BOARD-{seed:04d}"
     procedures: ClassVar[Sequence[Procedure]] = PROCEDURES
     steps: ClassVar[Mapping[int, str]] = {
         10: "check reference",

@@ -41,6 +41,7 @@ class DeckToFrameDemo(Demo):
     title: ClassVar[str] = "one deck on its frame"
     cell: ClassVar[Path] = CONFIG / "deck.toml"
     scenario: ClassVar[Path] = CONFIG / "deck.scenario.toml"
+    mate_serial: ClassVar[str] = "FRAME-{seed:04d}"
     procedures: ClassVar[Sequence[Procedure]] = PROCEDURES
 
     def measure(self, evidence: Evidence) -> Sequence[Sequence[str]]:

@@ -66,10 +66,14 @@ class Line:
         self._link = link
         self._seq = 0
 
-    async def assemble(self, *, mode: int, recipe: int, serial: str, timeout_s: float) -> Report:
+    async def assemble(
+        self, *, mode: int, recipe: int, serial: str, mate_serial: str = "", timeout_s: float
+    ) -> Report:
         """Run one job; the report in which it has ended. Held counts as its end: Stop follows."""
         await self.to_idle()
-        seq, taken = await self.command(START, mode=mode, recipe=recipe, serial=serial)
+        seq, taken = await self.command(
+            START, mode=mode, recipe=recipe, serial=serial, mate_serial=mate_serial
+        )
         if taken.result == "rejected":
             return taken
         try:
@@ -105,7 +109,13 @@ class Line:
                 raise CellRefused(ended, f"alarm {ended.first_out_alarm}")
 
     async def command(
-        self, command: int, *, mode: int = 0, recipe: int = 0, serial: str = ""
+        self,
+        command: int,
+        *,
+        mode: int = 0,
+        recipe: int = 0,
+        serial: str = "",
+        mate_serial: str = "",
     ) -> tuple[int, Report]:
         """Commit a command and wait until it is acknowledged; its number and that report.
 
@@ -116,7 +126,9 @@ class Line:
             self._seq = seq = max(before.ack_seq, self._seq) % 0xFFFF + 1
             if before.ack_seq == 0:
                 self._seq = seq = 1
-            block = command_block(seq, command, mode=mode, recipe=recipe, serial=serial)
+            block = command_block(
+                seq, command, mode=mode, recipe=recipe, serial=serial, mate_serial=mate_serial
+            )
             await self._link.write(0, block)
             report = await self._link.until(lambda r, seq=seq: r.ack_seq == seq, STEP_TIMEOUT_S)  # type: ignore[misc]
             if not (report.result == "ignored" and report.done_seq == seq):
@@ -134,6 +146,9 @@ class CellRefused(RuntimeError):
 @app.command()
 def run(  # noqa: PLR0917  # options of the command line
     serial: Annotated[str, typer.Option(help="Serial number of the part.")] = "SAT-0001",
+    mate_serial: Annotated[
+        str, typer.Option(help="Serial number of the part it is joined to.")
+    ] = "",
     mode: Annotated[str, typer.Option(help="production or maintenance.")] = "production",
     recipe: Annotated[int, typer.Option(help="Recipe, or procedure in maintenance.")] = 1,
     host: str = "127.0.0.1",
@@ -145,7 +160,13 @@ def run(  # noqa: PLR0917  # options of the command line
     if mode not in MODES:
         raise typer.BadParameter(f"mode is one of {', '.join(MODES)}")
     logging.getLogger("pymodbus.logging").setLevel(logging.CRITICAL)
-    job = {"mode": MODES[mode], "recipe": recipe, "serial": serial, "timeout_s": timeout}
+    job = {
+        "mode": MODES[mode],
+        "recipe": recipe,
+        "serial": serial,
+        "mate_serial": mate_serial,
+        "timeout_s": timeout,
+    }
     try:
         code = asyncio.run(play(host, port, job, connect_timeout))
     except KeyboardInterrupt:

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MAP_VERSION = 4
+MAP_VERSION = 5
 INPUT_COUNT = 125
 HEARTBEAT_ADDRESS = 40
 NO_VALUE = -(2**31)
@@ -138,9 +138,12 @@ def read_report(block: Sequence[int]) -> Report:
     )
 
 
-def command_block(seq: int, command: int, *, mode: int, recipe: int, serial: str) -> list[int]:
-    """Holding registers 0-27."""
-    return [mode, command, recipe, 0, 0, 0, *_characters(serial, 12), *[0] * 8, 0, seq]
+def command_block(
+    seq: int, command: int, *, mode: int, recipe: int, serial: str, mate_serial: str = ""
+) -> list[int]:
+    """Holding registers 0-39."""
+    parameters = [mode, command, recipe, 0, 0, 0, *_characters(serial, 12), *[0] * 8, 0]
+    return [*parameters, seq, *_characters(mate_serial, 12)]
 
 
 def _u32(block: Sequence[int], address: int) -> int:

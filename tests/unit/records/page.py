@@ -4,6 +4,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 VOID = {"meta", "br", "img", "link", "hr", "input"}
+UNSEEN = {"style", "title", "metadata"}
 
 
 class Checker(HTMLParser):
@@ -13,6 +14,8 @@ class Checker(HTMLParser):
         super().__init__()
         self.stack: list[str] = []
         self.texts: list[str] = []
+        self.shown: list[str] = []
+        """Of ``texts`` what a reader sees."""
         self.addresses: list[str] = []
         self.tags: set[str] = set()
 
@@ -30,6 +33,8 @@ class Checker(HTMLParser):
 
     def handle_data(self, data: str) -> None:
         self.texts.append(data.strip())
+        if not UNSEEN.intersection(self.stack):
+            self.shown.append(data.strip())
 
 
 def read(report: Path) -> Checker:

@@ -9,6 +9,7 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.cli.offline.measure import measure
+from cellctl.vision.picture import INSET_PX
 from tests.unit.vision.plates import (
     Light,
     holes_triangle,
@@ -60,7 +61,7 @@ def test_the_result_is_json_in_mm(folder: Path) -> None:
     assert np.array(data["holes"]["P1"]["left_covariance_px2"]).shape == (2, 2)
     drawn = cv2.imread(str(picture))
     assert drawn is not None
-    assert drawn.shape == (2048, 4896, 3)
+    assert drawn.shape == (2048 + INSET_PX, 4896, 3)
 
 
 def test_the_paper_by_name_on_stdout(folder: Path) -> None:

@@ -1,25 +1,33 @@
 """The pages that a plugging adds to the report of its run."""
 
 import base64
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from cellctl.errors.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, parse_curve
 from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.report.acceptance import WORDS, acceptance
 from cellctl.processes.antenna_module.report.force_by_depth import force_by_depth
 from cellctl.processes.antenna_module.report.terms import error_terms
 from cellctl.records.entries import Figure, RunRecord
+from cellctl.records.parts import mate_serial
 from cellctl.records.report.sections import (
     Drawing,
     FactList,
     Heading,
+    Part,
     ProcessPages,
     ReadArtefact,
     ReportBlock,
     ReportSection,
+    ReportTable,
+    RowMark,
+    TableCell,
+    TableRow,
     Tile,
 )
+from cellctl.records.report.text import quantity
 
 _TILES = (
     (keys.WORST_CONTACT, "Worst contact, 99 %", 1e3, "µm", 0),
@@ -41,6 +49,10 @@ def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
     )
     return ProcessPages(
         tiles=tuple(_tiles(record)),
+        acceptance=acceptance(record),
+        words=WORDS,
+        documents=frozenset({keys.INSERTION, keys.PLAN, keys.REGRIP}),
+        parts=(Part("module", record.head.serial), Part("board", mate_serial(record))),
         sections=tuple(section for section in sections if section.blocks),
     )
 
@@ -116,12 +128,32 @@ def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
         seat_mm = record.value(keys.SEAT_DEPTH)
         drawing = force_by_depth(curve, [] if limits is None else limits, seat_mm)
         yield Drawing(
-            drawing, "Force on the plug in the axes of the socket; red: allowed along the way."
+            drawing,
+            "Force on the plug in the axes of the socket; level lines: allowed.",
         )
     if document:
         suspect = document.get("suspected_contact") or "none"
         yield Heading("Verdict", str(document["verdict"]))
         yield FactList((("suspected contact", str(suspect)),))
+        yield from _judged(document.get("limits", ()))
+
+
+def _judged(limits: Sequence[Mapping[str, Any]]) -> Iterator[ReportBlock]:
+    """What the curve was judged by."""
+    rows = []
+    for one in limits:
+        passed, unit = bool(one["passed"]), str(one["unit"])
+        sign = "≥" if one["side"] == "min" else "≤"
+        texts = (
+            str(one["name"]),
+            quantity(one["value"], unit),
+            f"{sign} {quantity(one['limit'], unit)}",
+            "within" if passed else "beyond",
+        )
+        mark = RowMark.GOOD if passed else RowMark.BAD
+        rows.append(TableRow(tuple(TableCell(text) for text in texts), mark))
+    if rows:
+        yield ReportTable(("of the curve", "value", "limit", "verdict"), tuple(rows), numbers=False)
 
 
 def _curve(data: bytes) -> InsertionCurve | None:

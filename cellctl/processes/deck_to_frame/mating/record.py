@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingResult
@@ -53,11 +53,11 @@ def result_record(result: MatingResult) -> dict[str, Any]:
         "stiffness_n_per_mm": result.stiffness.stiffness_n_m * MM if result.stiffness else None,
         "hold_force_n": result.hold.force_n,
         "hold_lateral_n": verdict.lateral_n,
-        "hold_wrench": result.hold.wrench.tolist(),
+        "hold": _force_and_moment(result.hold.wrench),
         "seat_gap_mm": verdict.gap_m / MM,
         "released_force_n": result.released.force_n if result.released else None,
-        "tare_mean": result.tare.mean.tolist(),
-        "tare_sigma": result.tare.sigma.tolist(),
+        "tare_mean": _force_and_moment(result.tare.mean),
+        "tare_sigma": _force_and_moment(result.tare.sigma),
         "peak_force_n": statistics.peak_fz_n,
         "peak_filtered_force_n": statistics.peak_filtered_fz_n,
         "peak_lateral_n": statistics.peak_lateral_n,
@@ -99,7 +99,7 @@ def _compliance_record(result: MatingResult) -> dict[str, Any]:
             "moves": [
                 {
                     "travel_mm": each.reading.travel_m / MM,
-                    "wrench": each.reading.wrench.tolist(),
+                    **_force_and_moment(each.reading.wrench),
                     "x_mm": each.move.x_m / MM,
                     "y_mm": each.move.y_m / MM,
                     "yaw_deg": float(np.degrees(each.move.yaw_rad)),
@@ -108,3 +108,8 @@ def _compliance_record(result: MatingResult) -> dict[str, Any]:
             ],
         }
     }
+
+
+def _force_and_moment(wrench: Array) -> dict[str, list[float]]:
+    """A wrench as two vectors of x, y, z: each in its own unit."""
+    return {"force_n": wrench[:3].tolist(), "moment_n_m": wrench[3:].tolist()}

@@ -6,15 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.poses.pose_correction import assembly_error
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.rigid_fit import by_pose
-
-COVERAGE_FACTOR = 2.0
-"""An expanded uncertainty is so many standard deviations: one of 44 values lies beyond it on the
-side of the limit (JCGM 100, 6.2; JCGM 106, 8.3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

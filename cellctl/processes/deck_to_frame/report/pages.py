@@ -1,5 +1,6 @@
 """The pages that an assembly adds to the report of its run."""
 
+from cellctl.processes.deck_to_frame.report.acceptance import acceptance, parts, words
 from cellctl.processes.deck_to_frame.report.force_section import force_section, recordings
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM, plug_gauges
 from cellctl.processes.deck_to_frame.report.hole_table import TABULATED, hole_blocks
@@ -21,12 +22,12 @@ from cellctl.records.report.sections import (
 from cellctl.records.report.text import fixed
 
 _LOOP_CAPTION = (
-    "Error of every component by iteration, with two standard deviations; green: within the "
+    "Error of every component by iteration, with two standard deviations; shaded: within the "
     "threshold. Linear inside the threshold, logarithmic outside. On the right of each title the "
     "last value."
 )
 _GAUGE_CAPTION = (
-    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Green: offset below 0.2 mm."
+    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Shaded: offset below 0.2 mm."
 )
 
 
@@ -37,6 +38,9 @@ def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
     sections = (holes, _loop(record), force_section(record, curves), _pin_holes(record))
     return ProcessPages(
         tiles=tiles(record, curves.values()),
+        acceptance=acceptance(record),
+        parts=parts(record),
+        words=words(record),
         sections=tuple(section for section in sections if section.blocks),
         shows=frozenset({RecordPart.PASSES, RecordPart.GAUGES}),
         tabulated=TABULATED,

@@ -2,21 +2,45 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE
+from cellctl.processes.deck_to_frame.record.keys import (
+    GAP_BY_VISION,
+    LIMIT_FORCE,
+    PIN_OFFSETS,
+    SEAT_ROTATION,
+)
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM
 from cellctl.records.curve_file import Recording
-from cellctl.records.entries import Gauge, LoopPass, RunRecord
+from cellctl.records.entries import Figure, Gauge, LoopPass, RunRecord, Verdict
 from cellctl.records.report.sections import Tile
-from cellctl.records.report.text import decimals, number
+from cellctl.records.report.text import decimals, fixed, number, with_unit
 
 
 def tiles(record: RunRecord, curves: Iterable[Recording]) -> tuple[Tile, ...]:
-    """The headline figures that the record of this run can fill."""
+    """The headline figures that the record of this run can fill: of the seat, once it has one."""
     return (
-        *_errors(record.passes),
+        *(tuple(_seat(record)) or _errors(record.passes)),
         *_peak_force(curves, record.value(LIMIT_FORCE)),
         *_least_gauge(record.gauges),
     )
+
+
+def _seat(record: RunRecord) -> Iterator[Tile]:
+    prefix = f"{PIN_OFFSETS}."
+    figures = record.newest_figures
+    offsets = [found for key, found in figures.items() if key.startswith(prefix)]
+    if offsets:
+        worst = max(offsets, key=lambda found: found.value or 0.0)
+        yield _seat_tile("Seated: greatest offset", worst)
+    for key, title in ((GAP_BY_VISION, "Seated: gap"), (SEAT_ROTATION, "Seated: rotation")):
+        if key in figures:
+            yield _seat_tile(title, figures[key])
+
+
+def _seat_tile(title: str, found: Figure) -> Tile:
+    value = with_unit(fixed(found.value, decimals(found.unit)), found.unit)
+    # The record keeps the required limit less the uncertainty, by which the seat was judged.
+    bound = f"accepted up to {with_unit(fixed(found.upper, decimals(found.unit)), found.unit)}"
+    return Tile(title, value, bound, found.verdict is Verdict.PASS)
 
 
 def _errors(passes: Sequence[LoopPass]) -> Iterator[Tile]:

@@ -73,7 +73,9 @@ async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
     await rig.to(State.IDLE)
     assert (await operator.status()).ready
     recipe = rig.bench.cell.config.recipes[0]
-    start = StartCommand(serial="SAT-7", recipe=recipe.name, order="OP-3", dry_run=True)
+    start = StartCommand(
+        serial="SAT-7", mate_serial="FRAME-3", recipe=recipe.name, order="OP-3", dry_run=True
+    )
     assert isinstance(await operator.ask(start), Taken)
     await rig.to(State.COMPLETED)
     report = await operator.status()
@@ -83,6 +85,7 @@ async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
     entries = await rig.archive.do(audit)
     assert [(actor, action) for actor, action, _ in entries] == [(ME, "reset"), (ME, "start")]
     assert entries[1][2]["options"] == 1
+    assert entries[1][2]["mate_serial"] == "FRAME-3"
 
 
 @pytest.mark.parametrize(
@@ -91,6 +94,7 @@ async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
         (PlainCommand(request="clear"), RejectCode.COMMAND_NOT_ALLOWED),
         (StartCommand(serial="lower"), RejectCode.SERIAL_INVALID),
         (StartCommand(serial=""), RejectCode.SERIAL_INVALID),
+        (StartCommand(serial="S", mate_serial="lower"), RejectCode.SERIAL_INVALID),
         (StartCommand(serial="S", order="a b"), RejectCode.ORDER_INVALID),
         (StartCommand(serial="S", recipe="unknown"), RejectCode.RECIPE_UNKNOWN),
         (StartCommand(serial="S", recipe="101"), RejectCode.RECIPE_UNKNOWN),

@@ -9,7 +9,9 @@ from cellctl.packml import Command, RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import Source, UnitCommand
 
-START = UnitCommand(Source.LINE, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001")
+START = UnitCommand(
+    Source.LINE, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001", mate_serial="FRAME-3"
+)
 
 
 def holding(seq: int, **values: int | str) -> list[int]:
@@ -22,7 +24,7 @@ def holding(seq: int, **values: int | str) -> list[int]:
 
 def test_the_block_is_latched_as_it_stands() -> None:
     command = CommandLatch(None, "big").commit(
-        holding(1, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001")
+        holding(1, unit_mode=1, cntrl_cmd=2, recipe_id=1, serial="SAT-0001", mate_serial="FRAME-3")
     )
     assert command == (1, START)
 

@@ -33,7 +33,7 @@ from cellctl.runtime.cell_status import CellStatus, ShownRefusal
 # Written out from the agreed map, not derived from it.
 AGREED = {
     "unit_mode": 0, "cntrl_cmd": 1, "recipe_id": 2, "options": 3, "serial": 6, "order": 18,
-    "alarm_ack_id": 26, "cmd_seq": 27, "plc_heartbeat": 40,
+    "alarm_ack_id": 26, "cmd_seq": 27, "mate_serial": 28, "plc_heartbeat": 40,
     "seq_head": 0, "map_version": 1, "state": 2, "mode": 3, "state_requested": 4, "status": 5,
     "step": 6, "ack_seq": 7, "done_seq": 8, "result": 9, "reject_code": 10, "cell_heartbeat": 11,
     "alarm_count": 12, "first_out_alarm": 13, "alarm_1": 14, "alarm_8": 21, "recipe_active": 22,

@@ -13,6 +13,7 @@ from cellctl.processes.deck_to_frame.record.entries import rms_um
 from cellctl.records.curve_file import read_recording
 from cellctl.records.entries import PoseOrigin, Verdict
 from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.picture import INSET_PX
 from tests.unit.cell.bench import SIGMA, measurement
 from tests.unit.processes.deck_to_frame.rig import RunRig, curve
 
@@ -101,4 +102,4 @@ def test_a_picture_is_a_jpeg() -> None:
     data = draw(np.zeros((40, 60), np.uint8), PairMeasurement("default", ()), "left")
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
     assert picture is not None
-    assert picture.shape == (40, 60, 3)
+    assert picture.shape == (40 + INSET_PX, 60, 3)

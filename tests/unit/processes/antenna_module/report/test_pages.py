@@ -24,7 +24,21 @@ PLAN = {
     "p99_um": 34.6,
     "terms_um": {"look_plug": 2.1, "approach": 8.0, "correction": 4.4},
 }
-VERDICT = {"verdict": "bent_pin", "suspected_contact": "11", "bounds": [[-1.0, 0.5, 3.0]]}
+VERDICT = {
+    "verdict": "bent_pin",
+    "suspected_contact": "11",
+    "bounds": [[-1.0, 0.5, 3.0]],
+    "limits": [
+        {
+            "name": "side force",
+            "value": 4.25,
+            "limit": 3.0,
+            "unit": "N",
+            "side": "max",
+            "passed": False,
+        }
+    ],
+}
 
 
 @pytest.fixture
@@ -48,12 +62,13 @@ def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:
         figure(keys.WORST_CONTACT, 0.0346, "mm", limit=Limit(upper=0.05)),
         figure(keys.SEAT_DEPTH, 2.5, "mm", limit=Limit(2.35, 2.65)),
         figure(keys.PULL, 3.1, "N", limit=Limit(lower=3.0)),
+        figure(keys.PLACED, 0.02, "mm", limit=Limit(upper=0.1)),
     )
     store.add_artefact(run, keys.PLUG_PICTURE, png(), "image/png")
     store.add_artefact(run, keys.SOCKET_PICTURE, png(), "image/png")
     store.add_artefact(run, keys.CURVE, curve_text(curve()).encode(), "text/csv")
     report = export_run(store, run, tmp_path, pages=pages)
-    text = text_of(report)
+    text = " ".join(text_of(report).split())
     for words in (
         "35 µm",
         "at most 50 µm",
@@ -64,6 +79,10 @@ def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:
         "Camera I: the socket",
         "bent_pin",
         "Force on the plug",
+        "side force 4.25 N ≤ 3 N beyond",
+        "lateral offset of the module",
+        "serial number, module SAT-0001",
+        "serial number, board not recorded",
     ):
         assert words in text, words
     assert report.read_text(encoding="utf-8").count("data:image/png;base64") == 2

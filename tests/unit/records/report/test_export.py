@@ -57,7 +57,7 @@ def test_a_run_whose_process_is_not_installed_has_a_whole_report(exported: Path)
     for expected in (
         "SAT-0042", "Good part", "Simulated", "OP-7", "cellctl 0.1.0", "ab" * 32, "cd" * 32,
         "deck-to-frame", "Transforms", "−712.300", "179.0221", "pose correction", "−0.0112",
-        "Phases", "measure deck", "5.93", "simulator", "at most", "38.4 N", "50 N", "within",
+        "Timeline", "measure deck", "5.93", "simulator", "38.4 N", "≤ 50 N", "✓ conforms",
         "812.4 N/mm", "F_peak", "residuals: P1", "this entry",
     ):  # fmt: skip
         assert expected in text, expected
@@ -105,7 +105,7 @@ def test_a_process_brings_its_pages(store: RunStore, tmp_path: Path) -> None:
         "caption", "bytes 8",
     ):  # fmt: skip
         assert expected in text, expected
-    for replaced in ("Passes", "Plug gauges", "residuals: P1"):
+    for replaced in ("Passes", "measured by", "residuals: P1"):
         assert replaced not in text, replaced
     assert "holes: P1" in text, "what the process does not show is shown for it"
 

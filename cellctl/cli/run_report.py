@@ -1,0 +1,30 @@
+"""`cellctl runs report`: the report of a run as one file, to be sent or printed."""
+
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cellctl.cli.process_pages import pages_of
+from cellctl.records.report.export import write_report
+from cellctl.records.store import RunStore
+
+
+def report(
+    run: Annotated[int, typer.Argument(help="Number of the run.", min=1)],
+    *,
+    pdf: Annotated[bool, typer.Option("--pdf", help="As PDF on A4 in place of HTML.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(help="File; default: run-NUMBER.html or .pdf.")
+    ] = None,
+    data_dir: Annotated[Path, typer.Option("--data-dir", help="Folder of the run store.")] = Path(
+        "runs"
+    ),
+) -> None:
+    """Write the report of a run as one file with its pictures, HTML or PDF."""
+    path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
+    with closing(RunStore(data_dir, create=False)) as store:
+        pages = pages_of(store.run(run).head.process)
+        write_report(store, run, path, pages=pages, pdf=pdf)
+    typer.echo(path)

@@ -1,0 +1,153 @@
+"""What an assembly must fulfil: the seated deck first, then the mating, then the way there."""
+
+from collections.abc import Iterator, Mapping
+
+from cellctl.geometry.coverage import COVERAGE_FACTOR
+from cellctl.processes.deck_to_frame.record import keys
+from cellctl.records.entries import RunRecord
+from cellctl.records.parts import mate_serial
+from cellctl.records.report.acceptance.requirement import (
+    Requirement,
+    RequirementGroup,
+    guarded,
+    of_figure,
+)
+from cellctl.records.report.sections import Part
+
+_MATING = {
+    "seat_gap": "gap deck to frame by travel of the arm",
+    "hold_force": "seating force along the approach, held",
+    "hold_lateral": "lateral force while seated",
+    "released_force": "force after release",
+    keys.PEAK_FORCE: "greatest force along the approach, single samples",
+    "peak_filtered_force": "greatest force along the approach, mean of 5 ms",
+    "peak_lateral": "greatest lateral force, single samples",
+    "peak_moment": "greatest moment, single samples",
+}
+_FITS = {
+    "frame": "greatest residual of a hole, frame",
+    "deck": "greatest residual of a hole, deck",
+    keys.LOOP: "greatest residual of a hole, deck before mating",
+    "seated": "greatest residual of a hole, seated deck",
+}
+_WORDS = {
+    "approach.speed": "approach: speed, derived",
+    "approach.predicted_peak": "approach: greatest force predicted",
+    "approach.touch": "approach: force at which the touch is noticed",
+    "approach.latency": "approach: force that builds up until the stop takes effect",
+    "approach.ramp": "approach: force that builds up while braking",
+    "approach.impact": "approach: force of the impact",
+    "approach.tare": "approach: allowance for the zero of the sensor",
+    "approach.stop_latency": "approach: time from decision to stop",
+    "approach.stale": "approach: greatest age of a force sample",
+    "approach.stiffness": "approach: contact stiffness assumed",
+    "window.expected": "contact window: expected travel",
+    "window.earliest": "contact window: least travel",
+    "window.latest": "contact window: greatest travel",
+    "window.clear": "contact window: travel without contact",
+    "target_force": "seating force demanded",
+    "limit_force": "limit of the force along the approach",
+    "touch_travel": "travel at the first touch",
+    "touch_force": "force at the first touch",
+    "creep_steps": "steps from touch to seating force",
+    "stiffness": "contact stiffness measured",
+    "duration": "duration of the mating",
+    **{f"seated_error.{axis}": f"seated deck: error along {axis} of the frame" for axis in "xyz"},
+    **{
+        f"seated_error.r{axis}": f"seated deck: rotation about {axis} of the frame"
+        for axis in "xyz"
+    },
+    f"{keys.GAP_BY_VISION}_{keys.UNCERTAINTY}": "seated deck: expanded uncertainty of the gap",
+    f"{keys.SEAT_ROTATION}_{keys.UNCERTAINTY}": "seated deck: expanded uncertainty of the rotation",
+}
+
+
+def words(record: RunRecord) -> Mapping[str, str]:
+    """Standard terms for the figures without a limit, by their keys."""
+    prefix = f"{keys.PIN_OFFSETS}_{keys.UNCERTAINTY}."
+    holes = [key for key in record.newest_figures if key.startswith(prefix)]
+    title = "seated deck: expanded uncertainty of the offset at hole "
+    return {**_WORDS, **{key: title + key.removeprefix(prefix) for key in holes}}
+
+
+def parts(record: RunRecord) -> tuple[Part, ...]:
+    """The deck carries the serial number of the run."""
+    return (Part("deck", record.head.serial), Part("frame", mate_serial(record)))
+
+
+def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
+    """Every requirement on an assembly, as far as its run has come."""
+    return (
+        RequirementGroup(
+            "Seated deck",
+            tuple(_seated(record)),
+            "deck against frame after release, by the stereo heads, in the axes of the frame",
+        ),
+        RequirementGroup(
+            "Mating",
+            tuple(_found(record, _MATING)),
+            "in the axes of the deck, gravity removed; without U, because the certificate of the "
+            "force sensor is not part of the record",
+        ),
+        RequirementGroup(
+            "Deck at the stand-off, before mating",
+            tuple(_before_mating(record)),
+            "worst axis of the last pass, in the axes of the frame",
+        ),
+        RequirementGroup(
+            "Measurements",
+            tuple(
+                _found(
+                    record,
+                    {f"{keys.WORST_RESIDUAL}.{kind}": title for kind, title in _FITS.items()},
+                )
+            ),
+            "distance of a hole from its place on the drawing, after registration",
+        ),
+    )
+
+
+def _seated(record: RunRecord) -> Iterator[Requirement]:
+    prefix = f"{keys.PIN_OFFSETS}."
+    holes = [key.removeprefix(prefix) for key in record.newest_figures if key.startswith(prefix)]
+    wanted = [
+        (f"{prefix}{hole}", f"lateral offset at hole {hole}",
+         f"{keys.PIN_OFFSETS}_{keys.UNCERTAINTY}.{hole}")
+        for hole in holes
+    ]  # fmt: skip
+    wanted += [
+        (keys.GAP_BY_VISION, "gap deck to frame, by vision",
+         f"{keys.GAP_BY_VISION}_{keys.UNCERTAINTY}"),
+        (keys.SEAT_ROTATION, "rotation deck to frame, worst axis",
+         f"{keys.SEAT_ROTATION}_{keys.UNCERTAINTY}"),
+    ]  # fmt: skip
+    for key, title, uncertainty in wanted:
+        found = guarded(record, key, title, uncertainty)
+        if found is not None:
+            yield found
+
+
+def _before_mating(record: RunRecord) -> Iterator[Requirement]:
+    for key, title, part in (
+        (keys.POSITION_ERROR, "position error", slice(0, 3)),
+        (keys.ANGLE_ERROR, "angle error", slice(3, 6)),
+    ):
+        found = of_figure(record, key, title, expanded=_expanded(record, part))
+        if found is not None:
+            yield found
+
+
+def _expanded(record: RunRecord, part: slice) -> float | None:
+    """Of the component that is known least: which of them is the worst may be chance."""
+    if not record.passes:
+        return None
+    sigmas = [component.sigma for component in record.passes[-1].components[part]]
+    known = [sigma for sigma in sigmas if sigma is not None]
+    return COVERAGE_FACTOR * max(known) if len(known) == len(sigmas) else None
+
+
+def _found(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
+    for key, title in titles.items():
+        found = of_figure(record, key, title)
+        if found is not None:
+            yield found

@@ -1,0 +1,65 @@
+"""Of which parts, by whom, on which order, in which surroundings."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from cellctl.records.entries import AuditEntry, RunHead
+from cellctl.records.report.sections import (
+    FactList,
+    Part,
+    ReportSection,
+    ReportTable,
+    TableCell,
+    TableRow,
+)
+from cellctl.records.report.text import MISSING, duration, when
+from cellctl.records.units import words
+
+UNKNOWN = "not recorded"
+SIGNATURES = ("performed by", "inspected by", "accepted by")
+"""Who signs a report by hand."""
+_MEASURING = ("robots", "stereo_cameras", "cameras", "trackers", "force_sensors")
+"""Tables of the cell file whose devices have a share in what is measured."""
+
+
+def identification(
+    head: RunHead, parts: Sequence[Part], audit: Sequence[AuditEntry]
+) -> ReportSection:
+    """Parts, order, people, recipe and surroundings; what nobody has recorded says so."""
+    named = parts or (Part("part", head.serial),)
+    started = next((entry.actor for entry in audit if entry.action == "start"), UNKNOWN)
+    facts = (
+        *((f"serial number, {part.role}", part.serial or UNKNOWN) for part in named),
+        ("order or operator, as the line names it", head.operator or UNKNOWN),
+        ("started by", started),
+        ("run", str(head.number)),
+        ("process", head.process),
+        ("recipe", f"{head.recipe_id} · {head.recipe_name}"),
+        ("mode", head.mode.lower()),
+        ("started", when(head.started)),
+        ("ended", when(head.ended)),
+        ("duration", duration(head.started, head.ended)),
+        ("devices", "simulated" if head.simulated else "real"),
+        ("software", head.software),
+        ("temperature, humidity, pressure", UNKNOWN),
+    )
+    return ReportSection("Identification", (FactList(facts),))
+
+
+def devices(cell: Mapping[str, Any]) -> ReportSection:
+    """Robots and measuring devices of the cell file that the run was made with."""
+    rows = tuple(
+        TableRow(tuple(TableCell(text) for text in _device(kind, name, device)))
+        for kind in _MEASURING
+        for name, device in cell.get(kind, {}).items()
+    )
+    columns = ("name", "kind", "driver", "connection")
+    table = ReportTable(columns, rows, numbers=False)
+    return ReportSection("Devices", (table,) if rows else ())
+
+
+def _device(kind: str, name: str, device: Mapping[str, Any]) -> tuple[str, ...]:
+    settings = device.get("settings", {})
+    address = ":".join(str(settings[key]) for key in ("host", "port") if key in settings)
+    kind_words = words(kind).removesuffix("s")
+    return name, kind_words, str(device.get("driver", MISSING)), address or MISSING

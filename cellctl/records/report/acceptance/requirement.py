@@ -1,0 +1,73 @@
+"""A requirement on a part or on its making, beside what was found."""
+
+from dataclasses import dataclass, replace
+
+from cellctl.records.entries import RunRecord, Verdict
+from cellctl.records.figures import NO_LIMIT, Limit
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """One line of the acceptance table."""
+
+    title: str
+    value: float | None
+    """What was measured; None is unknown."""
+    unit: str
+    required: Limit
+    """As the recipe or the drawing states it."""
+    verdict: Verdict | None
+    """None where nothing was measured yet."""
+    expanded: float | None = None
+    """Expanded uncertainty of the value (JCGM 100, 6.2) with ``COVERAGE_FACTOR``; None where none
+    was evaluated, and the value is judged by its limit alone."""
+    accepted: Limit = NO_LIMIT
+    """The limit less the expanded uncertainty, where that decides (JCGM 106, 8.3)."""
+    phase: int | None = None
+    """In which the value was found."""
+    figure: str = ""
+    """Key of the figure that it shows, so that it is not shown twice."""
+
+
+@dataclass(frozen=True, slots=True)
+class RequirementGroup:
+    """Requirements of one kind; ``note`` names their reference frame or how they were found."""
+
+    title: str
+    requirements: tuple[Requirement, ...]
+    note: str = ""
+
+
+def of_figure(
+    record: RunRecord, key: str, title: str = "", *, expanded: float | None = None
+) -> Requirement | None:
+    """The last figure of a key as a requirement; None when the run has none with a limit."""
+    found = record.newest_figures.get(key)
+    if found is None or found.verdict is None:
+        return None
+    return Requirement(
+        title=title or found.label,
+        value=found.value,
+        unit=found.unit,
+        required=Limit(found.lower, found.upper),
+        verdict=found.verdict,
+        expanded=expanded,
+        phase=found.phase,
+        figure=key,
+    )
+
+
+def guarded(record: RunRecord, key: str, title: str, uncertainty_key: str) -> Requirement | None:
+    """A figure that was judged by its limit less its expanded uncertainty, a figure itself.
+
+    The record keeps the narrower limit, by which the verdict was reached; the required one is wider
+    by the uncertainty on both sides.
+    """
+    expanded = record.value(uncertainty_key)
+    plain = of_figure(record, key, title, expanded=expanded)
+    if plain is None or expanded is None:
+        return plain
+    narrow = plain.required
+    lower = None if narrow.lower is None else narrow.lower - expanded
+    upper = None if narrow.upper is None else narrow.upper + expanded
+    return replace(plain, required=Limit(lower, upper), accepted=narrow)

@@ -1,0 +1,69 @@
+"""What happened in a run, in the order of time, and who did it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import datetime, timedelta
+from typing import Any
+
+from cellctl.records.entries import AuditEntry, RunRecord
+from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
+from cellctl.records.report.text import MISSING, duration, facts, fixed, when
+
+_BEFORE = timedelta(seconds=30)
+"""The command that starts a run is written down before its record is opened, which may wait as long
+as this for the disk."""
+_CELL = "cell"
+_OWN_LINE = "gauge"
+"""Entries of the audit log that have a line of their own, with more in it."""
+Event = tuple[datetime, str, str]
+"""Time, what happened, who did it."""
+
+
+def during(record: RunRecord, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, ...]:
+    """Entries of the audit log from the start command of a run to its end."""
+    begin, end = record.head.started - _BEFORE, record.head.ended
+    within = [
+        entry for entry in audit if begin <= entry.time and (end is None or entry.time <= end)
+    ]
+    # The last start is that of this run, since nothing is started while it lasts; what was
+    # commanded before that belongs to another one.
+    starts = [index for index, entry in enumerate(within) if entry.action == "start"]
+    return tuple(within[starts[-1] :] if starts else within)
+
+
+def timeline(record: RunRecord, audit: Sequence[AuditEntry]) -> ReportSection:
+    """Commands, steps, alarms and gauges as one table; ``audit`` is that of the run's time."""
+    events = sorted(_events(record, audit), key=lambda event: event[0])
+    rows = tuple(
+        TableRow((TableCell(when(time)), TableCell(what), TableCell(who or MISSING)))
+        for time, what, who in events
+    )
+    table = ReportTable(("time", "what", "who"), rows, numbers=False)
+    note = Note("The line PLC names an order or an operator, or nobody; people at the terminal and "
+                "on the operator page are named as they have signed in.")  # fmt: skip
+    return ReportSection("Timeline", (table, note))
+
+
+def _events(record: RunRecord, audit: Sequence[AuditEntry]) -> Iterator[Event]:
+    head = record.head
+    for entry in audit:
+        if entry.action != _OWN_LINE:
+            yield entry.time, f"command {entry.action}{_details(entry.detail)}", entry.actor
+    yield head.started, "record opened", _CELL
+    for phase in record.phases:
+        lasted = duration(phase.began, phase.ended)
+        yield phase.began, f"step {phase.number}, {phase.label}: {lasted}", _CELL
+    for alarm in record.alarms:
+        yield alarm.time, f"alarm {alarm.text}", _CELL
+        if alarm.acknowledged is not None:
+            what = f"alarm F{alarm.number:03d} acknowledged"
+            yield alarm.acknowledged, what, alarm.acknowledged_by or ""
+    if head.ended is not None:
+        yield head.ended, f"run closed: {head.result}", _CELL
+    for gauge in record.gauge_history:
+        what = f"plug gauge {gauge.gauge_id or ''} through {gauge.hole}: "
+        yield gauge.time, f"{what}{fixed(gauge.diameter_mm, 2)} mm", gauge.source
+
+
+def _details(detail: Mapping[str, Any]) -> str:
+    texts = [f"{name} {value}" for name, value in facts(detail) if value not in ("", MISSING)]
+    return f" ({', '.join(texts)})" if texts else ""

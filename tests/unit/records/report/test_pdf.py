@@ -1,0 +1,89 @@
+"""The PDF says what the HTML says, and needs nothing from outside."""
+
+import re
+import sys
+from io import BytesIO
+from pathlib import Path
+from types import ModuleType
+
+import cv2
+import numpy as np
+import pytest
+from pypdf import PdfReader
+from typer.testing import CliRunner
+
+from cellctl.cli.runs import app
+from cellctl.errors.records import PdfNotMade
+from cellctl.processes.deck_to_frame.report.pages import pages
+from cellctl.records import RunStore
+from cellctl.records.report.export import write_report
+from cellctl.records.report.pdf import to_pdf
+from tests.unit.records.page import read
+from tests.unit.records.sample import good_run
+
+# Only what begins like a number of its own: ends of hashes are compared as words.
+_NUMBER = re.compile(r"(?<![\w.])[-+−±]?\d+(?:\.\d+)?")
+
+
+def picture() -> bytes:
+    _, data = cv2.imencode(".png", np.full((40, 60, 3), 128, np.uint8))
+    return data.tobytes()
+
+
+def text_of_pdf(data: bytes) -> str:
+    return " ".join(page.extract_text() for page in PdfReader(BytesIO(data)).pages)
+
+
+def test_every_figure_of_the_page_is_in_the_pdf(store: RunStore, tmp_path: Path) -> None:
+    run = good_run(store, picture())
+    write_report(store, run, tmp_path / "report.html", pages=pages)
+    write_report(store, run, tmp_path / "report.pdf", pages=pages, pdf=True)
+    page = read(tmp_path / "report.html")
+    pdf = text_of_pdf((tmp_path / "report.pdf").read_bytes())
+    wanted = {found for text in page.shown for found in _NUMBER.findall(text)}
+    assert len(wanted) > 100
+    squeezed = re.sub(r"\s+", "", pdf)
+    assert [number for number in sorted(wanted) if number not in squeezed] == []
+    words = {word for text in page.shown for word in re.findall(r"[A-Za-z]{3,}", text)}
+    assert [word for word in sorted(words) if word.lower() not in squeezed.lower()] == []
+    with_pictures = [one for one in PdfReader(tmp_path / "report.pdf").pages if one.images]
+    assert with_pictures
+
+
+def test_the_first_page_holds_what_is_signed(store: RunStore, tmp_path: Path) -> None:
+    write_report(store, good_run(store, picture()), tmp_path / "a.pdf", pages=pages, pdf=True)
+    first = PdfReader(tmp_path / "a.pdf").pages[0].extract_text()
+    for expected in ("SAT-0042", "Good part", "Acceptance", "38.4 N", "k = 2", "accepted by"):
+        assert expected in first, expected
+
+
+def test_nothing_is_fetched(tmp_path: Path) -> None:
+    (tmp_path / "secret.png").write_bytes(picture())
+    page = f'<p>before</p><img src="file://{tmp_path}/secret.png" alt="not fetched"><p>after</p>'
+    reader = PdfReader(BytesIO(to_pdf(page)))
+    assert "not fetched" in reader.pages[0].extract_text()
+    assert len(reader.pages[0].images) == 0
+
+
+def test_a_computer_without_the_libraries_says_which(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Missing(ModuleType):
+        def __getattr__(self, name: str) -> object:
+            raise OSError("cannot load library 'libpango-1.0-0'\nand a long explanation")
+
+    monkeypatch.setitem(sys.modules, "weasyprint", Missing("weasyprint"))
+    with pytest.raises(PdfNotMade, match=r"libpango-1\.0-0'$"):
+        to_pdf("<p>text</p>")
+
+
+def test_the_command_writes_one_file(store: RunStore, tmp_path: Path) -> None:
+    run = str(good_run(store, picture()))
+    where = ["--data-dir", str(store.path)]
+    for options, name, begin in (
+        (["--pdf"], "a.pdf", b"%PDF-"),
+        ([], "a.html", b"<!doctype html>"),
+    ):
+        out = tmp_path / name
+        result = CliRunner().invoke(app, ["report", run, *options, "--out", str(out), *where])
+        assert result.exit_code == 0, result.output
+        assert out.read_bytes().startswith(begin)
+        assert result.stdout.strip() == str(out)
