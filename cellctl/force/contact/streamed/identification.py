@@ -172,16 +172,18 @@ def check_loop(calculated: LoopFigures, fitted: LoopFigures) -> None:
         )
 
 
-def check_step(time_s: Array, press_n: Array, begin_n: float, end_n: float, dead_s: float) -> None:
+def check_step(
+    time_s: Array, rise_n: Array, step_n: float, dead_s: float, noise_n: float = 0.0
+) -> None:
     """Raise ``LoopFitRefused`` for a step that overshoots 15 % or settles after six dead times.
 
-    ``time_s`` (n,) since the step; settled means within 10 % of the step, beyond the noise.
+    ``rise_n`` (n,) is the force above that before the step, of standard deviation ``noise_n``, and
+    ``time_s`` (n,) the time since. Settled means within 10 % of the step, beyond the noise.
     """
-    step_n = end_n - begin_n
-    over = float(press_n.max() - end_n) / step_n
+    over = (float(rise_n.max()) - step_n - 3.0 * noise_n) / step_n
     if over > _GREATEST_OVERSHOOT:
         raise LoopFitRefused(f"a step of {step_n:.1f} N overshoots by {100 * over:.0f} %")
-    outside = np.flatnonzero(np.abs(press_n - end_n) > _SETTLED_SHARE * step_n)
+    outside = np.flatnonzero(np.abs(rise_n - step_n) > _SETTLED_SHARE * step_n + 3.0 * noise_n)
     settled_s = float(time_s[outside[-1]]) if len(outside) else 0.0
     if settled_s > _SETTLED_DEAD_TIMES * dead_s:
         raise LoopFitRefused(
