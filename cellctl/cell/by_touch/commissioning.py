@@ -140,7 +140,7 @@ class _Commissioning:
         """Mean over some steps up: times, rise of the force, height of the step."""
         speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
         step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
-        law = self._law(gains, speed_m_s)
+        law = self._law(figures, gains, speed_m_s)
         nominal = self._loop.tip_command
         ticks = round(_STEP_DEAD_TIMES * figures.dead_time_s / self._loop.period_s)
         rises = []
@@ -148,7 +148,7 @@ class _Commissioning:
             await self._push(law, nominal, _STEP_N, 2 * ticks)
             samples = await self._push(law, nominal, _STEP_N + step_n, ticks)
             rises.append([-sample.force_n[_Z] - _STEP_N for sample in samples])
-        times_s = np.arange(ticks + 1) * self._loop.period_s
+        times_s = np.asarray(np.arange(ticks + 1) * self._loop.period_s, dtype=np.float64)
         return times_s, np.asarray(np.mean(rises, axis=0)), step_n
 
     async def _push(
@@ -162,14 +162,14 @@ class _Commissioning:
             samples.append(await self._loop.send(nominal + moved))
         return samples
 
-    def _law(self, gains: Array, speed_m_s: float) -> Admittance:
+    def _law(self, figures: LoopFigures, gains: Array, speed_m_s: float) -> Admittance:
         weights = levers(self._loop.settings.lever_m)
         only_z = np.arange(6) == _Z
         way_m = self._loop.settings.follow_m
         bounds = AdmittanceBounds(
             np.full(6, speed_m_s), np.full(6, _ACCELERATION_M_S2), np.full(6, way_m)
         )
-        made = AdmittanceGains(virtual_mass(weights), gains, np.zeros(6), only_z)
+        made = AdmittanceGains(virtual_mass(figures, weights), gains, np.zeros(6), only_z)
         return Admittance(made, bounds, self._loop.period_s)
 
     async def _chirp(self, amplitude_m: float) -> tuple[Array, list[ContactSample], Array]:

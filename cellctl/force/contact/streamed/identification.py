@@ -74,6 +74,9 @@ def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> 
     period_s = float(np.median(np.diff(sent_s)))
     grid_s = np.arange(sent_s[0], read_s[-1] + period_s, period_s / _FINER)
 
+    # The solver stops at small errors, whatever their unit; a scale of one makes them comparable.
+    scale = max(float(np.std(response)), 1e-12)
+
     def model(parameters: Array) -> tuple[Array, Array]:
         delay_s, lag_s = parameters
         # A value that is held for a tick is, for a slow signal, half a tick later than its samples.
@@ -84,15 +87,19 @@ def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> 
         shaped = np.interp(read_s, grid_s, begun)
         design = np.stack([shaped, np.ones_like(shaped)], axis=1)
         solved = np.linalg.lstsq(design, response, rcond=None)[0]
-        return design @ solved - response, solved
+        return np.asarray(design @ solved - response), np.asarray(solved)
 
     begin = np.array([2.0 * period_s, period_s])
+
+    def scaled(parameters: Array) -> Array:
+        return model(parameters)[0] / scale
+
     fit = least_squares(
-        lambda parameters: model(parameters)[0],
+        scaled,
         begin,
         bounds=([0.0, 1e-5], [0.2, 0.2]),
         x_scale=period_s,
-        diff_step=1e-3,
+        diff_step=np.array([1e-3, 1e-3]),
     )
     errors, solved = model(fit.x)
     residual = float(np.sqrt(np.mean(errors**2)))

@@ -31,7 +31,7 @@ def test_it_finds_what_arm_and_fixture_truly_have(
     assert found.figures.stiffness_n_m == pytest.approx(stiffness_n_m, rel=0.1)
     assert found.figures.dead_time_s == pytest.approx(world.dead_time_s, rel=0.1)
     assert found.motion_dead_time_s == pytest.approx(
-        period_s * delay_ticks + lag_s, rel=0.1, abs=0.3e-3
+        period_s * delay_ticks + lag_s, rel=0.1, abs=0.3 * period_s
     )
     assert max(-force[2] for force in world.forces) < 45.0
 

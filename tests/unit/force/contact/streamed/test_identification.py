@@ -20,18 +20,22 @@ from tests.unit.force.contact.streamed.loops import SampledLoop
 ALONG_Z = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
 
 
+def ticking(count: int, period_s: float) -> Array:
+    return np.asarray(np.arange(count) * period_s, dtype=np.float64)
+
+
 def followed(
     command: Array, period_s: float, delay_ticks: int, lag_s: float
 ) -> tuple[Array, Array, Array]:
     """When each command was sent, when it was answered, and by what."""
-    sent_s = np.arange(len(command)) * period_s
+    sent_s = ticking(len(command), period_s)
     response, at, steps = [], 0.0, 20
     late = np.concatenate([np.zeros(delay_ticks), command])[: len(command)]
     for target in late:
         for _ in range(steps):
             at += (1 - np.exp(-period_s / steps / lag_s)) * (target - at)
         response.append(at)
-    return sent_s, sent_s + period_s, np.array(response)
+    return sent_s, np.asarray(sent_s + period_s), np.array(response, dtype=np.float64)
 
 
 @pytest.mark.parametrize(
@@ -52,7 +56,7 @@ def test_a_chirp_shows_the_dead_time(period_s: float, delay_ticks: int, lag_s: f
 
 def test_a_response_that_is_not_the_command_is_refused() -> None:
     command = chirp(1.0, 2.0, 4e-3)
-    sent_s = np.arange(len(command)) * 4e-3
+    sent_s = ticking(len(command), 4e-3)
     noise = np.random.default_rng(1).normal(0.0, 1.0, len(command))
     with pytest.raises(LoopFitRefused, match=r"F579.*off a delayed command"):
         fit_delay(sent_s, command, sent_s + 4e-3, noise)
@@ -86,7 +90,7 @@ def stepped(stiffness_n_m: float, delay_ticks: int, ratio: float) -> tuple[Sampl
 @pytest.mark.parametrize("delay_ticks", [1, 4, 9])
 def test_a_closed_loop_shows_the_same_figures(stiffness_n_m: float, delay_ticks: int) -> None:
     loop, force_n = stepped(stiffness_n_m, delay_ticks, 3.0)
-    time_s = np.arange(len(force_n)) * loop.period_s
+    time_s = ticking(len(force_n), loop.period_s)
     fitted = fit_loop(time_s, np.full(len(force_n), 5.0), force_n, float(loop.damping[2]))
     calculated = LoopFigures(stiffness_n_m, loop.dead_time_s)
     check_loop(calculated, fitted)
@@ -101,7 +105,7 @@ def test_figures_that_are_off_are_refused(ratio: float) -> None:
 
 def test_a_step_at_designed_gains_passes_and_one_at_half_of_them_does_not() -> None:
     loop, force_n = stepped(1e6, 3, 1.5)
-    time_s = np.arange(len(force_n)) * loop.period_s
+    time_s = ticking(len(force_n), loop.period_s)
     check_step(time_s, force_n, 5.0, loop.dead_time_s)
     loop, force_n = stepped(1e6, 3, 0.75)
     with pytest.raises(LoopFitRefused, match="overshoots by"):
