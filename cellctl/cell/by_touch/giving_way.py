@@ -47,7 +47,7 @@ def giving_way(
     weights = levers(settings.lever_m)
     # One contact can load at most three of them: its normal and its moment lie in one plane.
     gains = AdmittanceGains(
-        mass=virtual_mass(weights),
+        mass=virtual_mass(settings.figures, weights),
         damping=damping(settings.figures, weights, min(len(follows), 3)),
         spring=np.zeros(6) if spring is None else spring,
         follows=np.isin(np.arange(6), follows),

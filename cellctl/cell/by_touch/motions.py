@@ -81,7 +81,8 @@ class ContactMotions(ABC):
     ) -> ContactMotion:
         """Go along a unit vector until the force against it exceeds ``force_n``.
 
-        Without a speed: the greatest that keeps the overshoot of the force within ``force_n``.
+        Without a speed: the greatest that keeps the overshoot of the force within ``force_n``. A
+        touch across z after a press goes on to press.
         """
 
     @abstractmethod

@@ -103,11 +103,13 @@ class Admittance:
 class PushRamp:
     """Wanted push of a motion: begins at what is felt, so that nothing jumps."""
 
-    def __init__(self, felt: Array, push: Array, period_s: float) -> None:
+    def __init__(
+        self, felt: Array, push: Array, period_s: float, duration_s: float = RAMP_S
+    ) -> None:
         """``felt`` and ``push`` of shape (6,)."""
         # At the start push + felt is to be zero: the peg pushes with what it feels already.
         self._begin, self._end = -felt, push
-        self._step = period_s / RAMP_S
+        self._step = period_s / max(duration_s, period_s)
         self._share = 0.0
 
     def step(self) -> Array:

@@ -19,6 +19,7 @@ _DAMPING_RATIO = 1.5
 _GREATEST_LOAD = 0.70
 _SLOWEST_M_S = 0.05e-3
 _MASS_KG = 10.0
+_MASS_SHARE = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +56,11 @@ def damping(figures: LoopFigures, weights: Array, axes: int) -> Array:
     return _DAMPING_RATIO * axes * figures.loop_n_s_m * weights**2
 
 
-def virtual_mass(weights: Array) -> Array:
+def virtual_mass(figures: LoopFigures, weights: Array) -> Array:
     """M of each axis, as ``weights``; the same at the rim for a shift and a turn."""
-    return _MASS_KG * weights**2
+    # M/S stays short against the dead time, or the mass would add to it.
+    light_kg = _MASS_SHARE * _DAMPING_RATIO * figures.loop_n_s_m * figures.dead_time_s
+    return np.asarray(min(_MASS_KG, light_kg) * weights**2)
 
 
 def loop_load(figures: LoopFigures, weights: Array, damping_s: Array) -> float:

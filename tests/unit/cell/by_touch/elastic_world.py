@@ -184,10 +184,10 @@ class Ticks(TickObserver):
         self.all.append(tick)
 
 
-def contact(
+def contact_loop(
     world: ElasticWorld, figures: LoopFigures | None = None, ticks: Ticks | None = None
-) -> StreamedContact:
-    """Motions in a world, commissioned for its stiffness of 1e6 N/m unless told otherwise."""
+) -> ContactLoop:
+    """The loop of a world, with gains for a stiffness of 1e6 N/m unless told otherwise."""
     settings = ContactSettings(
         figures or LoopFigures(1e6, world.dead_time_s),
         lever_m=3e-3,
@@ -196,7 +196,7 @@ def contact(
         limit_nm=2.0,
     )
     tare = TareResult(np.zeros(6), np.full(6, world.sigma_n), 500)
-    loop = ContactLoop(
+    return ContactLoop(
         world.stream,
         world.guard,
         tare,
@@ -205,4 +205,10 @@ def contact(
         observer=ticks or Ticks(),
         clock=lambda: world.now_s,
     )
-    return StreamedContact(loop)
+
+
+def contact(
+    world: ElasticWorld, figures: LoopFigures | None = None, ticks: Ticks | None = None
+) -> StreamedContact:
+    """Motions in a world, as ``contact_loop``."""
+    return StreamedContact(contact_loop(world, figures, ticks))

@@ -34,12 +34,12 @@ class SampledLoop:
         return self.period_s * (self.delay_ticks + 1.5) + self.arm_lag_s + self.filter_s
 
     def force_n(self, push_n: float, ticks: int) -> Array:
-        """True contact force (n,) at every tick after a step of the push."""
+        """Contact force (n,) after the filter, from the tick before a step of the push on."""
         state = np.zeros(12 + self.delay_ticks + 2)
-        forces = []
+        forces = [0.0]
         for _ in range(ticks):
             state = self._after(state, push_n)
-            forces.append(self.stiffness_n_m * state[-2])
+            forces.append(float(state[-1]))
         return np.array(forces)
 
     def greatest_eigenvalue(self) -> float:

@@ -48,7 +48,7 @@ def test_a_spring_holds_against_a_force() -> None:
     law = Admittance(gains(spring=5e4), BOUNDS, PERIOD_S)
     for _ in range(2000):
         moved = law.step(np.zeros(6), along_z(10.0))
-    assert moved[2] == pytest.approx(10.0 / 5e4)
+    assert moved[2] == pytest.approx(10.0 / 5e4, rel=1e-3)
 
 
 def test_a_change_of_gains_keeps_place_and_speed() -> None:

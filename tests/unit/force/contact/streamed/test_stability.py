@@ -47,13 +47,19 @@ def test_gains_of_the_tip_are_unstable_about_the_sensor() -> None:
     made = designed(1e6, CHAMFER, 3)
     made.weights = np.array([*CHAMFER[:4], 0.2, 0.0])  # 200 mm away instead of 14
     assert made.greatest_eigenvalue() > 1.01
-    made.damping = 20 * made.damping
-    assert made.greatest_eigenvalue() > 1.0 + 1e-6
+    made.damping = 5 * made.damping  # more than 20 kθ w²
+    assert made.greatest_eigenvalue() > 1.01
 
 
 @pytest.mark.parametrize(
     ("ratio", "low", "high"),
-    [(0.7, 0.35, 0.75), (1.0, 0.15, 0.40), (1.5, 0.0, 0.13), (2.0, 0.0, 0.04), (2.72, 0.0, 0.01)],
+    [
+        (0.7, 0.40, 0.80),
+        (1.0, 0.15, 0.40),
+        (1.5, 0.0, 0.13),
+        (2.0, -0.01, 0.04),
+        (2.72, -0.01, 0.01),
+    ],
 )
 @pytest.mark.parametrize("delay_ticks", [2, 10])
 def test_overshoot_of_a_step_is_that_of_the_table(

@@ -1,0 +1,199 @@
+"""Measures dead time and stiffness of a streamed contact on a fixture, and tries the loop.
+
+Section 4.5 of the study of insertion by touch. What was found is an upper bound as long as robot,
+controller version and tool stay the same.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.cell.by_touch.contact_loop import ContactLoop
+from cellctl.cell.by_touch.motions import ContactSample, Ended
+from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.errors.streamed_contact import LoopFitRefused
+from cellctl.force.contact.streamed.admittance import (
+    Admittance,
+    AdmittanceBounds,
+    AdmittanceGains,
+)
+from cellctl.force.contact.streamed.gains import LoopFigures, damping, levers, virtual_mass
+from cellctl.force.contact.streamed.identification import (
+    TICKS_OF_THE_LOOP,
+    StiffnessFit,
+    burst_dead_times,
+    check_loop,
+    check_step,
+    chirp,
+    fit_loop,
+    fit_stiffness,
+)
+from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+from cellctl.geometry.pose import Array
+
+_DOWN = np.array([0.0, 0.0, 1.0])
+_FORCES_N = (5.0, 10.0, 15.0, 20.0)
+_READ_S = 0.4
+_CHIRP_S = 4.0
+_FREE_CHIRP_M = 1e-3
+_FASTEST_CHIRP_HZ = 8.0
+_SHARE_OF_STEP = 0.8
+_STEP_N = 5.0
+_STEPS = 8
+_STEP_DEAD_TIMES = 12
+_ACCELERATION_M_S2 = 1.0
+"""For steps of the loop: they are so short that its bound would hide how the loop behaves."""
+_Z = 2
+
+
+@dataclass(frozen=True, slots=True)
+class CommissionedLoop:
+    """What a commissioning has found."""
+
+    figures: LoopFigures
+    """The stiffness, and the greatest dead time of any burst."""
+    usual_dead_time_s: float
+    """Median over the bursts."""
+    motion_dead_time_s: float
+    """From setpoint to measured pose in free air, median; the rest is that of the force."""
+    stiffness: StiffnessFit
+    fitted: LoopFigures
+    """From the closed loop."""
+
+
+async def commission_contact(
+    loop: ContactLoop, travel_m: float, free_m: float = _FREE_CHIRP_M
+) -> CommissionedLoop:
+    """Chirp in free air, press on the fixture within ``travel_m`` along z, chirp and step there.
+
+    The tip begins more than ``free_m`` above the fixture, the amplitude of the free chirp.
+
+    ``loop.settings.figures`` are bounds that hold without any measurement; they make the first
+    touch slow enough. Raises ``LoopFitRefused``, and what the motions raise.
+    """
+    run = _Commissioning(loop)
+    motion_s = await run.motion_dead_times(min(free_m, run.greatest_chirp_m))
+    stiffness = await run.stiffness(travel_m)
+    dead_s = await run.force_dead_times(stiffness.stiffness_n_m)
+    figures = LoopFigures(stiffness.stiffness_n_m, float(dead_s.max()))
+    usual = LoopFigures(stiffness.stiffness_n_m, float(np.median(dead_s)))
+    fitted = await run.loop_figures(figures, usual)
+    await run.contact.back_out(loop.settings.follow_m)
+    return CommissionedLoop(
+        figures, usual.dead_time_s, float(np.median(motion_s)), stiffness, fitted
+    )
+
+
+class _Commissioning:
+    def __init__(self, loop: ContactLoop) -> None:
+        self._loop = loop
+        self.contact = StreamedContact(loop)
+        fastest_m_s = _SHARE_OF_STEP * loop.stream.limits.step_m / loop.period_s
+        self.greatest_chirp_m = fastest_m_s / (2 * np.pi * _FASTEST_CHIRP_HZ)
+
+    async def motion_dead_times(self, amplitude_m: float) -> Array:
+        sent_s, samples, command = await self._chirp(amplitude_m)
+        read_s = np.array([sample.time_s for sample in samples])
+        poses = np.array([sample.task_position_tip_m[_Z] for sample in samples])
+        return burst_dead_times(sent_s, command, read_s, poses)
+
+    async def stiffness(self, travel_m: float) -> StiffnessFit:
+        readings = []
+        for force_n in _FORCES_N:
+            # Force that grows while the arm answers belongs to the next reading.
+            touched = await self.contact.touch(_DOWN, travel_m, force_n)
+            if touched.ended is not Ended.FORCE:
+                raise LoopFitRefused(f"no {force_n:.0f} N within {travel_m * 1e3:.2f} mm")
+            readings.append(await self._reading())
+        for _ in _FORCES_N[:-1]:
+            slope = fit_stiffness(*np.array(readings).T).stiffness_n_m
+            back_m = self._loop.tip_command[_Z] - _STEP_N / slope
+            await self._go(back_m)
+            readings.append(await self._reading())
+        return fit_stiffness(*np.array(readings).T)
+
+    async def force_dead_times(self, stiffness_n_m: float) -> Array:
+        """In the middle of the forces; with what a sampled loop adds."""
+        _, felt_n = await self._reading()
+        await self._go(self._loop.tip_command[_Z] + (2 * _STEP_N - felt_n) / stiffness_n_m)
+        amplitude_m = min(_STEP_N / stiffness_n_m, self.greatest_chirp_m)
+        sent_s, samples, command = await self._chirp(amplitude_m)
+        read_s = np.array([sample.time_s for sample in samples])
+        press_n = np.array([-sample.force_n[_Z] for sample in samples])
+        delays_s = burst_dead_times(sent_s, command * stiffness_n_m, read_s, press_n)
+        return np.asarray(delays_s + TICKS_OF_THE_LOOP * self._loop.period_s)
+
+    async def loop_figures(self, figures: LoopFigures, usual: LoopFigures) -> LoopFigures:
+        """Twice the damping of the design shows the figures, the design itself shows its steps."""
+        slow = damping(figures, levers(self._loop.settings.lever_m), 2)
+        times_s, rise_n, step_n = await self._steps(figures, slow)
+        push_n = np.full(len(times_s), step_n)
+        fitted = fit_loop(times_s, push_n, rise_n, float(slow[_Z]))
+        check_loop(usual, fitted)
+        designed = damping(figures, levers(self._loop.settings.lever_m), 1)
+        times_s, rise_n, step_n = await self._steps(figures, designed)
+        noise_n = self._loop.sample.force_sigma_n / np.sqrt(_STEPS)
+        check_step(times_s, rise_n, step_n, figures.dead_time_s, float(noise_n))
+        return fitted
+
+    async def _steps(self, figures: LoopFigures, gains: Array) -> tuple[Array, Array, float]:
+        """Mean over some steps up: times, rise of the force, height of the step."""
+        speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
+        step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
+        law = self._law(figures, gains, speed_m_s)
+        nominal = self._loop.tip_command
+        ticks = round(_STEP_DEAD_TIMES * figures.dead_time_s / self._loop.period_s)
+        rises = []
+        for _ in range(_STEPS):
+            await self._push(law, nominal, _STEP_N, 2 * ticks)
+            samples = await self._push(law, nominal, _STEP_N + step_n, ticks)
+            rises.append([-sample.force_n[_Z] - _STEP_N for sample in samples])
+        times_s = np.asarray(np.arange(ticks + 1) * self._loop.period_s, dtype=np.float64)
+        return times_s, np.asarray(np.mean(rises, axis=0)), step_n
+
+    async def _push(
+        self, law: Admittance, nominal: Array, push_n: float, ticks: int
+    ) -> list[ContactSample]:
+        """The sample before, and one of each tick."""
+        samples = [self._loop.sample]
+        push = np.array([0.0, 0.0, push_n, 0.0, 0.0, 0.0])
+        for _ in range(ticks):
+            moved = law.step(push, self._loop.felt)
+            samples.append(await self._loop.send(nominal + moved))
+        return samples
+
+    def _law(self, figures: LoopFigures, gains: Array, speed_m_s: float) -> Admittance:
+        weights = levers(self._loop.settings.lever_m)
+        only_z = np.arange(6) == _Z
+        way_m = self._loop.settings.follow_m
+        bounds = AdmittanceBounds(
+            np.full(6, speed_m_s), np.full(6, _ACCELERATION_M_S2), np.full(6, way_m)
+        )
+        made = AdmittanceGains(virtual_mass(figures, weights), gains, np.zeros(6), only_z)
+        return Admittance(made, bounds, self._loop.period_s)
+
+    async def _chirp(self, amplitude_m: float) -> tuple[Array, list[ContactSample], Array]:
+        """When each setpoint was sent, what followed, and z that was sent."""
+        shifts = chirp(amplitude_m, _CHIRP_S, self._loop.period_s)
+        begin = self._loop.tip_command
+        sent_s, samples = [], []
+        for shift_m in shifts:
+            sent_s.append(self._loop.sample.time_s)
+            samples.append(await self._loop.send(begin + shift_m * np.eye(6)[_Z]))
+        return np.array(sent_s), samples, np.asarray(begin[_Z] + shifts)
+
+    async def _reading(self) -> tuple[float, float]:
+        """Travel and force along z at standstill: the second half of some ticks."""
+        ticks = max(4, round(_READ_S / self._loop.period_s))
+        samples = [await self._loop.send(self._loop.tip_command) for _ in range(ticks)]
+        steady = samples[ticks // 2 :]
+        travel_m = np.mean([sample.task_position_tip_m[_Z] for sample in steady])
+        return float(travel_m), float(np.mean([-sample.force_n[_Z] for sample in steady]))
+
+    async def _go(self, depth_m: float) -> None:
+        """Along z in contact, as slowly as a touch."""
+        way_m = float(depth_m - self._loop.tip_command[_Z])
+        settings = self._loop.settings
+        await self.contact.touch(
+            np.sign(way_m) * _DOWN, abs(way_m), settings.limit_n, settings.touch_speed_m_s
+        )
