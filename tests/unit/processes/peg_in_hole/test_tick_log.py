@@ -46,7 +46,7 @@ def test_a_stream_without_a_tick_has_no_peaks() -> None:
 
 @given(st.text())
 def test_what_is_no_table_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="no table|rows|could not convert|new-line|line"):
+    with pytest.raises(ValueError, match=r"no table|rows|could not convert"):
         read_ticks(text)
 
 
