@@ -6,6 +6,7 @@ from cellctl.force.contact.streamed.gains import (
     LoopFigures,
     check_load,
     check_press,
+    check_speed,
     contact_load,
     damping,
     levers,
@@ -51,7 +52,9 @@ class ContactSettings:
             follows = weights > 0 if axes > 1 else weights < 0
             follows[2] = True
             check_load(contact_load(self.figures, self.lever_m, every, follows))
-        check_press(self.figures, self.press_n, float(damping(self.figures, weights, 1)[2]))
+        alone_n_s_m = float(damping(self.figures, weights, 1)[2])
+        check_press(self.figures, self.press_n, alone_n_s_m)
+        check_speed(self.touch_speed_m_s, alone_n_s_m, self.limit_n)
 
     @property
     def touch_speed_m_s(self) -> float:

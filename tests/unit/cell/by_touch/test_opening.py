@@ -16,7 +16,7 @@ from cellctl.cell.guarded_moves import WrenchTolerance
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.load import load_cell
 from cellctl.errors.robot import StreamNotOffered
-from cellctl.errors.streamed_contact import LoopTooSlow
+from cellctl.errors.streamed_contact import LoopTooSlow, LoopUnstable
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
@@ -68,6 +68,11 @@ def test_a_robot_without_a_stream_is_told() -> None:
     with pytest.raises(StreamNotOffered, match="main follows no stream"):
         asyncio.run(opened(InProcessRobot("main"), guard))
     assert guard.asked == []
+
+
+def test_a_force_limit_that_giving_way_would_pass_is_refused() -> None:
+    with pytest.raises(LoopUnstable, match=r"more than half of the limit of 8 N"):
+        ContactSettings(LoopFigures(1e6, 24e-3), 3e-3, 8.0, limit_n=8.0, limit_nm=2.0).check()
 
 
 def test_a_loop_that_is_too_slow_is_refused_before_anything_is_done() -> None:
