@@ -19,6 +19,7 @@ from cellctl.errors.robot import (
     StreamNotOffered,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.interfaces.arm_chain import ArmChain
 from cellctl.interfaces.robot import ForwardKinematics, RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
@@ -31,7 +32,7 @@ from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.kinematics import Kinematics, arm_chain
 from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
@@ -73,6 +74,11 @@ class SiasunRobot(StreamingRobot):
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
         """By the dh table of the configuration."""
         return None if config.dh is None else Kinematics(config.dh).base_T_flange
+
+    @classmethod
+    def chain(cls, config: Any) -> ArmChain | None:
+        """By the dh table and the joint limits of the configuration."""
+        return arm_chain(config)
 
     async def connect(self) -> None:
         """Listen and wait for both channels and a first state report. Idempotent."""

@@ -21,6 +21,7 @@ from cellctl.errors.robot import (
     TargetOutOfBounds,
 )
 from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.arm_chain import ArmChain
 from cellctl.interfaces.robot import ForwardKinematics, RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
@@ -31,7 +32,7 @@ from cellctl.interfaces.streaming_robot import (
 from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.kinematics import Kinematics, arm_chain
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
@@ -79,6 +80,11 @@ class SiasunRpcRobot(StreamingRobot):
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
         """By the dh table of the configuration."""
         return None if config.dh is None else Kinematics(config.dh).base_T_flange
+
+    @classmethod
+    def chain(cls, config: Any) -> ArmChain | None:
+        """By the dh table and the joint limits of the configuration."""
+        return arm_chain(config)
 
     async def connect(self) -> None:
         """Open all connections and wait for a first state; with a dh table, ``VersionMismatch``

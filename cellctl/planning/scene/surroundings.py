@@ -1,0 +1,142 @@
+"""One arm among everything that stands still while it moves: how near it comes at given joints."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import fcl
+import numpy as np
+
+from cellctl.geometry.pose import Array
+from cellctl.planning.scene.arm import PlannedArm
+from cellctl.planning.scene.nearest import NarrowestGap
+from cellctl.planning.scene.solid import Solid
+
+Clearances = Mapping[frozenset[str], float]
+"""In m, for pairs of bodies that a process brings together."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StandingSolid:
+    """A body where it stands while the arm moves."""
+
+    solid: Solid
+    cell_T_shape: Array
+    """Shape (4, 4)."""
+    label: str
+    """What a finding calls it: a body of another arm with the place at which that arm stands."""
+
+
+class Surroundings:
+    """The distances of one arm's bodies to what stands around it and to each other."""
+
+    def __init__(
+        self,
+        arm: PlannedArm,
+        moving: Sequence[Solid],
+        standing: Sequence[StandingSolid],
+        clearances: Clearances,
+    ) -> None:
+        self.arm = arm
+        self._moving = moving
+        self._offsets = np.array([solid.link_T_shape for solid in moving])
+        self._links = np.array([solid.link for solid in moving])
+        self._movers = [fcl.CollisionObject(solid.shape.geometry()) for solid in moving]
+        self._others = list(standing)
+        self._standers = [_placed(one) for one in standing]
+        pairs = list(_pairs(moving, standing, clearances))
+        self._first = np.array([pair[0] for pair in pairs], dtype=int)
+        self._second = np.array([pair[1] for pair in pairs], dtype=int)
+        self._required = np.array([pair[2] for pair in pairs])
+        radii = np.array(
+            [solid.shape.radius_m for solid in moving]
+            + [one.solid.shape.radius_m for one in standing]
+        )
+        self._balls = radii[self._first] + radii[self._second]
+        self._still_at = np.array([one.cell_T_shape[:3, 3] for one in standing]).reshape(-1, 3)
+        self.lever_m = np.max(
+            [arm.lever_m(solid.link, _reach_m(solid)) for solid in moving], axis=0
+        )
+        """The greatest distance of any body of the arm from the axis of each joint, shape (6,)."""
+
+    def narrowest(self, joints_rad: Array) -> NarrowestGap:
+        """The pair with the least slack at joints of shape (6,)."""
+        poses = self.arm.link_frames(joints_rad)[self._links] @ self._offsets
+        for mover, pose in zip(self._movers, poses, strict=True):
+            mover.setTransform(fcl.Transform(pose[:3, :3], pose[:3, 3]))
+        at = np.vstack([poses[:, :3, 3], self._still_at])
+        way = at[self._first] - at[self._second]
+        # No pair has less slack than the balls around its bodies, so most need no look.
+        least = np.sqrt((way * way).sum(axis=1)) - self._balls - self._required
+        best: tuple[float, int, Array] | None = None
+        for pair in np.argsort(least):
+            if best is not None and least[pair] >= best[0] - self._required[best[1]]:
+                break
+            distance_m, place_m = self._distance(int(pair))
+            if best is None or distance_m - self._required[pair] < (
+                best[0] - self._required[best[1]]
+            ):
+                best = distance_m, int(pair), place_m
+        if best is None:
+            raise ValueError("a scene without any pair of bodies has no distances")
+        distance_m, pair, place_m = best
+        first, second = self._first[pair], self._second[pair]
+        return NarrowestGap(
+            self._label(first), self._label(second), distance_m, self._required[pair], place_m
+        )
+
+    def _distance(self, pair: int) -> tuple[float, Array]:
+        result = fcl.DistanceResult()
+        request = fcl.DistanceRequest(enable_nearest_points=True)
+        first, second = self._object(self._first[pair]), self._object(self._second[pair])
+        distance_m = fcl.distance(first, second, request, result)
+        if distance_m <= 0.0:
+            # The points of bodies that meet are not defined: half way between their middles.
+            between = (np.array(first.getTranslation()) + np.array(second.getTranslation())) / 2
+            return 0.0, between
+        return float(distance_m), np.mean(result.nearest_points, axis=0)
+
+    def _object(self, index: int) -> fcl.CollisionObject:
+        count = len(self._movers)
+        return self._movers[index] if index < count else self._standers[index - count]
+
+    def _label(self, index: int) -> str:
+        count = len(self._moving)
+        return self._moving[index].name if index < count else self._others[index - count].label
+
+
+def _placed(one: StandingSolid) -> fcl.CollisionObject:
+    pose = one.cell_T_shape
+    transform = fcl.Transform(pose[:3, :3], pose[:3, 3])
+    return fcl.CollisionObject(one.solid.shape.geometry(), transform)
+
+
+def _reach_m(solid: Solid) -> float:
+    return float(np.linalg.norm(solid.link_T_shape[:3, 3])) + solid.shape.radius_m
+
+
+def _pairs(
+    moving: Sequence[Solid], standing: Sequence[StandingSolid], clearances: Clearances
+) -> list[tuple[int, int, float]]:
+    """Indices of both bodies, over the moving ones and then the standing ones, and what has to stay
+    free between them in m."""
+    links = sorted({solid.link for solid in moving} | {0})
+    found = []
+    for index, solid in enumerate(moving):
+        for number, other in enumerate(moving[index + 1 :], start=index + 1):
+            if _may_meet(solid.link, other.link, links):
+                # Both margins are those of one arm; what it does to itself needs neither of them.
+                found.append((index, number, 0.0))
+        for number, one in enumerate(standing, start=len(moving)):
+            if one.solid.arm == solid.arm:
+                if _may_meet(solid.link, 0, links):
+                    found.append((index, number, 0.0))
+                continue
+            margin_m = solid.margin_m + one.solid.margin_m
+            pair = frozenset((solid.name, one.solid.name))
+            found.append((index, number, clearances.get(pair, margin_m)))
+    return found
+
+
+def _may_meet(link: int, other: int, links: Sequence[int]) -> bool:
+    """Two links of one arm that follow each other are joined and touch always."""
+    return abs(links.index(link) - links.index(other)) > 1
