@@ -1,6 +1,7 @@
 """An arm of the model: where its links are at given joints, and how fast their bodies can move."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -10,6 +11,7 @@ from cellctl.config.robot_drivers import robot_driver
 from cellctl.errors.planning import ArmNotDescribed
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.pose import Array
+from cellctl.interfaces import Robot
 from cellctl.interfaces.arm_chain import ArmChain
 
 
@@ -23,6 +25,9 @@ class PlannedArm:
     cell_T_base: RigidTransform
     rated_rad_s: Array
     """Shape (6,), at 100 %."""
+    driver: type[Robot]
+    settings: Any
+    """Of the driver, as it has checked them."""
 
     def link_frames(self, joints_rad: Array) -> Array:
         """``cell_T_link`` of base and all six links, shape (7, 4, 4), at joints of shape (6,)."""
@@ -41,9 +46,8 @@ class PlannedArm:
 
     def refusal(self, joints_rad: Array) -> str | None:
         """Why the robot's driver would not let it stand there; None when it would."""
-        driver, settings = robot_driver(self.config)
         try:
-            driver.check_joint_target(settings, joints_rad)
+            self.driver.check_joint_target(self.settings, joints_rad)
         except TargetOutOfBounds as fault:
             return fault.detail
         return None
@@ -87,4 +91,4 @@ def planned_arm(
     chain = driver.chain(settings)
     if chain is None:
         raise ArmNotDescribed(f"robots.{name}: its settings have no dh table")
-    return PlannedArm(name, config, chain, cell_T_base, rated_rad_s)
+    return PlannedArm(name, config, chain, cell_T_base, rated_rad_s, driver, settings)
