@@ -14,6 +14,8 @@ from cellctl.planning.scene.solid import Solid
 Clearances = Mapping[frozenset[str], float]
 """In m, for pairs of bodies that a process brings together."""
 
+_WITH_POINTS = fcl.DistanceRequest(enable_nearest_points=True)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StandingSolid:
@@ -60,40 +62,56 @@ class Surroundings:
 
     def narrowest(self, joints_rad: Array) -> NarrowestGap:
         """The pair with the least slack at joints of shape (6,)."""
+        least_m = self._least_slack_m(joints_rad)
+        best_m, best, found = np.inf, -1, fcl.DistanceResult()
+        for pair in np.argsort(least_m).tolist():
+            # No later pair can have less.
+            if least_m[pair] >= best_m:
+                break
+            result = fcl.DistanceResult()
+            slack_m = self._distance_m(pair, result) - self._required[pair]
+            if slack_m < best_m:
+                best_m, best, found = slack_m, pair, result
+        if best < 0:
+            raise ValueError("a scene without any pair of bodies has no distances")
+        first, second = self._first[best], self._second[best]
+        required_m = float(self._required[best])
+        place_m = self._place_m(best, found, touching=best_m + required_m <= 0.0)
+        distance_m = best_m + required_m
+        return NarrowestGap(
+            self._label(first), self._label(second), distance_m, required_m, place_m
+        )
+
+    def has_room(self, joints_rad: Array, slack_m: float) -> bool:
+        """Whether every pair has this much slack at joints of shape (6,); quicker than to measure
+        the narrowest."""
+        least_m = self._least_slack_m(joints_rad)
+        near = np.flatnonzero(least_m < slack_m)
+        # The likeliest to meet first.
+        return all(
+            self._distance_m(pair, fcl.DistanceResult()) - self._required[pair] >= slack_m
+            for pair in near[np.argsort(least_m[near])].tolist()
+        )
+
+    def _least_slack_m(self, joints_rad: Array) -> Array:
+        """What no pair has less than, by the balls around its bodies; places all bodies."""
         poses = self.arm.link_frames(joints_rad)[self._links] @ self._offsets
         for mover, pose in zip(self._movers, poses, strict=True):
             mover.setTransform(fcl.Transform(pose[:3, :3], pose[:3, 3]))
         at = np.vstack([poses[:, :3, 3], self._still_at])
         way = at[self._first] - at[self._second]
-        # No pair has less slack than the balls around its bodies, so most need no look.
-        least = np.sqrt((way * way).sum(axis=1)) - self._balls - self._required
-        best: tuple[float, int, Array] | None = None
-        for pair in np.argsort(least):
-            if best is not None and least[pair] >= best[0] - self._required[best[1]]:
-                break
-            distance_m, place_m = self._distance(int(pair))
-            if best is None or distance_m - self._required[pair] < (
-                best[0] - self._required[best[1]]
-            ):
-                best = distance_m, int(pair), place_m
-        if best is None:
-            raise ValueError("a scene without any pair of bodies has no distances")
-        distance_m, pair, place_m = best
-        first, second = self._first[pair], self._second[pair]
-        return NarrowestGap(
-            self._label(first), self._label(second), distance_m, self._required[pair], place_m
-        )
+        return np.asarray(np.sqrt((way * way).sum(axis=1)) - self._balls - self._required)
 
-    def _distance(self, pair: int) -> tuple[float, Array]:
-        result = fcl.DistanceResult()
-        request = fcl.DistanceRequest(enable_nearest_points=True)
+    def _distance_m(self, pair: int, result: fcl.DistanceResult) -> float:
         first, second = self._object(self._first[pair]), self._object(self._second[pair])
-        distance_m = fcl.distance(first, second, request, result)
-        if distance_m <= 0.0:
-            # The points of bodies that meet are not defined: half way between their middles.
-            between = (np.array(first.getTranslation()) + np.array(second.getTranslation())) / 2
-            return 0.0, between
-        return float(distance_m), np.mean(result.nearest_points, axis=0)
+        return max(0.0, float(fcl.distance(first, second, _WITH_POINTS, result)))
+
+    def _place_m(self, pair: int, result: fcl.DistanceResult, *, touching: bool) -> Array:
+        if not touching:
+            return np.mean(result.nearest_points, axis=0)
+        # The points of bodies that meet are not defined: half way between their middles.
+        ends = self._object(self._first[pair]), self._object(self._second[pair])
+        return np.mean([end.getTranslation() for end in ends], axis=0)
 
     def _object(self, index: int) -> fcl.CollisionObject:
         count = len(self._movers)

@@ -16,7 +16,7 @@ RESERVE_M = 0.005
 _STEP_SHARE = 0.01
 """Between two looks of the search, as a share of the whole space of joints; the result is then
 swept without a gap."""
-_SHORTCUTS = 60
+_SHORTCUTS = 40
 
 
 def free_way(
@@ -83,10 +83,8 @@ def _tree(
 
     def free(state: object) -> bool:
         joints_rad = np.array([state[joint] for joint in range(6)])  # type: ignore[index]
-        if around.arm.refusal(joints_rad) is not None:
-            return False
-        # OMPL casts the answer, and refuses a truth of numpy.
-        return bool(around.narrowest(joints_rad).slack_m >= RESERVE_M)
+        in_bounds = around.arm.refusal(joints_rad) is None
+        return in_bounds and around.has_room(joints_rad, RESERVE_M)
 
     setup.setStateValidityChecker(free)
     setup.getSpaceInformation().setStateValidityCheckingResolution(_STEP_SHARE)
