@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.planning.scene.cell_scene import Standpoint
 from tests.unit.planning.deck_cell import deck_scene
-from tests.unit.planning.mujoco_oracle import MujocoOracle
 
 SCENE = deck_scene()
 

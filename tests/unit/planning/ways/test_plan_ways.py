@@ -1,11 +1,13 @@
 """Ways of the shipped cell and of cells that were disturbed, verified by another library."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.config import load_cell
 from cellctl.errors.planning import ClearanceTooSmall
 from cellctl.planning.model.shapes import BoxShape
@@ -14,10 +16,9 @@ from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways, with_ways
 from cellctl.planning.ways.write_ways import with_ways_written
 from tests.unit.planning.deck_cell import DECK, deck_scene
-from tests.unit.planning.mujoco_oracle import MujocoOracle
 
 BODY_STEP_M = 0.01
-"""Between two looks of the oracle no body moves further; the campaign looks at every 1 mm."""
+"""Between two looks of the oracle no body moves further; `make campaign-planning` looks each mm."""
 
 
 def main_way(scene: CellScene, seed: int = 1) -> PlannedWay:
@@ -41,7 +42,7 @@ def box_at(place_m: tuple[float, float, float], size_m: float = 0.2) -> Solid:
     return Solid("obstacle", None, 0, pose, BoxShape((size_m,) * 3), 0.0, stand_in=False)
 
 
-def test_a_way_around_the_heads_is_found_and_free_by_another_library(tmp_path) -> None:  # type: ignore[no-untyped-def]
+def test_a_way_around_the_heads_is_found_and_free_by_another_library(tmp_path: Path) -> None:
     scene = deck_scene()
     way = main_way(scene)
     assert len(way.joints_rad) > 2
@@ -59,6 +60,7 @@ def test_a_way_around_the_heads_is_found_and_free_by_another_library(tmp_path) -
     assert with_ways_written(text, []).count("[[robots.main.ways]]") == 0
 
 
+@pytest.mark.long
 def test_the_same_seed_gives_the_same_way() -> None:
     first, second = (main_way(deck_scene(), seed=3) for _ in range(2))
     assert np.array_equal(first.joints_rad, second.joints_rad)
