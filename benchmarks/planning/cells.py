@@ -8,8 +8,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config import load_cell
+from cellctl.config.model_file import model_path
 from cellctl.geometry.pose import Array
-from cellctl.planning.model.read import model_path, read_model
+from cellctl.planning.model.read import read_model
 from cellctl.planning.model.shapes import BoxShape
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid

@@ -1,6 +1,7 @@
 """Distances between the bodies of a model by MuJoCo, an independent second opinion."""
 
 from collections.abc import Mapping
+from itertools import combinations
 
 import mujoco
 import numpy as np
@@ -25,6 +26,8 @@ class MujocoOracle:
             body.add_geom(name=solid.name, **_geom(solid))
         self._model = spec.compile()
         self._data = mujoco.MjData(self._model)
+        self._ids = {solid.name: self._model.geom(solid.name).id for solid in scene.solids}
+        self._pairs_of: dict[str, list[tuple[Solid, Solid]]] = {}
 
     def narrowest_slack_m(
         self, robot: str, joints_rad: Mapping[str, Array], *, approach: bool = False
@@ -37,22 +40,38 @@ class MujocoOracle:
             quaternion = Rotation.from_matrix(pose[:3, :3]).as_quat(scalar_first=True)
             self._data.mocap_quat[index] = quaternion
         mujoco.mj_kinematics(self._model, self._data)
-        solids = [solid for solid, _ in placed]
-        return min(
-            self._slack_m(first, second, approach=approach)
-            for index, first in enumerate(solids)
-            for second in solids[index + 1 :]
-            if robot in (first.arm, second.arm) and self._may_meet(first, second)
-        )
+        at = {solid.name: pose[:3, 3] for solid, pose in placed}
+        best_m = np.inf
+        for first, second in self._pairs(robot):
+            if first.name in at and second.name in at:
+                apart_m = float(np.linalg.norm(at[first.name] - at[second.name]))
+                required_m = self._required_m(first, second, approach=approach)
+                balls_m = first.shape.radius_m + second.shape.radius_m
+                # The balls around two bodies are never nearer than the bodies.
+                if apart_m - balls_m - required_m < best_m:
+                    best_m = min(best_m, self._distance_m(first, second) - required_m)
+        return best_m
 
-    def _slack_m(self, first: Solid, second: Solid, *, approach: bool) -> float:
-        ids = [self._model.geom(solid.name).id for solid in (first, second)]
-        distance_m = mujoco.mj_geomDistance(self._model, self._data, *ids, FAR_M, np.zeros(6))
+    def _pairs(self, robot: str) -> list[tuple[Solid, Solid]]:
+        if robot not in self._pairs_of:
+            solids = self._scene.solids
+            self._pairs_of[robot] = [
+                (first, second)
+                for first, second in combinations(solids, 2)
+                if robot in (first.arm, second.arm) and self._may_meet(first, second)
+            ]
+        return self._pairs_of[robot]
+
+    def _distance_m(self, first: Solid, second: Solid) -> float:
+        ids = self._ids[first.name], self._ids[second.name]
+        found_m = mujoco.mj_geomDistance(self._model, self._data, *ids, FAR_M, np.zeros(6))
+        return max(0.0, float(found_m))
+
+    def _required_m(self, first: Solid, second: Solid, *, approach: bool) -> float:
         pair = frozenset((first.name, second.name))
         if approach and pair in self._scene.approaches:
-            return float(max(distance_m, 0.0) - self._scene.approaches[pair])
-        required_m = 0.0 if first.arm == second.arm else first.margin_m + second.margin_m
-        return float(distance_m - required_m)
+            return self._scene.approaches[pair]
+        return 0.0 if first.arm == second.arm else first.margin_m + second.margin_m
 
     def _may_meet(self, first: Solid, second: Solid) -> bool:
         if first.still and second.still:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cellctl.config import load_cell
+from cellctl.config.model_file import model_path
 from cellctl.errors.planning import PlanningNotInstalled
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ ModelFile = Annotated[
 def open_scene(cell_file: Path, model: Path | None) -> "CellScene":
     """The cell with its model; raises ``PlanningNotInstalled`` and what reading raises."""
     try:
-        from cellctl.planning.model.read import model_path, read_model
+        from cellctl.planning.model.read import read_model
     except ImportError as error:
         raise PlanningNotInstalled(str(error)) from error
     return read_model(load_cell(cell_file), model or model_path(cell_file))

@@ -23,11 +23,6 @@ _FARTHEST_M = 5.0
 """No body of an arm lies farther from the frame of its link."""
 
 
-def model_path(cell_file: Path) -> Path:
-    """``deck.model.toml`` beside ``deck.toml``."""
-    return cell_file.with_suffix(".model.toml")
-
-
 def read_model(cell: CellConfig, path: Path) -> CellScene:
     """The model of a cell file that was checked.
 

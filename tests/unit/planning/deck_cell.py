@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from cellctl.config import load_cell
-from cellctl.planning.model.read import model_path, read_model
+from cellctl.config.model_file import model_path
+from cellctl.planning.model.read import read_model
 from cellctl.planning.scene.cell_scene import CellScene
 
 DECK = Path("config/deck.toml")
