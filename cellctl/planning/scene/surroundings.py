@@ -108,10 +108,10 @@ class Surroundings:
 
     def _place_m(self, pair: int, result: fcl.DistanceResult, *, touching: bool) -> Array:
         if not touching:
-            return np.mean(result.nearest_points, axis=0)
+            return np.asarray(np.mean(result.nearest_points, axis=0))
         # The points of bodies that meet are not defined: half way between their middles.
         ends = self._object(self._first[pair]), self._object(self._second[pair])
-        return np.mean([end.getTranslation() for end in ends], axis=0)
+        return np.asarray(np.mean([end.getTranslation() for end in ends], axis=0))
 
     def _object(self, index: int) -> fcl.CollisionObject:
         count = len(self._movers)

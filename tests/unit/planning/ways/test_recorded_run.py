@@ -46,7 +46,7 @@ def covers(move: StatedMove, command: dict[str, Any]) -> bool:
         return False
     target_m = pose_from_xyzabc(command["base_T_flange_mm_deg"]).translation
     start, end = (flange(move.robot, place).translation for place in (move.start, move.end))
-    return off_line_m(target_m, start, end) <= STATION_M
+    return bool(off_line_m(target_m, start, end) <= STATION_M)
 
 
 def motions() -> list[dict[str, Any]]:
