@@ -37,17 +37,19 @@ class Outcome:
 
 def try_cell(seed: int, look_m: float = _LOOK_M, search_s: float = 20.0) -> Outcome:
     """Plan all ways of one random cell and verify them."""
-    scene = random_cell(seed).scene
     begin_s = time.monotonic()
     ways: list[PlannedWay] = []
-    reason = "planned"
+    slacks: list[float] = []
+    reason, seconds = "planned", 0.0
     try:
+        scene = random_cell(seed).scene()
         ways.extend(plan_ways(scene, seed=seed, search_s=search_s))
+        seconds = time.monotonic() - begin_s
+        slacks = [_least_slack_m(scene, way, look_m) for way in ways]
     except PlanningError as fault:
         reason = f"F{fault.number} {fault.text}"
-        print(f"cell {seed}: {fault}")
-    seconds = time.monotonic() - begin_s
-    slacks = [_least_slack_m(scene, way, look_m) for way in ways]
+        print(f"cell {seed}: {fault}", flush=True)
+        seconds = time.monotonic() - begin_s
     points = sum(len(way.joints_rad) - 2 for way in ways)
     return Outcome(seed, reason, seconds, points, min(slacks, default=np.inf) / MM)
 
