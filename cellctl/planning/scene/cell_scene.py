@@ -5,7 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellctl.cell.zones.zone import zones_of
 from cellctl.config.cell import CellConfig
+from cellctl.geometry.box import Box
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.solid import Solid
@@ -55,7 +57,24 @@ class CellScene:
         for other, standpoints in others.items():
             standing += self._at(other, standpoints)
         moving = [solid for solid in self._of(robot) if not solid.still]
-        return Surroundings(self.arms[robot], moving, standing, self.approaches if approach else {})
+        near = self.approaches if approach else {}
+        return Surroundings(self.arms[robot], moving, standing, near, self._closed(robot, others))
+
+    def _closed(self, robot: str, others: Mapping[str, Sequence[Standpoint]]) -> dict[str, Box]:
+        """The zones that the arbiter would not grant: another arm is in them where it stands."""
+        return {
+            zone.name: zone.shares[robot].box
+            for zone in zones_of(self.cell)
+            if robot in zone.shares
+            and any(
+                zone.shares[other].box.holds(
+                    self.arms[other].base_T_flange(np.array(standpoint.joints_rad)).translation
+                )
+                for other, standpoints in others.items()
+                if other in zone.shares
+                for standpoint in standpoints
+            )
+        }
 
     def placed(self, joints_rad: Mapping[str, Array]) -> list[tuple[Solid, Array]]:
         """Each body with its ``cell_T_shape``, shape (4, 4), at joints of shape (6,) by robot."""

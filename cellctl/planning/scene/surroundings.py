@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import fcl
 import numpy as np
 
+from cellctl.geometry.box import Box
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.nearest import NarrowestGap
@@ -37,8 +38,11 @@ class Surroundings:
         moving: Sequence[Solid],
         standing: Sequence[StandingSolid],
         clearances: Clearances,
+        closed: Mapping[str, Box],
     ) -> None:
+        """``closed``: zones by name in which another arm stands, in the base of this one."""
         self.arm = arm
+        self._closed = closed
         self._moving = moving
         self._offsets = np.array([solid.link_T_shape for solid in moving])
         self._links = np.array([solid.link for solid in moving])
@@ -59,6 +63,15 @@ class Surroundings:
             [arm.lever_m(solid.link, _reach_m(solid)) for solid in moving], axis=0
         )
         """The greatest distance of any body of the arm from the axis of each joint, shape (6,)."""
+
+    def refusal(self, joints_rad: Array) -> str | None:
+        """Why the arm would not be let there at joints of shape (6,), by its driver or the arbiter
+        of the zones; None when it would."""
+        flange_m = self.arm.base_T_flange(joints_rad).translation
+        for zone, box in self._closed.items():
+            if box.holds(flange_m):
+                return f"its flange comes into zone {zone}, in which another arm stands"
+        return self.arm.refusal(joints_rad)
 
     def narrowest(self, joints_rad: Array) -> NarrowestGap:
         """The pair with the least slack at joints of shape (6,)."""

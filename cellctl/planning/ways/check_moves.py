@@ -17,7 +17,6 @@ from cellctl.errors.planning import (
 )
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import Array
-from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.cell_scene import CellScene, Standpoint
 from cellctl.planning.scene.surroundings import Surroundings
 from cellctl.planning.ways.polyline import joints_at, polyline
@@ -61,8 +60,8 @@ def check_move(scene: CellScene, move: StatedMove) -> CheckedMove:
         return CheckedMove(move, None, fault)
     try:
         way_rad = polyline(arm, move)
-        require_in_bounds(arm, move, way_rad)
         around = surroundings_of(scene, move)
+        require_in_bounds(around, move, way_rad)
     except PlaceUnreachable as fault:
         return CheckedMove(move, None, fault)
     found = sweep(around, way_rad)
@@ -90,14 +89,14 @@ def surroundings_of(scene: CellScene, move: StatedMove) -> Surroundings:
     return scene.around(move.robot, others, approach=move.approach)
 
 
-def require_in_bounds(arm: PlannedArm, move: StatedMove, way_rad: Array) -> None:
-    """Raise ``PlaceUnreachable`` where the driver would refuse a joint move on its way."""
+def require_in_bounds(around: Surroundings, move: StatedMove, way_rad: Array) -> None:
+    """Raise ``PlaceUnreachable`` where driver or zones would refuse a joint move on its way."""
     # The bounds of straight moves are wider or narrower ones, which the driver holds against them.
     if move.kind is not MoveKind.JOINT:
         return
     for start_rad, end_rad in pairwise(way_rad):
         for at_rad in joint_path(start_rad, end_rad):
-            refusal = arm.refusal(at_rad)
+            refusal = around.refusal(at_rad)
             if refusal is not None:
                 raise PlaceUnreachable(f"{move.name}: {refusal}")
 

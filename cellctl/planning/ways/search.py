@@ -53,7 +53,7 @@ def free_way(
 def is_free_way(around: Surroundings, way_rad: Array, extra_m: float = 0.0) -> bool:
     """Whether the arm may go straight through joints of shape (n, 6), swept without a gap."""
     return sweep(around, way_rad, extra_m).gap.slack_m >= extra_m and all(
-        around.arm.refusal(at_rad) is None for at_rad in _looks(way_rad)
+        around.refusal(at_rad) is None for at_rad in _looks(way_rad)
     )
 
 
@@ -83,7 +83,7 @@ def _tree(
 
     def free(state: object) -> bool:
         joints_rad = np.array([state[joint] for joint in range(6)])  # type: ignore[index]
-        in_bounds = around.arm.refusal(joints_rad) is None
+        in_bounds = around.refusal(joints_rad) is None
         return in_bounds and around.has_room(joints_rad, RESERVE_M)
 
     setup.setStateValidityChecker(free)

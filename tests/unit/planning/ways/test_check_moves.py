@@ -90,6 +90,15 @@ def test_a_place_out_of_reach_is_refused(place_m: tuple[float, float, float]) ->
     assert isinstance(checked.fault, PlaceUnreachable)
 
 
+def test_a_zone_in_which_a_head_stands_is_closed() -> None:
+    move = stated("main", "deck_measure", "home")
+    aside = StatedPlace("aside", np.radians([-20.3, -71.4, 114.8, -27.7, 80.7, 90.0]))
+    heads = stated("main", "home", "deck_measure").others
+    checked = check_move(SCENE, replace(move, end=aside, others=heads))
+    assert isinstance(checked.fault, PlaceUnreachable)
+    assert "beside_head_1" in str(checked.fault)
+
+
 def test_joints_beyond_their_limits_are_refused() -> None:
     start = stated("main", "deck_measure", "home").start
     end = StatedPlace("beyond", np.radians([95.0, -90.0, 90.0, 0.0, 90.0, 90.0]))
