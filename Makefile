@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -71,6 +71,11 @@ campaign-antenna: venv
 # Takes twenty minutes; QUICK=1 draws few holes, in two minutes.
 campaign-insertion: venv
 	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
+
+# A hundred random cells take hours, for MuJoCo looks at every way each millimetre. N cells.
+campaign-planning: N = 100
+campaign-planning: venv
+	$(BIN)/python -m benchmarks.planning.campaign -n $(N)
 
 bench: bench-metrology bench-looks bench-guard
 

@@ -8,6 +8,7 @@ from rich.console import Console
 
 from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig, load_cell, problems
+from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.roles import lacking_roles
@@ -32,6 +33,10 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
         console.print(f"  {key:32} {device.driver}", markup=False)
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
+    model = model_path(cell_file)
+    if model.exists():
+        text = f"`cellctl plan check {cell_file}` holds every move against it"
+        console.print(f"  {f'model {model.name}':32} {text}", markup=False)
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)

@@ -25,7 +25,7 @@ def whole_app() -> typer.Typer:
     for name in ("check", "run", "demo", "robot", "teach", "grab", "focus"):
         _ADD[name](app)
     add_operator_commands(app)
-    for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload"):
+    for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload", "plan"):
         _ADD[name](app)
     for name in _from_processes():
         _add_from_process(app, plugins.COMMAND, name)
@@ -144,6 +144,12 @@ def _identify_payload(app: typer.Typer) -> None:
     app.command("identify-payload", rich_help_panel=OFFLINE)(identify_payload)
 
 
+def _plan(app: typer.Typer) -> None:
+    from cellctl.cli.planning.app import app as plan
+
+    app.add_typer(plan, name="plan", rich_help_panel=OFFLINE)
+
+
 _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "check": _check,
     "run": _run,
@@ -158,4 +164,5 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "calibrate": _calibrate,
     "measure": _measure,
     "identify-payload": _identify_payload,
+    "plan": _plan,
 }

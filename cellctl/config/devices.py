@@ -32,11 +32,22 @@ class PermitConfig(Section):
     """Name of the output there; on is the permit."""
 
 
+class WayConfig(Section):
+    """A way between two taught poses, for where the straight one is not free."""
+
+    start: DeviceName
+    end: DeviceName
+    via_deg: Annotated[tuple[JointsDeg, ...], Field(min_length=1, max_length=20)]
+    """Joints at which the arm stops on its way; between them it goes straight in the joints."""
+
+
 class RobotConfig(DeviceConfig):
     """A robot, with the poses that were taught and the speeds between them."""
 
     poses_deg: dict[DeviceName, JointsDeg] = Field(default_factory=dict)
     """Taught joint positions by name, such as ``home``; a process says which ones it needs."""
+    ways: tuple[WayConfig, ...] = ()
+    """Of joint moves between taught poses; where none is stated, such a move goes straight."""
     permit: PermitConfig | None = None
     """Opened with every stop, closed when the robot is re-armed."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40

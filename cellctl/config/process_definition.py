@@ -11,6 +11,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import Role
+from cellctl.config.stated_moves import StatedMove
 from cellctl.errors.config import UnknownDriver
 
 
@@ -40,6 +41,15 @@ class ProcessDefinition(ABC):
         the recipe's place in the file, for example ``recipes.0``; ``folder`` is that of the cell
         file.
         """
+
+    @classmethod
+    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:  # noqa: ARG003
+        """Every move that the process can command with a recipe, from every place where it begins.
+
+        Asked by offline planning alone, with a cell file that was checked; by default none. Raises
+        ``ArmNotDescribed`` where the kinematics of an arm are needed and not known.
+        """
+        return ()
 
 
 def process_definition(name: str) -> type[ProcessDefinition]:

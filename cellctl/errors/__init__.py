@@ -2,6 +2,7 @@
 
 CellError
 ├── ConfigError       1xx   errors.config       configuration, files, arguments
+│   └── PlanningError  12x   errors.planning     planning of a cell, offline
 ├── LinkError         2xx   errors.link         connections to devices
 │   └── CameraError   22x   errors.camera       cameras behind the library of their maker
 ├── RobotError        3xx   errors.robot        controllers and motion
@@ -34,6 +35,7 @@ from cellctl.errors import (
     line,
     link,
     local,
+    planning,
     plug_calibration,
     plugging,
     records,
@@ -59,6 +61,7 @@ __all__ = [
     "line",
     "link",
     "local",
+    "planning",
     "plug_calibration",
     "plugging",
     "records",

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
+from cellctl.interfaces.arm_chain import ArmChain
 from cellctl.interfaces.device import Device
 
 ForwardKinematics = Callable[[Array], RigidTransform]
@@ -84,6 +85,12 @@ class Robot(Device):
     @classmethod
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:  # noqa: ARG003
         """Where the flange is at given joints; None where these settings do not say it."""
+        return None
+
+    @classmethod
+    def chain(cls, config: Any) -> ArmChain | None:  # noqa: ARG003
+        """The links of the arm and the limits of its joints; None where these settings do not say
+        it. Asked by offline planning alone."""
         return None
 
     @abstractmethod

@@ -76,7 +76,7 @@ class _Turner:
     turns: AxisTurns
 
     async def turn(self, axis: int) -> list[AxisStop]:
-        targets = _angles(self.turns, axis)
+        targets = turn_angles(self.turns, axis)
         # Back to the start first: while one axis turns, all others must stand where the start has
         # them.
         await self.move(self.turns.start_rad)
@@ -97,7 +97,7 @@ class _Turner:
         await self.robot.move_joint(joints_rad, speed_ratio=self.turns.speed_ratio)
 
 
-def _angles(turns: AxisTurns, axis: int) -> list[Array]:
+def turn_angles(turns: AxisTurns, axis: int) -> list[Array]:
     """Joint targets: one axis over its arc around the start, the others still."""
     half_deg = turns.arc_deg / 2
     targets = []

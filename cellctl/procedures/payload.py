@@ -12,7 +12,7 @@ from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord
-from cellctl.force.gravity.poses import PoseRole, plan_identification
+from cellctl.force.gravity.poses import IdentificationPose, PoseRole, plan_identification
 from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardSample, GuardSamples
 from cellctl.interfaces import Robot
@@ -58,16 +58,7 @@ async def identify_payload_on_cell(
     ``NotSettled``, ``SensorSilent``, ``PosesDegenerate`` and what the robot raises.
     """
     robot = arm.robot
-    poses = plan_identification(
-        robot.state().base_T_flange,
-        # With the part as the pivot the flange itself would travel, and the main axes with it,
-        # towards their limits.
-        pivot_in_flange_m=np.zeros(3),
-        half_angle_rad=float(np.radians(cone_deg)),
-        # One pose is the repeat. Six are the least that ``affine24`` can be fitted to.
-        fit_poses=max(pose_count - HOLD_OUT_POSES - 1, 6),
-        hold_out_poses=HOLD_OUT_POSES,
-    )
+    poses = identification_poses(robot.state().base_T_flange, pose_count, cone_deg)
     rotations, wrenches, roles = [], [], []
     for number, pose in enumerate(poses, start=1):
         await context.progress(number, len(poses), f"{pose.role.value} pose")
@@ -88,6 +79,22 @@ async def identify_payload_on_cell(
         warnings=tuple(str(check) for check in result.checks if not check.passed),
         picture_png=await workers.run(residual_picture, result),
         serial_number=arm.guard.health().sensor_serial,
+    )
+
+
+def identification_poses(
+    base_T_flange: RigidTransform, pose_count: int, cone_deg: float
+) -> tuple[IdentificationPose, ...]:
+    """Tilts about the flange, ``base_T_flange`` at their middle, in the order to drive them."""
+    return plan_identification(
+        base_T_flange,
+        # With the part as the pivot the flange itself would travel, and the main axes with it,
+        # towards their limits.
+        pivot_in_flange_m=np.zeros(3),
+        half_angle_rad=float(np.radians(cone_deg)),
+        # One pose is the repeat. Six are the least that ``affine24`` can be fitted to.
+        fit_poses=max(pose_count - HOLD_OUT_POSES - 1, 6),
+        hold_out_poses=HOLD_OUT_POSES,
     )
 
 

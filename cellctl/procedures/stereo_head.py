@@ -32,7 +32,8 @@ async def calibrate_head(
 
     Begins at the pose from which the head sees the board; nothing may stand in its way.
     """
-    poses = _flange_poses(station, view_count)
+    base_T_flange = station.robot.state().base_T_flange
+    poses = flange_poses(base_T_flange, station.flange_T_head, view_count)
     views: list[BoardView] = []
     image_size = (0, 0)
     for number, base_T_flange in enumerate(poses, start=1):
@@ -64,10 +65,10 @@ async def calibrate_head(
     )
 
 
-def _flange_poses(station: StereoStation, count: int) -> list[RigidTransform]:
-    """Targets of the flange: the present pose first, then around the middle of both fields."""
-    base_T_flange = station.robot.state().base_T_flange
-    flange_T_head = station.flange_T_head
+def flange_poses(
+    base_T_flange: RigidTransform, flange_T_head: RigidTransform, count: int
+) -> list[RigidTransform]:
+    """Targets of the flange: where it is first, then around the middle of both fields."""
     toe_in_rad = flange_T_head.rotation.magnitude()
     # The head is mounted turned by half its toe-in: the bisector of its axes is the flange's.
     pivot_m = WORKING_DISTANCE_M / np.cos(toe_in_rad) * np.array([0.0, 0.0, 1.0])

@@ -24,6 +24,8 @@ SLOW_SPEED_M_S = 2e-3
 """Of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03
 """A deck less than this above its seat is lifted before it goes anywhere else."""
+OVER_STATION_M = 0.1
+"""A deck less than this above its seat is under the heads, where these stand over the station."""
 NEAR_STATION_M = 0.8
 """Along either axis of the frame, between its middle and the deck's: they may overlap."""
 
@@ -63,6 +65,15 @@ async def lift_off(cell: DeckCell) -> None:
         raise LiftOffHeld(fault.detail) from fault
 
 
+def is_over_station(cell: DeckCell) -> bool:
+    """Whether a recipe's deck on the flange would be over its frame, too low to leave upwards."""
+    base_T_flange = cell.main.state().base_T_flange
+    return any(
+        _is_low(recipe, _frame_T_deck(recipe, base_T_flange), OVER_STATION_M)
+        for recipe in cell.recipes
+    )
+
+
 async def _rise(
     cell: DeckCell, mating: Mating, base_T_flange: RigidTransform, away: Array, move: GuardedMove
 ) -> None:
@@ -91,10 +102,14 @@ def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
 def _recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:
     """The first recipe whose deck on the flange would be low over its frame."""
     for recipe in cell.recipes:
-        nominal = pose_from_xyzabc(recipe.base_T_frame)
-        if _is_low(recipe, nominal.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_deck)):
+        if _is_low(recipe, _frame_T_deck(recipe, base_T_flange), LOW_M):
             return recipe
     return None
+
+
+def _frame_T_deck(recipe: DeckRecipe, base_T_flange: RigidTransform) -> RigidTransform:
+    nominal = pose_from_xyzabc(recipe.base_T_frame)
+    return nominal.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_deck)
 
 
 def _frame_of(cell: DeckCell, recipe: DeckRecipe) -> RigidTransform:
@@ -103,7 +118,7 @@ def _frame_of(cell: DeckCell, recipe: DeckRecipe) -> RigidTransform:
     return measured if measured is not None and is_near(recipe, nominal, measured) else nominal
 
 
-def _is_low(recipe: DeckRecipe, frame_T_deck: RigidTransform) -> bool:
+def _is_low(recipe: DeckRecipe, frame_T_deck: RigidTransform, height_m: float) -> bool:
     x_m, y_m, z_m = frame_T_deck.translation
-    low = z_m < recipe.deck_thickness_mm * MM + LOW_M
+    low = z_m < recipe.deck_thickness_mm * MM + height_m
     return bool(low and max(abs(x_m), abs(y_m)) < NEAR_STATION_M)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
+from cellctl.config.stated_moves import StatedMove
 from cellctl.errors.vision import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import ROLES
@@ -58,6 +59,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         from cellctl.processes.deck_to_frame.checks.recipe import recipe_issues
 
         return recipe_issues(cell, cast(DeckRecipe, recipe), key, folder)
+
+    @classmethod
+    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
+        """Those of a run, of the way back to its beginning, and of the procedures."""
+        from cellctl.processes.deck_to_frame.stated_moves import deck_moves
+
+        return deck_moves(cell, cast(DeckRecipe, recipe))
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

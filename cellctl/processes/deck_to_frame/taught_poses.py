@@ -5,11 +5,11 @@ import numpy as np
 from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
-from cellctl.config.base import JointsDeg
+from cellctl.config.via_points import has_way, via_points
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import RobotState
-from cellctl.processes.deck_to_frame.lift_off import lift_off
-from cellctl.processes.deck_to_frame.roles import HOME, MEASURING, RETRACTED
+from cellctl.processes.deck_to_frame.lift_off import is_over_station, lift_off
+from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HOME, MEASURING, RETRACTED
 from cellctl.processes.deck_to_frame.stations import DeckCell
 
 AT_POSE_RAD = np.radians(0.001)
@@ -23,18 +23,20 @@ async def heads_to_measuring_poses(cell: DeckCell) -> None:
 
 async def head_to_measuring_pose(head: StereoStation) -> None:
     """One head; it does not move when it is there already."""
-    await _head_to(head, head.config.poses_deg[MEASURING])
+    await _head_to(head, MEASURING)
 
 
 async def head_to_retracted_pose(head: StereoStation) -> None:
     """One head out of the way; it does not move when it is there already."""
-    await _head_to(head, head.config.poses_deg[RETRACTED])
+    await _head_to(head, RETRACTED)
 
 
-async def _head_to(head: StereoStation, joints_deg: JointsDeg) -> None:
-    target_rad = np.radians(joints_deg)
-    if not _is_at(head.robot.state(), target_rad):
-        await head.robot.move_joint(target_rad, speed_ratio=head.config.speed_percent / 100)
+async def _head_to(head: StereoStation, pose: str) -> None:
+    target_rad = np.radians(head.config.poses_deg[pose])
+    state = head.robot.state()
+    if not _is_at(state, target_rad):
+        for joints_rad in (*via_points(head.config, state.joints_rad, pose), target_rad):
+            await head.robot.move_joint(joints_rad, speed_ratio=head.config.speed_percent / 100)
 
 
 async def main_to_home(cell: DeckCell) -> None:
@@ -44,7 +46,18 @@ async def main_to_home(cell: DeckCell) -> None:
         return
     # A joint move would swing a deck that is low over the station through whatever stands there.
     await lift_off(cell)
-    await move_joint_free(cell.cell, cell.arm, home_rad)
+    if is_over_station(cell) and has_way(cell.main_config, DECK_MEASURE, HOME):
+        # The way begins there, and from here straight home leads through the heads.
+        await main_to_pose(cell, DECK_MEASURE)
+    await main_to_pose(cell, HOME)
+
+
+async def main_to_pose(cell: DeckCell, pose: str) -> None:
+    """The main robot to a taught pose under the guard, on the way that the cell file states."""
+    config = cell.main_config
+    target_rad = np.radians(config.poses_deg[pose])
+    for joints_rad in (*via_points(config, cell.main.state().joints_rad, pose), target_rad):
+        await move_joint_free(cell.cell, cell.arm, joints_rad)
 
 
 def _is_at(state: RobotState, joints_rad: Array) -> bool:

@@ -19,7 +19,7 @@ from cellctl.errors.robot import (
     StreamNotOffered,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
-from cellctl.interfaces.robot import ForwardKinematics, RobotState
+from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
     StreamingRobot,
@@ -31,14 +31,14 @@ from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.described_arm import DescribedArm
 from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
 from drivers.robot.siasun.stream import SiasunStream
 
 
-class SiasunRobot(StreamingRobot):
+class SiasunRobot(DescribedArm, StreamingRobot):
     """Commands go over CMD; state, heartbeat and stop over STA. The PC listens on both.
 
     Any fault that leaves it open what the arm does (lost link, invalid record, missing answer,
@@ -60,19 +60,9 @@ class SiasunRobot(StreamingRobot):
         self._connected = False
 
     @classmethod
-    def checks_joint_ways(cls, config: Any) -> bool:
-        """Only with a dh table in the configuration."""
-        return config.dh is not None
-
-    @classmethod
     def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
         """Limits of the joints, and with a dh table the box of the flange in joint moves."""
         Bounds(config.robot_name, config).joint_target(joints_rad)
-
-    @classmethod
-    def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
-        """By the dh table of the configuration."""
-        return None if config.dh is None else Kinematics(config.dh).base_T_flange
 
     async def connect(self) -> None:
         """Listen and wait for both channels and a first state report. Idempotent."""

@@ -11,6 +11,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.arm_chain import ArmChain
+from drivers.robot.siasun.config import MotionLimits
 
 Row = tuple[float, float, float, float]
 """Offset of the angle (deg), d (mm), a (mm), alpha (deg)."""
@@ -29,6 +31,18 @@ class Kinematics:
         for angle_rad, fixed in zip(joints_rad + self._offsets_rad, self._fixed, strict=True):
             pose = pose @ _turn(float(angle_rad)) @ fixed
         return RigidTransform.from_matrix(pose)
+
+
+def arm_chain(config: MotionLimits) -> ArmChain | None:
+    """The chain in SI units with the limits of its joints; None without a dh table."""
+    if config.dh is None:
+        return None
+    scale = np.array([np.radians(1.0), MM, MM, np.radians(1.0)])
+    return ArmChain(
+        np.array(config.dh) * scale,
+        np.radians(config.joints_min_deg),
+        np.radians(config.joints_max_deg),
+    )
 
 
 def _turn(angle_rad: float) -> Array:

@@ -21,7 +21,7 @@ from cellctl.errors.robot import (
     TargetOutOfBounds,
 )
 from cellctl.geometry.pose import MM, Array
-from cellctl.interfaces.robot import ForwardKinematics, RobotState
+from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
     StreamingRobot,
@@ -31,7 +31,7 @@ from cellctl.interfaces.streaming_robot import (
 from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.described_arm import DescribedArm
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
@@ -43,7 +43,7 @@ from drivers.robot.siasun_rpc.readiness import check_ready
 from drivers.robot.siasun_rpc.stream import ServoStream
 
 
-class SiasunRpcRobot(StreamingRobot):
+class SiasunRpcRobot(DescribedArm, StreamingRobot):
     """Calls that return at once, and questions about the task that they have begun.
 
     The controller has no latch of its own: after a stop it would obey the next call. The latch is
@@ -66,19 +66,9 @@ class SiasunRpcRobot(StreamingRobot):
         self._background = BackgroundTasks()
 
     @classmethod
-    def checks_joint_ways(cls, config: Any) -> bool:
-        """Only with a dh table in the configuration."""
-        return config.dh is not None
-
-    @classmethod
     def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
         """Limits of the joints, and with a dh table the box of the flange in joint moves."""
         Bounds(config.host, config).joint_target(joints_rad)
-
-    @classmethod
-    def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
-        """By the dh table of the configuration."""
-        return None if config.dh is None else Kinematics(config.dh).base_T_flange
 
     async def connect(self) -> None:
         """Open all connections and wait for a first state; with a dh table, ``VersionMismatch``

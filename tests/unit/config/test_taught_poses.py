@@ -28,3 +28,27 @@ def test_the_turns_of_the_base_frame_are_held_against_the_workspace(tmp_path: Pa
     (problem,) = problems(path)
     assert problem.key == "processes.deck-to-frame.base_frame_joints_deg"
     assert "by 50 deg each way" in problem.allowed
+
+
+def with_way(folder: Path, end: str, via_deg: str) -> Path:
+    way = f'ways = [{{ start = "home", end = "{end}", via_deg = [{via_deg}] }}]'
+    return devices_only(folder, "[robots.main]\n", f"[robots.main]\n{way}\n")
+
+
+def test_a_way_leads_from_one_taught_pose_to_another(tmp_path: Path) -> None:
+    good = "[-20.0, -71.0, 114.0, -27.0, 80.0, 90.0]"
+    assert problems(with_way(tmp_path, "deck_measure", good)) == []
+    (problem,) = problems(with_way(tmp_path, "deck_mesure", good))
+    assert problem.key == "robots.main.ways.0"
+    assert "deck_measure" in problem.allowed
+
+
+def test_the_points_of_a_way_are_held_against_the_bounds(tmp_path: Path) -> None:
+    beyond = "[-95.0, -71.0, 114.0, -27.0, 80.0, 90.0]"
+    (problem,) = problems(with_way(tmp_path, "deck_measure", beyond))
+    assert (problem.key, problem.number) == ("robots.main.ways.0.via_deg", 305)
+
+
+def test_a_way_without_a_point_is_no_way(tmp_path: Path) -> None:
+    (problem,) = problems(with_way(tmp_path, "deck_measure", ""))
+    assert problem.key == "robots.main.ways.0.via_deg"

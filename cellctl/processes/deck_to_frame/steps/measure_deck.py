@@ -1,8 +1,5 @@
 """Step 20: measure how the gripper holds the deck (paper 2.1.3, eq. 4)."""
 
-import numpy as np
-
-from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -10,14 +7,14 @@ from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
 from cellctl.processes.deck_to_frame.poses.pose_limits import require_near
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
 from cellctl.processes.deck_to_frame.state import DeckMeasured, FrameMeasured
+from cellctl.processes.deck_to_frame.taught_poses import main_to_pose
 
 
 async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
     """Bring the deck above the station, measure it, and solve its pose on the flange."""
     run = frame.run
-    main, config = run.cell.main, run.cell.main_config
-    above_rad = np.radians(config.poses_deg[DECK_MEASURE])
-    await move_joint_free(run.cell.cell, run.cell.arm, above_rad)
+    main = run.cell.main
+    await main_to_pose(run.cell, DECK_MEASURE)
     await settle(run.cell.guard)
     nominal = pose_from_xyzabc(run.recipe.flange_T_deck)
     # From where the robot says it is, because a joint move ends only within its tolerance.

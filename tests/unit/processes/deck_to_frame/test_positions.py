@@ -2,11 +2,13 @@
 
 import asyncio
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.config.devices import WayConfig
 from cellctl.errors.force import GuardRefused, LiftOffHeld, NotSettled, SensorSilent
 from cellctl.errors.robot import MotionRejected
 from cellctl.force.contact.leaving import FIRST_LIFT_M
@@ -19,6 +21,7 @@ from cellctl.processes.deck_to_frame.lift_off import (
     first_lift_speed_m_s,
     lift_off,
 )
+from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HOME
 from cellctl.processes.deck_to_frame.taught_poses import heads_to_measuring_poses, main_to_home
 from tests.unit.cell.bench import Bench
 
@@ -153,6 +156,19 @@ async def test_home_is_reached_off_the_station(bench: Bench) -> None:
     assert [move.kind for move in main.moves] == ["linear"] * 3 + ["joint"]
     await main_to_home(bench.deck)
     assert len(main.moves) == 4, "there already"
+
+
+async def test_a_stated_way_home_is_followed_from_the_station(bench: Bench) -> None:
+    main, config = bench.cell.main, bench.deck.main_config
+    via_deg = (-20.0, -71.0, 114.0, -27.0, 80.0, 90.0)
+    way = WayConfig(start=DECK_MEASURE, end=HOME, via_deg=(via_deg,))
+    arm = replace(bench.deck.arm, config=config.model_copy(update={"ways": (way,)}))
+    main.flange = bench.flange_over_seat(0.0)
+    await main_to_home(replace(bench.deck, arm=arm))
+    assert [move.kind for move in main.moves] == ["linear"] * 3 + ["joint"] * 3
+    expected_deg = [config.poses_deg[DECK_MEASURE], via_deg, config.poses_deg[HOME]]
+    for move, joints_deg in zip(main.moves[3:], expected_deg, strict=True):
+        np.testing.assert_allclose(np.degrees(move.target), joints_deg)
 
 
 async def test_heads_in_place_do_not_move(bench: Bench) -> None:

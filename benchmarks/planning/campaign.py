@@ -1,0 +1,107 @@
+"""Ways of random cells: planned or refused with a number, and verified by MuJoCo's distances.
+
+Each planned way is looked at again by an independent library, every 1 mm that any body may have
+moved. Usage: python -m benchmarks.planning.campaign -n 100
+"""
+
+import argparse
+import time
+from collections import Counter
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+
+from benchmarks.planning.cells import random_cell
+from benchmarks.planning.mujoco_oracle import MujocoOracle
+from cellctl.errors.planning import PlanningError
+from cellctl.geometry.pose import MM
+from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways
+
+_LOOK_M = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Of one random cell."""
+
+    seed: int
+    reason: str
+    """``planned``, or the number and words of the refusal."""
+    seconds: float
+    points: int
+    least_slack_mm: float
+    """By MuJoCo, over all ways of the cell; infinite for a cell that was refused."""
+
+
+def try_cell(seed: int, look_m: float = _LOOK_M, search_s: float = 20.0) -> Outcome:
+    """Plan all ways of one random cell and verify them."""
+    begin_s = time.monotonic()
+    ways: list[PlannedWay] = []
+    slacks: list[float] = []
+    reason, seconds = "planned", 0.0
+    try:
+        scene = random_cell(seed).scene()
+        ways.extend(plan_ways(scene, seed=seed, search_s=search_s))
+        seconds = time.monotonic() - begin_s
+        slacks = [_least_slack_m(scene, way, look_m) for way in ways]
+    except PlanningError as fault:
+        reason = f"F{fault.number} {fault.text}"
+        print(f"cell {seed}: {fault}", flush=True)
+        seconds = time.monotonic() - begin_s
+    points = sum(len(way.joints_rad) - 2 for way in ways)
+    return Outcome(seed, reason, seconds, points, min(slacks, default=np.inf) / MM)
+
+
+def _least_slack_m(scene: CellScene, way: PlannedWay, look_m: float) -> float:
+    """With the other arms at all combinations of the poses that the way was planned for."""
+    oracle = MujocoOracle(scene)
+    if way.robot == "main":
+        heads = [[(name, pose) for pose in ("measuring", "retracted")] for name in _heads(scene)]
+        standing = [dict(choice) for choice in product(*heads)]
+    else:
+        others = [name for name in _heads(scene) if name != way.robot]
+        standing = [
+            {"main": "home", **dict.fromkeys(others, pose)} for pose in ("measuring", "retracted")
+        ]
+    lever_m = scene.around(way.robot, {}).lever_m
+    least_m = np.inf
+    for start_rad, end_rad in pairwise(way.joints_rad):
+        count = 2 + int(np.abs(end_rad - start_rad) @ lever_m / look_m)
+        for at_rad in np.linspace(start_rad, end_rad, count):
+            for poses in standing:
+                joints = {name: scene.arms[name].taught_rad(pose) for name, pose in poses.items()}
+                slack_m = oracle.narrowest_slack_m(way.robot, {**joints, way.robot: at_rad})
+                least_m = min(least_m, slack_m)
+    return float(least_m)
+
+
+def _heads(scene: CellScene) -> list[str]:
+    return [name for name in scene.arms if name != "main"]
+
+
+def main() -> None:
+    """Print a table of the outcomes."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("-n", "--cells", type=int, default=100)
+    parser.add_argument("--first-seed", type=int, default=1)
+    parser.add_argument("--look-mm", type=float, default=_LOOK_M / MM)
+    given = parser.parse_args()
+    seeds = range(given.first_seed, given.first_seed + given.cells)
+    outcomes = [try_cell(seed, given.look_mm * MM) for seed in seeds]
+    for reason, count in sorted(Counter(one.reason for one in outcomes).items()):
+        print(f"{count:4} {reason}")
+    seconds = [one.seconds for one in outcomes]
+    print(f"time of a plan: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s")
+    planned = [one for one in outcomes if one.reason == "planned"]
+    if planned:
+        worst = min(planned, key=lambda one: one.least_slack_mm)
+        print(
+            f"least room beyond the margins, by MuJoCo every {given.look_mm:g} mm: "
+            f"{worst.least_slack_mm:.2f} mm (cell {worst.seed})"
+        )
+
+
+if __name__ == "__main__":
+    main()

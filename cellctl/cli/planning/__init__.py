@@ -1,0 +1,1 @@
+"""`cellctl plan`: offline planning of a cell by its model."""

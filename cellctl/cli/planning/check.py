@@ -1,0 +1,38 @@
+"""`cellctl plan check`: every move that the processes of a cell can command, against its model."""
+
+from typing import TYPE_CHECKING
+
+import typer
+from rich.console import Console
+
+from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+
+if TYPE_CHECKING:
+    from cellctl.planning.scene.cell_scene import CellScene
+
+
+def check(cell_file: CellFile, model: ModelFile = None) -> None:
+    """Check reach, bounds and room of every move; exit code 1 with every one that is not good."""
+    scene = open_scene(cell_file, model)
+    # The libraries of planning may be missing, which opening the scene says.
+    from cellctl.planning.ways.check_moves import check_moves
+
+    console = Console(soft_wrap=True, highlight=False)
+    _say_guesses(console, scene)
+    count, bad = 0, 0
+    for checked in check_moves(scene):
+        count += 1
+        if checked.fault is not None:
+            bad += 1
+            console.print(str(checked.fault), markup=False)
+    if bad:
+        console.print(f"{bad} of {count} moves are not good", style="bold red", markup=False)
+        raise typer.Exit(1)
+    console.print(f"{count} moves are free", markup=False)
+
+
+def _say_guesses(console: Console, scene: "CellScene") -> None:
+    guesses = [solid.name for solid in scene.solids if solid.stand_in]
+    if guesses:
+        text = f"stand-ins, not measured: {', '.join(guesses)}"
+        console.print(text, style="yellow", markup=False)

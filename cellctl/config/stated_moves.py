@@ -1,0 +1,49 @@
+"""What a process says of the moves that it can command, for planning and checks offline."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+
+
+class MoveKind(Enum):
+    """What is straight on the way."""
+
+    JOINT = "joint"
+    """The joints: all begin and arrive together."""
+    LINEAR = "linear"
+    """The flange."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StatedPlace:
+    """Where an arm stands."""
+
+    label: str
+    """In words; a taught pose by its name."""
+    joints_rad: Array
+    """Shape (6,). Where the flange decides: joints near it, which tell how the arm is folded."""
+    base_T_flange: RigidTransform | None = None
+    """None: the joints decide."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StatedMove:
+    """One move that a process can command."""
+
+    robot: str
+    kind: MoveKind
+    start: StatedPlace
+    end: StatedPlace
+    others: Mapping[str, tuple[StatedPlace, ...]] = field(default_factory=dict)
+    """Every other arm with all the places at which it may be meanwhile."""
+    approach: bool = False
+    """True where bodies come together on purpose."""
+
+    @property
+    def name(self) -> str:
+        """For findings."""
+        return f"{self.robot}: {self.start.label} to {self.end.label} ({self.kind.value})"

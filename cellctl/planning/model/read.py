@@ -1,0 +1,115 @@
+"""Reads the model of a cell, and says everything that is wrong with it."""
+
+import tomllib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from pydantic import ValidationError
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.config.cell import CellConfig
+from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
+from cellctl.errors.planning import ArmNotDescribed, SizeImplausible
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.planning.model.document import BodyKeys, CapsuleKeys, LinkBodyKeys, ModelDocument
+from cellctl.planning.model.shapes import BoxShape, CapsuleShape, Shape
+from cellctl.planning.model.surface import read_surface
+from cellctl.planning.scene.arm import PlannedArm, planned_arm
+from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.scene.solid import Solid
+
+_FARTHEST_M = 5.0
+"""No body of an arm lies farther from the frame of its link."""
+
+
+def read_model(cell: CellConfig, path: Path) -> CellScene:
+    """The model of a cell file that was checked.
+
+    Raises ``ConfigUnreadable``, ``ConfigInvalid``, ``ArmNotDescribed``, ``MeshNotUsable``,
+    ``SizeImplausible``.
+    """
+    document = _document(path)
+    arms = {name: _arm(cell, document, name) for name in document.robots}
+    solids = tuple(_solids(document, path.parent))
+    _check_approaches(document, solids, path)
+    approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
+    return CellScene(cell, arms, solids, approaches)
+
+
+def _document(path: Path) -> ModelDocument:
+    try:
+        raw = tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise ConfigUnreadable(f"{path}: {error}") from error
+    try:
+        return ModelDocument.model_validate(raw)
+    except ValidationError as error:
+        lines = [
+            f"{'.'.join(str(part) for part in item['loc'])}: {item['msg']}"
+            for item in error.errors(include_url=False)
+        ]
+        raise ConfigInvalid(f"{path}: " + "; ".join(lines)) from error
+
+
+def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:
+    if name not in cell.robots:
+        known = ", ".join(cell.robots) or "none"
+        raise ArmNotDescribed(f"robots.{name}: not a robot of the cell file, which has {known}")
+    keys = document.robots[name]
+    return planned_arm(
+        name, cell.robots[name], pose_from_xyzabc(keys.cell_T_base), np.radians(keys.rated_deg_s)
+    )
+
+
+def _solids(document: ModelDocument, folder: Path) -> Iterator[Solid]:
+    for name, fixture in document.fixtures.items():
+        yield _solid(name, fixture, None, 0.0, folder)
+    for robot, arm in document.robots.items():
+        for name, body in arm.bodies.items():
+            yield _solid(f"{robot}.{name}", body, robot, arm.margin_mm * MM, folder)
+
+
+def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: Path) -> Solid:
+    shape, pose = _shape(keys, folder)
+    link = keys.link if isinstance(keys, LinkBodyKeys) else 0
+    solid = Solid(name, arm, link, pose, shape, margin_m, keys.stand_in)
+    reach_m = float(np.linalg.norm(pose[:3, 3])) + shape.radius_m
+    if arm is not None and reach_m > _FARTHEST_M:
+        raise SizeImplausible(
+            f"{name}: reaches {reach_m:.1f} m from the frame of its link, "
+            f"expected at most {_FARTHEST_M:g} m"
+        )
+    return solid
+
+
+def _shape(keys: BodyKeys, folder: Path) -> tuple[Shape, Array]:
+    """The shape and its frame in that of the body, shape (4, 4)."""
+    if keys.capsule is not None:
+        return _capsule(keys.capsule)
+    if keys.box is not None:
+        x, y, z = keys.box.size_mm
+        return BoxShape((x * MM, y * MM, z * MM)), pose_from_xyzabc(keys.box.at).as_matrix()
+    assert keys.mesh is not None, "the model of the keys asks for one of the three"
+    return read_surface(keys.mesh, folder), pose_from_xyzabc(keys.mesh.at).as_matrix()
+
+
+def _capsule(keys: CapsuleKeys) -> tuple[Shape, Array]:
+    start_m, end_m = np.array(keys.from_mm) * MM, np.array(keys.to_mm) * MM
+    way_m = end_m - start_m
+    length_m = float(np.linalg.norm(way_m))
+    turn = Rotation.identity()
+    if length_m > 0.0:
+        turn = Rotation.align_vectors([way_m], [[0.0, 0.0, 1.0]])[0]
+    pose = RigidTransform.from_components((start_m + end_m) / 2, turn)
+    return CapsuleShape(keys.radius_mm * MM, length_m), pose.as_matrix()
+
+
+def _check_approaches(document: ModelDocument, solids: Sequence[Solid], path: Path) -> None:
+    known = {solid.name for solid in solids}
+    for near in document.approaches:
+        for name in near.bodies:
+            if name not in known:
+                raise ConfigInvalid(
+                    f"{path}: approaches: no body {name!r}, there are {', '.join(sorted(known))}"
+                )

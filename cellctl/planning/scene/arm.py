@@ -1,0 +1,94 @@
+"""An arm of the model: where its links are at given joints, and how fast their bodies can move."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.config.devices import RobotConfig
+from cellctl.config.robot_drivers import robot_driver
+from cellctl.errors.planning import ArmNotDescribed
+from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.geometry.pose import Array
+from cellctl.interfaces import Robot
+from cellctl.interfaces.arm_chain import ArmChain
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedArm:
+    """One robot of the cell, standing in it."""
+
+    name: str
+    config: RobotConfig
+    chain: ArmChain
+    cell_T_base: RigidTransform
+    rated_rad_s: Array
+    """Shape (6,), at 100 %."""
+    driver: type[Robot]
+    settings: Any
+    """Of the driver, as it has checked them."""
+
+    def link_frames(self, joints_rad: Array) -> Array:
+        """``cell_T_link`` of base and all six links, shape (7, 4, 4), at joints of shape (6,)."""
+        frames = np.empty((7, 4, 4))
+        frames[0] = self.cell_T_base.as_matrix()
+        for index, (matrix, row) in enumerate(zip(self._turns(joints_rad), frames, strict=False)):
+            frames[index + 1] = row @ matrix
+        return frames
+
+    def base_T_flange(self, joints_rad: Array) -> RigidTransform:
+        """By the table, at joints of shape (6,)."""
+        pose = np.eye(4)
+        for matrix in self._turns(joints_rad):
+            pose = pose @ matrix
+        return RigidTransform.from_matrix(pose)
+
+    def refusal(self, joints_rad: Array) -> str | None:
+        """Why the robot's driver would not let it stand there; None when it would."""
+        try:
+            self.driver.check_joint_target(self.settings, joints_rad)
+        except TargetOutOfBounds as fault:
+            return fault.detail
+        return None
+
+    def taught_rad(self, pose: str) -> Array:
+        """Joints of a taught pose, shape (6,)."""
+        return np.radians(self.config.poses_deg[pose])
+
+    def lever_m(self, link: int, radius_m: float) -> Array:
+        """How far a body may be from the axis of each joint, shape (6,), whatever the joints.
+
+        ``radius_m``: of the ball about the origin of the frame of ``link`` that holds the body. A
+        joint beyond that link does not move it.
+        """
+        d_m, a_m = np.abs(self.chain.dh[:, 1]), np.abs(self.chain.dh[:, 2])
+        lever = np.zeros(6)
+        for joint in range(link):
+            # What lies along the joint's own axis does not count for its own turn.
+            beyond = np.hypot(d_m, a_m)[joint + 1 : link].sum()
+            lever[joint] = a_m[joint] + beyond + radius_m
+        return lever
+
+    def _turns(self, joints_rad: Array) -> Array:
+        """Each joint's Rz(theta) Tz(d) Tx(a) Rx(alpha), shape (6, 4, 4)."""
+        theta, d_m, a_m, alpha = self.chain.dh.T
+        angle = theta + joints_rad
+        c, s, ca, sa = np.cos(angle), np.sin(angle), np.cos(alpha), np.sin(alpha)
+        matrices = np.zeros((6, 4, 4))
+        matrices[:, 0] = np.column_stack([c, -s * ca, s * sa, a_m * c])
+        matrices[:, 1] = np.column_stack([s, c * ca, -c * sa, a_m * s])
+        matrices[:, 2, 1], matrices[:, 2, 2], matrices[:, 2, 3] = sa, ca, d_m
+        matrices[:, 3, 3] = 1.0
+        return matrices
+
+
+def planned_arm(
+    name: str, config: RobotConfig, cell_T_base: RigidTransform, rated_rad_s: Array
+) -> PlannedArm:
+    """The arm as its driver's settings state it; raises ``ArmNotDescribed``."""
+    driver, settings = robot_driver(config)
+    chain = driver.chain(settings)
+    if chain is None:
+        raise ArmNotDescribed(f"robots.{name}: its settings have no dh table")
+    return PlannedArm(name, config, chain, cell_T_base, rated_rad_s, driver, settings)

@@ -1,0 +1,1 @@
+"""Ways of arms between two places: where they lead, how near they come to anything, free ones."""

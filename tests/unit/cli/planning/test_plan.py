@@ -1,0 +1,69 @@
+import builtins
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.planning.app import app
+from cellctl.cli.planning.opening import open_scene
+from cellctl.errors.config import ConfigUnreadable
+from cellctl.errors.planning import PlanningNotInstalled
+
+DECK = "config/deck.toml"
+
+
+def run(*words: str) -> tuple[int, str]:
+    done = CliRunner().invoke(app, words)
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return done.exit_code, done.output
+
+
+def test_show_draws_the_shipped_cell(tmp_path: Path) -> None:
+    picture, glb = tmp_path / "cell.png", tmp_path / "cell.glb"
+    code, _ = run("show", DECK, "--picture", str(picture), "--glb", str(glb))
+    assert code == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert glb.read_bytes().startswith(b"glTF")
+
+
+@pytest.mark.long
+def test_check_names_the_moves_that_are_not_free() -> None:
+    code, output = run("check", DECK)
+    assert code == 1
+    assert "main: home to deck_measure (joint): main.deck and aux_2.forearm" in output
+    assert "stand-ins, not measured: " in output
+
+
+@pytest.mark.long
+def test_paths_are_written_and_then_free(tmp_path: Path) -> None:
+    out = tmp_path / "deck.toml"
+    for folder in ("features", "demo-calibration"):
+        (tmp_path / folder).symlink_to((Path(DECK).parent / folder).resolve())
+    _, output = run("paths", DECK, "--out", str(out))
+    assert "main: home to deck_measure and back" in output
+    assert out.read_text(encoding="utf-8").count("[[robots.main.ways]]") == 2
+    _, output = run("check", str(out), "--model", "config/deck.model.toml")
+    assert "main: home to deck_measure" not in output
+
+
+def test_a_bad_model_leaves_no_file(tmp_path: Path) -> None:
+    out = tmp_path / "deck.toml"
+    missing = str(tmp_path / "none.model.toml")
+    with pytest.raises(ConfigUnreadable):
+        run("paths", DECK, "--model", missing, "--out", str(out))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_the_extra_the_fault_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = builtins.__import__
+
+    def without(name: str, *args: Any, **kwargs: Any) -> Any:
+        if name.startswith("cellctl.planning"):
+            raise ImportError("No module named 'fcl'")
+        return real(name, *args, **kwargs)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(PlanningNotInstalled, match="fcl"):
+        open_scene(Path(DECK), None)

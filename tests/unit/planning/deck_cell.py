@@ -1,0 +1,23 @@
+"""The shipped cell with its model, for the tests of planning."""
+
+from pathlib import Path
+
+from cellctl.config import load_cell
+from cellctl.config.model_file import model_path
+from cellctl.planning.model.read import read_model
+from cellctl.planning.scene.cell_scene import CellScene
+
+DECK = Path("config/deck.toml")
+
+
+def deck_scene() -> CellScene:
+    return read_model(load_cell(DECK), model_path(DECK))
+
+
+def write_model(folder: Path, old: str, new: str) -> Path:
+    """The shipped model with one text replaced."""
+    text = model_path(DECK).read_text(encoding="utf-8")
+    assert old in text
+    path = folder / "deck.model.toml"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    return path

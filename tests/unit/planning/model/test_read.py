@@ -1,0 +1,98 @@
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cellctl.config import load_cell
+from cellctl.errors import CellError
+from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
+from cellctl.errors.planning import ArmNotDescribed, MeshNotUsable, SizeImplausible
+from cellctl.planning.model.read import read_model
+from tests.unit.planning.deck_cell import DECK, deck_scene, write_model
+
+CELL = load_cell(DECK)
+DECK_BOX = "box = { size_mm = [1000.0, 500.0, 15.0], at = [0.0, 0.0, 509.5, 0.0, 0.0, 0.0] }"
+
+
+def with_mesh(folder: Path, mesh: trimesh.Trimesh, unit: str = "mm") -> Path:
+    mesh.export(folder / "deck.stl")
+    keys = f'mesh = {{ file = "deck.stl", unit = "{unit}" }}'
+    return write_model(folder, DECK_BOX, keys)
+
+
+def test_the_shipped_model_says_what_is_a_guess() -> None:
+    scene = deck_scene()
+    guesses = {solid.name for solid in scene.solids if solid.stand_in}
+    assert "main.forearm" in guesses
+    assert not guesses & {"main.deck", "frame", "floor"}
+
+
+def test_a_mesh_is_read_in_its_unit(tmp_path: Path) -> None:
+    path = with_mesh(tmp_path, trimesh.creation.box((400.0, 200.0, 10.0)))
+    scene = read_model(CELL, path)
+    (deck,) = [solid for solid in scene.solids if solid.name == "main.deck"]
+    assert deck.shape.mesh().extents.tolist() == pytest.approx([0.4, 0.2, 0.01])
+
+
+def test_an_open_mesh_is_refused(tmp_path: Path) -> None:
+    mesh = trimesh.creation.box((400.0, 200.0, 10.0))
+    mesh.update_faces(range(1, 12))
+    with pytest.raises(MeshNotUsable, match="not closed"):
+        read_model(CELL, with_mesh(tmp_path, mesh))
+
+
+def test_a_mesh_that_is_no_mesh_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "deck.stl").write_bytes(b"solid nothing")
+    keys = 'mesh = { file = "deck.stl" }'
+    with pytest.raises(MeshNotUsable):
+        read_model(CELL, write_model(tmp_path, DECK_BOX, keys))
+
+
+@pytest.mark.parametrize(("size", "unit"), [(0.4, "mm"), (400.0, "m")])
+def test_units_wrong_by_a_thousand_are_refused(tmp_path: Path, size: float, unit: str) -> None:
+    path = with_mesh(tmp_path, trimesh.creation.box((size, size, size)), unit)
+    with pytest.raises(SizeImplausible, match="expected"):
+        read_model(CELL, path)
+
+
+def test_a_body_far_from_its_link_is_refused(tmp_path: Path) -> None:
+    path = write_model(tmp_path, "to_mm = [0.0, 0.0, 960.0]", "to_mm = [0.0, 0.0, 9600.0]")
+    with pytest.raises(SizeImplausible, match=r"main\.forearm"):
+        read_model(CELL, path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        ("[robots.main]", "[robots.none]\n[robots.main]", ConfigInvalid),
+        ("margin_mm = 20.0", "margin_mm = -20.0", ConfigInvalid),
+        ("margin_mm = 20.0", "margin_mm = nan", ConfigInvalid),
+        ("margin_mm = 20.0", "margins_mm = 20.0", ConfigInvalid),
+        ('["main.deck", "frame"]', '["main.deck", "freme"]', ConfigInvalid),
+        ("link = 1,", "link = 7,", ConfigInvalid),
+        ("[robots.main]", "[robots.main", ConfigUnreadable),
+    ],
+)
+def test_what_is_wrong_is_said(tmp_path: Path, old: str, new: str, fault: type[CellError]) -> None:
+    with pytest.raises(fault):
+        read_model(CELL, write_model(tmp_path, old, new))
+
+
+def test_a_robot_that_the_cell_does_not_have_is_refused(tmp_path: Path) -> None:
+    text = Path("config/deck.model.toml").read_text(encoding="utf-8").replace("aux_2", "aux_3")
+    path = tmp_path / "model.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ArmNotDescribed, match="aux_3"):
+        read_model(CELL, path)
+
+
+@given(st.binary(max_size=200))
+def test_any_bytes_are_refused_with_a_number(content: bytes) -> None:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "deck.model.toml"
+        path.write_bytes(content)
+        with pytest.raises(CellError):
+            read_model(CELL, path)

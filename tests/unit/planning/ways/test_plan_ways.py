@@ -1,0 +1,74 @@
+"""Ways of the shipped cell and of cells that were disturbed, verified by another library."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from benchmarks.planning.mujoco_oracle import MujocoOracle
+from cellctl.config import load_cell
+from cellctl.errors.planning import PlanningError
+from cellctl.planning.model.shapes import BoxShape
+from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.scene.solid import Solid
+from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways, with_ways
+from cellctl.planning.ways.write_ways import with_ways_written
+from tests.unit.planning.deck_cell import DECK, deck_scene
+
+BODY_STEP_M = 0.01
+"""Between two looks of the oracle no body moves further; `make campaign-planning` looks each mm."""
+
+
+def main_way(scene: CellScene, seed: int = 1) -> PlannedWay:
+    return next(iter(plan_ways(scene, seed=seed, search_s=40.0)))
+
+
+def least_slack_m(scene: CellScene, way: PlannedWay) -> float:
+    oracle = MujocoOracle(scene)
+    lever_m = scene.around("main", {}).lever_m
+    heads = {name: scene.arms[name].taught_rad("measuring") for name in ("aux_1", "aux_2")}
+    slacks = []
+    for start, end in zip(way.joints_rad[:-1], way.joints_rad[1:], strict=True):
+        count = 2 + int(np.abs(end - start) @ lever_m / BODY_STEP_M)
+        for at_rad in np.linspace(start, end, count):
+            slacks.append(oracle.narrowest_slack_m("main", {**heads, "main": at_rad}))
+    return min(slacks)
+
+
+def box_at(place_m: tuple[float, float, float], size_m: float = 0.2) -> Solid:
+    pose = RigidTransform.from_translation(place_m).as_matrix()
+    return Solid("obstacle", None, 0, pose, BoxShape((size_m,) * 3), 0.0, stand_in=False)
+
+
+def test_a_way_around_the_heads_is_found_and_free_by_another_library(tmp_path: Path) -> None:
+    scene = deck_scene()
+    way = main_way(scene)
+    assert len(way.joints_rad) > 2
+    assert least_slack_m(scene, way) > -1e-4
+    # What is written is what was planned, and the file is still a good one, comments included.
+    text = with_ways_written(DECK.read_text(encoding="utf-8"), [way])
+    assert "# The fake cell." in text
+    written = tmp_path / "deck.toml"
+    written.write_text(text, encoding="utf-8")
+    for folder in ("features", "demo-calibration"):
+        (tmp_path / folder).symlink_to((DECK.parent / folder).resolve())
+    cell = load_cell(written)
+    assert cell.robots["main"].ways == way.written()
+    assert with_ways(scene, [way]).cell.robots["main"].ways == way.written()
+    assert with_ways_written(text, []).count("[[robots.main.ways]]") == 0
+
+
+@pytest.mark.long
+def test_the_same_seed_gives_the_same_way() -> None:
+    first, second = (main_way(deck_scene(), seed=3) for _ in range(2))
+    assert np.array_equal(first.joints_rad, second.joints_rad)
+
+
+def test_an_end_that_is_not_free_is_refused_with_the_reason() -> None:
+    scene = deck_scene()
+    flange = scene.arms["main"].base_T_flange(scene.arms["main"].taught_rad("home"))
+    blocked = replace(scene, solids=(*scene.solids, box_at(tuple(flange.translation))))
+    with pytest.raises(PlanningError, match="obstacle"):
+        main_way(blocked)
