@@ -170,7 +170,6 @@ def test_cheap_commands_run() -> None:
     runner = CliRunner()
     for arguments in (
         ["check", str(ROOT / "config" / "deck.toml")],
-        ["check", str(ROOT / "config" / "cell.toml")],
         ["faults"],
     ):
         done = runner.invoke(whole_app(), arguments)

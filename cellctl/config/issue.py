@@ -13,3 +13,5 @@ class ConfigIssue:
     value: str
     allowed: str
     number: int = ConfigInvalid.number
+    line: int | None = None
+    """Where the key stands, or the table that lacks it; None for another file."""
