@@ -133,6 +133,12 @@ def _replay(app: typer.Typer) -> None:
     app.command("replay", rich_help_panel=_RECORDS)(replay)
 
 
+def _audit(app: typer.Typer) -> None:
+    from cellctl.cli.audit import audit
+
+    app.command("audit", rich_help_panel=_RECORDS)(audit)
+
+
 def _faults(app: typer.Typer) -> None:
     from cellctl.cli.faults import faults
 
@@ -173,6 +179,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "runs": _runs,
     "replay": _replay,
     "faults": _faults,
+    "audit": _audit,
     "calibrate": _calibrate,
     "measure": _measure,
     "identify-payload": _identify_payload,
