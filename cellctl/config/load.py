@@ -30,8 +30,7 @@ def load_cell(path: Path) -> CellConfig:
     """The cell file as a model; raises ``ConfigUnreadable``, ``ConfigInvalid`` or a sibling."""
     found, cell = _examine(path)
     if cell is None or found:
-        lines = [f"{issue.key} = {issue.value}: {issue.allowed}" for issue in found]
-        raise ConfigInvalid(f"{path}: " + "; ".join(lines))
+        raise ConfigInvalid(f"{path}: " + "; ".join(str(issue) for issue in found))
     return cell
 
 
