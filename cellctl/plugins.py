@@ -6,6 +6,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from cellctl.errors.config import UnknownDriver
+from cellctl.spelling import nearest
 
 ROBOT = "cellctl.robot"
 STOP_CHANNEL = "cellctl.stop_channel"
@@ -53,8 +54,9 @@ def _loaded(group: str, name: str) -> object:
         # the command.
         except (ImportError, AttributeError) as error:
             raise UnknownDriver(f"{group} '{name}' cannot be imported: {error}") from error
-    known = ", ".join(names(group)) or "none"
-    raise UnknownDriver(f"no {group} named '{name}'; installed: {known}")
+    known = names(group)
+    listed = ", ".join(known) or "none"
+    raise UnknownDriver(f"no {group} named '{name}'; {nearest(name, known)}installed: {listed}")
 
 
 @cache

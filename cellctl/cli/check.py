@@ -1,5 +1,6 @@
 """`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -8,6 +9,8 @@ from rich.console import Console
 
 from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig, load_cell, problems
+from cellctl.config.document.lines import FILL_IN, left_open
+from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.robot_drivers import robot_driver
@@ -17,13 +20,15 @@ from cellctl.config.zone_checks import taught_in_zone
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
     """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
-    found = problems(cell_file)
+    found = [*problems(cell_file), *_left_open(cell_file)]
     console = Console(soft_wrap=True, highlight=False)
     if found:
         errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
         console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
         for problem in found:
-            console.print(f"F{problem.number} {problem.key} = {problem.value}", markup=False)
+            place = "" if problem.line is None else f"line {problem.line}: "
+            text = f"F{problem.number} {place}{problem.key} = {problem.value}"
+            console.print(text, markup=False)
             console.print(f"     {problem.allowed}", markup=False)
         raise typer.Exit(1)
     # Read a second time, as the daemon would: what is printed below is what it will use.
@@ -49,6 +54,15 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
             style="yellow",
             markup=False,
         )
+
+
+def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
+    """Places that a template leaves to whoever commissions the cell."""
+    # The daemon takes such a file, which the programs that rehearse a cell also do; whoever checks
+    # it before a first start must not be told that it is good.
+    for number in left_open(cell_file.read_text(encoding="utf-8")):
+        allowed = "the value of this cell, and the mark taken away"
+        yield ConfigIssue("(mark of the template)", FILL_IN, allowed, line=number)
 
 
 def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:

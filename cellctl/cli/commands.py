@@ -5,31 +5,49 @@ a function that takes a Typer application and adds the command of that name to i
 group ``cellctl.calibrate`` are added to `cellctl calibrate`.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import astuple
+from typing import Any, cast
 
 import typer
+from typer.core import TyperGroup
 
 from cellctl import plugins
-from cellctl.cli.help_groups import OFFLINE
+from cellctl.cli.help_groups import OFFLINE, GroupedCommands
+from cellctl.cli.listing import CELL, FILES, installed
 from cellctl.cli.operator.commands import NAMES as OPERATOR_NAMES
-from cellctl.cli.operator.commands import add_operator_commands
+from cellctl.cli.operator.commands import app as operator_app
 from cellctl.cli.root import new_app
 from cellctl.errors.config import UnknownDriver
 
 _CELL, _RECORDS = "The cell", "Records and faults"
 
 
+class LoadedWhenAsked(GroupedCommands):
+    """Every command of `cellctl`; only the one that is asked for is loaded."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """All names, in the order of the help."""
+        return [name for name, _, _ in self.rows(ctx)]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of this name, loaded now; None for a name that there is not."""
+        app = operator_app if cmd_name in OPERATOR_NAMES else app_with(cmd_name)
+        if app is None:
+            return None
+        return cast(TyperGroup, typer.main.get_command(app)).get_command(ctx, cmd_name)
+
+    def rows(self, ctx: Any) -> Iterator[tuple[str, str, str]]:
+        """Name, panel and summary of each command."""
+        yield from (astuple(listed) for listed in CELL)
+        operator = cast(GroupedCommands, typer.main.get_command(operator_app))
+        yield from operator.rows(ctx)
+        yield from (astuple(listed) for listed in (*FILES, *installed(_from_processes())))
+
+
 def whole_app() -> typer.Typer:
     """Every command, in the order of the help."""
-    app = new_app()
-    for name in ("check", "run", "demo", "robot", "teach", "grab", "focus"):
-        _ADD[name](app)
-    add_operator_commands(app)
-    for name in ("runs", "replay", "faults", "calibrate", "measure", "identify-payload", "plan"):
-        _ADD[name](app)
-    for name in _from_processes():
-        _add_from_process(app, plugins.COMMAND, name)
-    return app
+    return new_app(LoadedWhenAsked)
 
 
 def app_with(name: str) -> typer.Typer | None:
@@ -115,6 +133,12 @@ def _replay(app: typer.Typer) -> None:
     app.command("replay", rich_help_panel=_RECORDS)(replay)
 
 
+def _audit(app: typer.Typer) -> None:
+    from cellctl.cli.audit import audit
+
+    app.command("audit", rich_help_panel=_RECORDS)(audit)
+
+
 def _faults(app: typer.Typer) -> None:
     from cellctl.cli.faults import faults
 
@@ -161,6 +185,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "runs": _runs,
     "replay": _replay,
     "faults": _faults,
+    "audit": _audit,
     "calibrate": _calibrate,
     "measure": _measure,
     "identify-payload": _identify_payload,

@@ -1,13 +1,54 @@
-"""`cellctl faults`: the fault catalogue, from the code."""
+"""`cellctl faults`: the fault catalogue, from the code, or one fault of it."""
+
+import json
+from typing import Annotated
 
 import typer
 
-from cellctl.errors import catalogue
+from cellctl.errors import CellError, catalogue
+
+Number = Annotated[int | None, typer.Argument(help="Number of a fault, without the F.")]
+AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 
-def faults() -> None:
-    """Print the fault catalogue as Markdown (docs/faults.md)."""
-    typer.echo(fault_catalogue(), nl=False)
+def faults(number: Number = None, *, as_json: AsJson = False) -> None:
+    """The fault catalogue as Markdown (docs/faults.md), or one fault with cause and remedy."""
+    found = list(catalogue())
+    if number is not None:
+        found = [fault for fault in found if fault.number == number]
+        if not found:
+            raise typer.BadParameter(_neighbours(number), param_hint="NUMBER")
+    if as_json:
+        typer.echo(json.dumps([_plain(fault) for fault in found], indent=2, ensure_ascii=False))
+    elif number is not None:
+        typer.echo(_one(found[0]))
+    else:
+        typer.echo(fault_catalogue(), nl=False)
+
+
+def _plain(fault: type[CellError]) -> dict[str, str | int]:
+    return {
+        "number": fault.number,
+        "text": fault.text,
+        "cause": fault.cause,
+        "remedy": fault.remedy,
+        "reaction": fault.reaction.value,
+    }
+
+
+def _one(fault: type[CellError]) -> str:
+    return (
+        f"F{fault.number:03d} {fault.text}\n"
+        f"  cause:    {fault.cause}\n"
+        f"  remedy:   {fault.remedy}\n"
+        f"  reaction: {fault.reaction.value}"
+    )
+
+
+def _neighbours(number: int) -> str:
+    """The numbers of the same hundred, among which the one that is meant may be."""
+    near = [f"{one.number}" for one in catalogue() if one.number // 100 == number // 100]
+    return f"there is no F{number:03d}; of its hundred: {', '.join(near) or 'none'}"
 
 
 def fault_catalogue() -> str:

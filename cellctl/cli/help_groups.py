@@ -1,5 +1,6 @@
 """Groups the commands of `cellctl --help` by their purpose."""
 
+from collections.abc import Iterator
 from typing import Any
 
 from typer.core import TyperGroup
@@ -17,13 +18,18 @@ class GroupedCommands(TyperGroup):
         # Without rich markup Typer does not show the panels that commands are registered with, so
         # they are printed here.
         sections: dict[str, list[tuple[str, str]]] = {}
+        for name, panel, summary in self.rows(ctx):
+            sections.setdefault(panel, []).append((name, summary))
+        for title, rows in sections.items():
+            with formatter.section(title):
+                formatter.write_dl(rows)
+
+    def rows(self, ctx: Any) -> Iterator[tuple[str, str, str]]:
+        """Name, panel and summary of each command."""
         for name in self.list_commands(ctx):
             command = self.get_command(ctx, name)
             if command is None or command.hidden:
                 continue
             panel = getattr(command, "rich_help_panel", None)
             title = panel if isinstance(panel, str) else _OTHERS
-            sections.setdefault(title, []).append((name, command.get_short_help_str(80)))
-        for title, rows in sections.items():
-            with formatter.section(title):
-                formatter.write_dl(rows)
+            yield name, title, command.get_short_help_str(80)

@@ -9,11 +9,11 @@ from cellctl.cli.help_groups import GroupedCommands
 settings = {"debug": False}
 
 
-def new_app() -> typer.Typer:
-    """`cellctl` without commands."""
+def new_app(group: type[GroupedCommands] = GroupedCommands) -> typer.Typer:
+    """`cellctl` without commands; ``group`` may find some of its own."""
     app = typer.Typer(
         name="cellctl",
-        cls=GroupedCommands,
+        cls=group,
         help="Cell controller for vision- and force-guided satellite assembly.",
         no_args_is_help=True,
         # Faults are printed by ``main`` with their cause and remedy; a traceback is for bugs.

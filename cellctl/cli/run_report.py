@@ -6,8 +6,6 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.process_pages import pages_of
-from cellctl.records.report.export import write_report
 from cellctl.records.store import RunStore
 
 
@@ -23,6 +21,10 @@ def report(
     ),
 ) -> None:
     """Write the report of a run as one file with its pictures, HTML or PDF."""
+    # Only a report is drawn; the list of runs does not wait for what draws.
+    from cellctl.cli.process_pages import pages_of
+    from cellctl.records.report.export import write_report
+
     path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
     with closing(RunStore(data_dir, create=False)) as store:
         pages = pages_of(store.run(run).head.process)

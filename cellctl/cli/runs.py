@@ -9,12 +9,10 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.process_pages import pages_of
 from cellctl.cli.run_report import report
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
-from cellctl.records.report.export import export_run
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.seals import LedgerHead
 from cellctl.records.store import RunStore
@@ -89,6 +87,10 @@ def export(
     ] = False,
 ) -> None:
     """Write record, report, pictures and recordings of a run into a folder."""
+    # Loaded here: the processes' pages bring scipy and matplotlib, which `runs list` does without.
+    from cellctl.cli.process_pages import pages_of
+    from cellctl.records.report.export import export_run
+
     with _store(data_dir) as store:
         folder = out or Path(f"run-{run}")
         pages = pages_of(store.run(run).head.process)

@@ -7,6 +7,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import MixedSimulation
+from cellctl.spelling import nearest
 
 
 def cross_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> list[ConfigIssue]:
@@ -45,11 +46,13 @@ def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
             carrier = getattr(camera, "carried_by", None)
             if carrier is not None and carrier not in cell.robots:
                 key = f"{section}.{name}.carried_by"
-                yield ConfigIssue(key, repr(carrier), f"a robot of this cell: {robots}")
+                allowed = f"{nearest(carrier, cell.robots)}a robot of this cell: {robots}"
+                yield ConfigIssue(key, repr(carrier), allowed)
     for name, sensor in cell.force_sensors.items():
         if sensor.mounted_on not in cell.robots:
             key = f"force_sensors.{name}.mounted_on"
-            yield ConfigIssue(key, repr(sensor.mounted_on), f"a robot of this cell: {robots}")
+            allowed = f"{nearest(sensor.mounted_on, cell.robots)}a robot of this cell: {robots}"
+            yield ConfigIssue(key, repr(sensor.mounted_on), allowed)
     mounted = Counter(sensor.mounted_on for sensor in cell.force_sensors.values())
     for name, sensor in cell.force_sensors.items():
         if mounted[sensor.mounted_on] > 1:

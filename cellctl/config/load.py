@@ -2,6 +2,7 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping, Set
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol, cast
 
@@ -9,8 +10,13 @@ from pydantic import BaseModel, ValidationError
 
 from cellctl import plugins
 from cellctl.config.base import Section
+from cellctl.config.between.addresses import address_issues
+from cellctl.config.between.robots import robot_issues
+from cellctl.config.between.units import unit_issues
 from cellctl.config.cell import CellConfig
 from cellctl.config.cross_checks import cross_issues
+from cellctl.config.document.findings import model_issues, shorten, validated
+from cellctl.config.document.lines import key_lines, line_of
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.process_definition import ProcessDefinition, process_definition
 from cellctl.config.recipe import Recipe
@@ -19,15 +25,12 @@ from cellctl.config.taught_pose_checks import taught_pose_issues
 from cellctl.config.zone_checks import zone_issues
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
 
-_LONGEST_VALUE = 60
-
 
 def load_cell(path: Path) -> CellConfig:
     """The cell file as a model; raises ``ConfigUnreadable``, ``ConfigInvalid`` or a sibling."""
     found, cell = _examine(path)
     if cell is None or found:
-        lines = [f"{issue.key} = {issue.value}: {issue.allowed}" for issue in found]
-        raise ConfigInvalid(f"{path}: " + "; ".join(lines))
+        raise ConfigInvalid(f"{path}: " + "; ".join(str(issue) for issue in found))
     return cell
 
 
@@ -48,7 +51,16 @@ def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
 
 
 def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
-    found, cell = _parse(_read_toml(path))
+    text, raw = _read_toml(path)
+    lines = key_lines(text)
+    found, cell = _issues(raw, path.parent)
+    return [replace(issue, line=line_of(issue.key, lines)) for issue in found], cell
+
+
+def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
+    units = list(unit_issues(raw))
+    found, cell = _parse(raw)
+    found += _unless_named(found, units)
     if cell is None:
         return found, None
     # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
@@ -57,13 +69,25 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
         *taught_pose_issues(cell, found),
         *zone_issues(cell, found),
         *cross_issues(cell, found),
+        *robot_issues(cell, _bad_devices(found)),
     ]
     # Faults of devices are reported once, where they are, and not again by every recipe that uses
     # them.
-    bad_devices = {".".join(issue.key.split(".")[:2]) for issue in found}
+    bad = _bad_devices(found)
     for index, recipe in enumerate(cell.recipes):
-        found += _process_issues(cell, recipe, f"recipes.{index}", path.parent, bad_devices)
-    return found, cell
+        found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
+    # Last: a device at a wrong address still belongs where the process wants it or not.
+    return [*found, *address_issues(cell)], cell
+
+
+def _bad_devices(found: list[ConfigIssue]) -> set[str]:
+    return {".".join(issue.key.split(".")[:2]) for issue in found}
+
+
+def _unless_named(found: list[ConfigIssue], more: list[ConfigIssue]) -> list[ConfigIssue]:
+    """Further findings of keys that are not reported yet: one mistake, one message."""
+    known = {issue.key for issue in found}
+    return [issue for issue in more if issue.key not in known]
 
 
 def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
@@ -72,9 +96,9 @@ def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
     recipes, settings = raw.pop("recipes", []), raw.pop("processes", {})
     found: list[ConfigIssue] = []
     try:
-        cell = CellConfig.model_validate(raw)
+        cell = validated(CellConfig, raw)
     except ValidationError as error:
-        found, cell = _from_pydantic("", error), None
+        found, cell = model_issues("", error, CellConfig, raw), None
     recipe_models = list(_recipes(recipes, found))
     needed = {recipe.process for recipe in recipe_models if recipe is not None}
     setting_models = _settings(settings, needed, found)
@@ -84,9 +108,10 @@ def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
     return found, cell.model_copy(update={"recipes": known, "processes": setting_models})
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read_toml(path: Path) -> tuple[str, dict[str, Any]]:
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8")
+        return text, tomllib.loads(text)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
 
@@ -94,7 +119,7 @@ def _read_toml(path: Path) -> dict[str, Any]:
 def _recipes(raw: Any, found: list[ConfigIssue]) -> Iterator[Recipe | None]:
     """The recipes as models of their processes; None, and what is wrong, for each bad one."""
     if not isinstance(raw, list):
-        found.append(ConfigIssue("recipes", _shorten(repr(raw)), "a list of [[recipes]]"))
+        found.append(ConfigIssue("recipes", shorten(repr(raw)), "a list of [[recipes]]"))
         return
     for index, entry in enumerate(raw):
         key = f"recipes.{index}"
@@ -105,9 +130,9 @@ def _recipes(raw: Any, found: list[ConfigIssue]) -> Iterator[Recipe | None]:
             yield None
             continue
         try:
-            yield definition.recipe_model.model_validate(entry)
+            yield validated(definition.recipe_model, entry)
         except ValidationError as error:
-            found += _from_pydantic(f"{key}.", error)
+            found += model_issues(f"{key}.", error, definition.recipe_model, entry)
             yield None
 
 
@@ -128,7 +153,7 @@ def _definition(entry: Any, key: str, found: list[ConfigIssue]) -> type[ProcessD
 def _settings(raw: Any, needed: set[str], found: list[ConfigIssue]) -> dict[str, Section]:
     """Settings of each process that a recipe or the file names, with their defaults."""
     if not isinstance(raw, dict):
-        found.append(ConfigIssue("processes", _shorten(repr(raw)), "tables [processes.NAME]"))
+        found.append(ConfigIssue("processes", shorten(repr(raw)), "tables [processes.NAME]"))
         return {}
     models: dict[str, Section] = {}
     for name in sorted(needed | set(raw)):
@@ -138,9 +163,9 @@ def _settings(raw: Any, needed: set[str], found: list[ConfigIssue]) -> dict[str,
             found.append(ConfigIssue(f"processes.{name}", name, error.detail, error.number))
             continue
         try:
-            models[name] = settings.model_validate(raw.get(name, {}))
+            models[name] = validated(settings, raw.get(name, {}))
         except ValidationError as error:
-            found += _from_pydantic(f"processes.{name}.", error)
+            found += model_issues(f"processes.{name}.", error, settings, raw.get(name, {}))
     return models
 
 
@@ -158,9 +183,9 @@ def _driver_issues(cell: CellConfig) -> list[ConfigIssue]:
             found.append(ConfigIssue(f"{key}.driver", value, error.detail, error.number))
             continue
         try:
-            driver.Config.model_validate(device.settings)
+            validated(driver.Config, device.settings)
         except ValidationError as error:
-            found += _from_pydantic(f"{key}.settings.", error)
+            found += model_issues(f"{key}.settings.", error, driver.Config, device.settings)
     return found
 
 
@@ -174,23 +199,3 @@ def _process_issues(
     # Without its settings, and all of its devices in order, a process has nothing to judge by.
     if not missing and not taken & bad_devices and recipe.process in cell.processes:
         yield from definition.check(cell, recipe, key, folder)
-
-
-def _from_pydantic(prefix: str, error: ValidationError) -> list[ConfigIssue]:
-    found = []
-    items = error.errors(include_url=False)
-    # pydantic calls a list with one bad entry "too short", in addition to what is wrong with the
-    # entry. That would send the user to look for a missing one.
-    parents = {item["loc"][:depth] for item in items for depth in range(1, len(item["loc"]))}
-    for item in items:
-        if item["type"] == "too_short" and item["loc"] in parents:
-            continue  # it has entries; what is wrong with them is reported by itself
-        key = prefix + ".".join(str(part) for part in item["loc"])
-        missing = item["type"] == "missing"
-        value = "(missing)" if missing else _shorten(repr(item["input"]))
-        found.append(ConfigIssue(key or "(file)", value, item["msg"]))
-    return found
-
-
-def _shorten(text: str, limit: int = _LONGEST_VALUE) -> str:
-    return text if len(text) <= limit else text[: limit - 1] + "…"

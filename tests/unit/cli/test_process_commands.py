@@ -64,11 +64,12 @@ def test_a_command_of_a_process_is_offered_and_runs() -> None:
     assert invoke(whole_app(), "weigh-picture", "2.5").stdout == "2.5 kg\n"
 
 
-def test_the_help_lists_it_among_the_commands_from_files() -> None:
+def test_the_help_lists_it_without_loading_its_package() -> None:
     text = invoke(whole_app(), "--help").stdout
-    panel = text[text.index("From files, without a cell") :]
+    panel = text[text.index("From installed packages") :]
     assert "weigh-picture" in panel
-    assert "Weigh a picture." in panel
+    assert "acme_pictures" not in sys.modules
+    assert "Weigh a picture." in invoke(whole_app(), "weigh-picture", "--help").stdout
 
 
 @pytest.mark.parametrize("name", ["broken-picture", "absent-picture"])
@@ -77,17 +78,15 @@ def test_a_command_that_cannot_be_loaded_is_a_fault_for_who_asks_for_it(name: st
         app_with(name)
 
 
-def test_the_help_survives_a_command_that_cannot_be_loaded(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    app = whole_app()
-    assert "'broken-picture' cannot be imported" in capsys.readouterr().err
-    assert invoke(app, "--help").exit_code == 0
+def test_the_help_survives_a_command_that_cannot_be_loaded() -> None:
+    done = invoke(whole_app(), "--help")
+    assert done.exit_code == 0
+    assert "broken-picture" in done.stdout
 
 
 def test_a_process_does_not_replace_a_command_of_the_core() -> None:
     assert app_with("check") is not None
-    whole_app()
+    assert invoke(whole_app(), "--help").stdout.count("  check ") == 1
 
 
 def test_an_unknown_name_is_no_command() -> None:

@@ -38,13 +38,16 @@ def test_what_no_template_can_know_is_marked(key: str) -> None:
     assert all("# FILL IN" in line for line in lines)
 
 
-def test_checking_it_does_not_load_the_library_of_the_cameras() -> None:
+def test_checking_it_does_not_load_the_library_of_the_cameras(tmp_path: Path) -> None:
     """harvesters costs start-up time and loads native code: only the cameras' process may."""
+    filled_in = tmp_path / "cell.toml"
+    filled_in.write_text(TEMPLATE.read_text().replace("FILL IN", "found"))
+    (tmp_path / "features").symlink_to(CONFIG / "features")
     program = (
         "import sys\n"
         "from typer.testing import CliRunner\n"
         "from cellctl.cli.commands import whole_app\n"
-        f"done = CliRunner().invoke(whole_app(), ['check', {str(TEMPLATE)!r}])\n"
+        f"done = CliRunner().invoke(whole_app(), ['check', {str(filled_in)!r}])\n"
         "assert done.exit_code == 0, done.output\n"
         "assert 'drivers.camera.gige.driver' in sys.modules\n"
         "print(sorted({'harvesters', 'genicam'} & set(sys.modules)))\n"

@@ -46,5 +46,6 @@ def test_clear_poses_are_taught_ones_of_a_robot_without_kinematics(
 def test_check_says_which_taught_poses_a_zone_holds(tmp_path: Path, name: str) -> None:
     # By forward kinematics in the fake cell, by what is not listed as clear in the template.
     path = devices_only(tmp_path, name=name)
+    path.write_text(path.read_text().replace("FILL IN", "found"))
     output = CliRunner().invoke(whole_app(), ["check", str(path)]).output
     assert "holds of main: no taught pose; of aux_2: measuring" in output

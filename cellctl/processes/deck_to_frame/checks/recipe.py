@@ -9,8 +9,10 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.processes.deck_to_frame.checks.base_frame_turns import base_frame_turn_issues
 from cellctl.processes.deck_to_frame.checks.features import feature_issues
 from cellctl.processes.deck_to_frame.checks.mating_plan import plan_issues
+from cellctl.processes.deck_to_frame.checks.parts import part_issues
+from cellctl.processes.deck_to_frame.checks.reach import reach_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
+from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 
 
@@ -29,5 +31,21 @@ def recipe_issues(
             yield ConfigIssue(f"robots.{main}.{length}", "(missing)", allowed)
     settings = cast(DeckSettings, cell.processes[recipe.process])
     yield from base_frame_turn_issues(cell, main, settings, recipe.process)
+    yield from _heads(cell, recipe)
+    yield from reach_issues(cell, main, recipe, key)
     yield from feature_issues(recipe, key, folder)
+    yield from part_issues(recipe, key, folder)
     yield from plan_issues(cell, recipe, key)
+
+
+def _heads(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
+    """Each head has an arm of its own: both measure at once, while the deck hangs on the third."""
+    taken = {recipe.device(MAIN): "the deck"}
+    for role in (HEAD_1, HEAD_2):
+        head = recipe.device(role)
+        carrier = cell.stereo_cameras[head].carried_by
+        if carrier in taken:
+            allowed = f"another robot; this one carries {taken[carrier]}"
+            yield ConfigIssue(f"stereo_cameras.{head}.carried_by", repr(carrier), allowed)
+        elif carrier is not None:
+            taken[carrier] = head

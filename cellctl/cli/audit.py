@@ -1,0 +1,48 @@
+"""`cellctl audit`: who did what, from the audit log of the run store."""
+
+import json
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from cellctl.records.entries import AuditEntry
+from cellctl.records.store import RunStore
+
+
+def audit(
+    *,
+    data_dir: Annotated[Path, typer.Option("--data-dir", help="Folder of the run store.")] = Path(
+        "runs"
+    ),
+    who: Annotated[str, typer.Option(help="Only whose name holds this text.")] = "",
+    action: Annotated[str, typer.Option(help="Only this action, for example gauge.")] = "",
+    limit: Annotated[int, typer.Option(help="How many, newest first.", min=1)] = 50,
+    as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
+) -> None:
+    """Who did what: commands, gauges, acknowledgements; every entry is sealed."""
+    # A mistyped folder must be an error, not a new and empty store.
+    with closing(RunStore(data_dir, create=False)) as store:
+        log = store.audit_log()
+    found = [
+        entry for entry in reversed(log) if who in entry.actor and action in ("", entry.action)
+    ][:limit]
+    if as_json:
+        plain = [asdict(entry) | {"time": entry.time.isoformat()} for entry in found]
+        typer.echo(json.dumps(plain, indent=2, ensure_ascii=False, default=str))
+    elif found:
+        Console().print(_table(found))
+    else:
+        typer.echo(f"no such entries, of {len(log)}")
+
+
+def _table(entries: list[AuditEntry]) -> Table:
+    table = Table("time (UTC)", "who", "action", "detail", box=None)
+    for entry in entries:
+        detail = ", ".join(f"{key} {value}" for key, value in entry.detail.items())
+        table.add_row(f"{entry.time:%Y-%m-%d %H:%M:%S}", entry.actor, entry.action, detail)
+    return table

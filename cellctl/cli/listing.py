@@ -1,0 +1,48 @@
+"""The list of `cellctl --help`, without loading what it lists.
+
+Together the commands load OpenCV, scipy and matplotlib for seconds, and a list of names needs none
+of them. A test compares the names with the commands that there are.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from cellctl.cli.help_groups import OFFLINE
+
+_CELL, _RECORDS, INSTALLED = "The cell", "Records and faults", "From installed packages"
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """One line of the help."""
+
+    name: str
+    panel: str
+    summary: str
+
+
+CELL = (
+    Listed("check", _CELL, "Check a cell file; exit code 1, with every error and what is allowed."),
+    Listed("run", _CELL, "Run the cell until SIGTERM or Ctrl-C."),
+    Listed("demo", _CELL, "Start a fake cell, daemon and line PLC and run one job."),
+    Listed("robot", _CELL, "Connect to one robot without the daemon, and print what it says."),
+    Listed("teach", _CELL, "Capture taught poses; the arm is moved by hand or pendant."),
+    Listed("grab", _CELL, "Save images as PNG, each exposure with a JSON file; moves nothing."),
+    Listed("focus", _CELL, "Show sharpness, light, overlap and what is found, live."),
+)
+FILES = (
+    Listed("runs", _RECORDS, "Look into the run store."),
+    Listed("replay", _RECORDS, "Compute every measurement of a run anew from its recordings."),
+    Listed("faults", _RECORDS, "The fault catalogue as Markdown, or one fault in words."),
+    Listed("audit", _RECORDS, "Who did what: commands, gauges, acknowledgements."),
+    Listed("calibrate", OFFLINE, "Calibrate from files."),
+    Listed("measure", OFFLINE, "Measure the named holes of a feature file in a stereo pair."),
+    Listed("plan", OFFLINE, "Check and plan the moves of a cell by its model."),
+    Listed("identify-payload", OFFLINE, "Identify mass, centre of mass and offsets from wrenches."),
+)
+
+
+def installed(names: list[str]) -> Iterator[Listed]:
+    """Commands that processes and drivers bring, whose own words would load their packages."""
+    for name in names:
+        yield Listed(name, INSTALLED, f"`cellctl {name} --help` says what it does.")

@@ -1,0 +1,1 @@
+"""What one section of a cell file says, held against what another one says."""

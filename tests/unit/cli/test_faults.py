@@ -1,0 +1,34 @@
+"""`cellctl faults`: one fault in words, and all of them for programs."""
+
+import json
+
+from typer.testing import CliRunner
+
+from cellctl.cli.commands import whole_app
+from cellctl.errors import catalogue
+
+
+def said(*words: str) -> str:
+    done = CliRunner().invoke(whole_app(), ["faults", *words])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def test_one_fault_has_its_cause_and_remedy() -> None:
+    fault = next(one for one in catalogue() if one.number == 207)
+    text = said("207")
+    for words in ("F207", fault.text, fault.cause, fault.remedy, fault.reaction.value):
+        assert words in text
+    assert "F206" not in text
+
+
+def test_every_fault_is_there_for_programs() -> None:
+    document = json.loads(said("--json"))
+    assert [one["number"] for one in document] == [fault.number for fault in catalogue()]
+    assert [one["number"] for one in json.loads(said("207", "--json"))] == [207]
+
+
+def test_a_number_that_there_is_not_names_its_neighbours() -> None:
+    done = CliRunner().invoke(whole_app(), ["faults", "299"])
+    assert done.exit_code == 2
+    assert "207" in done.output
