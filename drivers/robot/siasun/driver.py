@@ -218,6 +218,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         if self._latch is not latch:
             raise NotRearmed(f"{self.name}: {self._latch}, while it was re-armed")
         self._latch = None
+        self._state.forget_pauses()
 
     async def _move(
         self, build: Callable[[int, int], bytes], off_target: Callable[[RobotState], str | None]
@@ -251,7 +252,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         if self._latch is not None:
             raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
         state = self.state(self._config.stale_s)
-        faults.check_ready(self.name, state)
+        faults.check_ready(self.name, state, self._state.missed_beats())
 
     async def _stop_before_leaving(self) -> None:
         """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to

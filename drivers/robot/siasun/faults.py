@@ -74,10 +74,11 @@ def abortion(robot: str, reason: str) -> CellError:
     return fault(f"{robot}: {words} ({reason})")
 
 
-def check_ready(robot: str, state: RobotState) -> None:
+def check_ready(robot: str, state: RobotState, missed_beats: str) -> None:
     """Raise ``NotRearmed``, ``ControllerFault`` or ``RobotNotReady`` when it may not move."""
     if state.stop_latched:
-        raise NotRearmed(f"{robot}: the controller's stop latch is set")
+        why = f"; {missed_beats}" if missed_beats else ""
+        raise NotRearmed(f"{robot}: the controller's stop latch is set{why}")
     if state.error_code:
         raise ControllerFault(f"{robot}: controller error {state.error_code}")
     if not state.ready:

@@ -16,6 +16,7 @@ from drivers.robot.siasun.connection import SjlChannel
 
 BEATS_PER_DEADMAN = 4
 REPEAT_STOP_S = 0.3
+_NEARLY = 0.8
 _MODES = {"MAN": RobotMode.MANUAL, "AUT": RobotMode.AUTOMATIC, "REM": RobotMode.REMOTE}
 
 
@@ -48,6 +49,8 @@ class StateChannel:
         self._stops: dict[asyncio.Future[None], int] = {}
         self._abort_id = 0
         self._beats = 0
+        self._beat_s = 0.0
+        self._longest_pause_s = 0.0
         self._timer: asyncio.TimerHandle | None = None
 
     def newest(self, max_age_s: float) -> RobotState:
@@ -102,6 +105,21 @@ class StateChannel:
         finally:
             del self._stops[future]
 
+    def forget_pauses(self) -> None:
+        """The robot is re-armed: what kept this PC from its heartbeats before counts no longer."""
+        self._beat_s, self._longest_pause_s = now_s(), 0.0
+
+    def missed_beats(self) -> str:
+        """Words for a latch that nobody has asked for; empty when this PC has sent every beat."""
+        deadman_s = self.channel.hello.deadman_ms / 1000.0
+        # On the wire and in the controller some of the time is lost as well.
+        if self._longest_pause_s < _NEARLY * deadman_s:
+            return ""
+        return (
+            f"this PC has sent no heartbeat for {self._longest_pause_s:.2f} s, its dead man is "
+            f"{deadman_s:g} s"
+        )
+
     async def close(self) -> None:
         """Drop the link; whoever waits gets ``LinkLost``."""
         self._cancel_timer()
@@ -113,6 +131,7 @@ class StateChannel:
         # restarted.
         self._status = None
         self._time_s = now_s()
+        self.forget_pauses()
         self._beat()
 
     def _take(self, record: Record) -> None:
@@ -172,6 +191,9 @@ class StateChannel:
         self._timer = asyncio.get_running_loop().call_later(interval_s, self._beat)
 
     def _send_beat(self) -> None:
+        time_s = now_s()
+        self._longest_pause_s = max(self._longest_pause_s, time_s - self._beat_s)
+        self._beat_s = time_s
         self._beats += 1
         self.channel.send(self.channel.words.beat(self.channel.session, self._beats))
 

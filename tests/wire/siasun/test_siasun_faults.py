@@ -266,3 +266,19 @@ async def test_a_dead_event_loop_lets_the_dead_man_stop_the_arm(rig: AnyRig) -> 
     rig.wires["STA"].back.blocked = True
     with pytest.raises(MotionAborted, match="DEADMAN"):
         await within(2.0, moving)
+
+
+async def test_a_latch_by_the_dead_man_tells_that_this_pc_has_paused() -> None:
+    words = r"stop latch is set; this PC has sent no heartbeat for 0\.\d+ s, its dead man is 0\.3 s"
+    async with sjl_rig(silence_s=3.0) as rig:
+        await rig.connect()
+        await rearm(rig)
+        # As when the PC stands still: heartbeats stay away, and come again.
+        rig.robot._state._cancel_timer()
+        await rig.robot._state.wait(lambda status: status.latched, 2.0)
+        await asyncio.sleep(0.1)
+        rig.robot._state._beat()
+        with pytest.raises(NotRearmed, match=words):
+            await move(rig, 1.0, 0.05)
+        await rearm(rig)
+        await within(5.0, move(rig, 1.0, 0.05))
