@@ -2,6 +2,7 @@
 
 import re
 import sys
+from ctypes.util import find_library
 from io import BytesIO
 from pathlib import Path
 from types import ModuleType
@@ -25,6 +26,12 @@ from tests.unit.records.sample import good_run
 _NUMBER = re.compile(r"(?<![\w.])[-+−±]?\d+(?:\.\d+)?")
 
 
+drawn = pytest.mark.skipif(
+    find_library("pango-1.0") is None,
+    reason="no Pango on this machine: apt install libpango-1.0-0 libpangoft2-1.0-0",
+)
+
+
 def picture() -> bytes:
     _, data = cv2.imencode(".png", np.full((40, 60, 3), 128, np.uint8))
     return data.tobytes()
@@ -34,6 +41,7 @@ def text_of_pdf(data: bytes) -> str:
     return " ".join(page.extract_text() for page in PdfReader(BytesIO(data)).pages)
 
 
+@drawn
 def test_every_figure_of_the_page_is_in_the_pdf(store: RunStore, tmp_path: Path) -> None:
     run = good_run(store, picture())
     write_report(store, run, tmp_path / "report.html", pages=pages)
@@ -50,6 +58,7 @@ def test_every_figure_of_the_page_is_in_the_pdf(store: RunStore, tmp_path: Path)
     assert with_pictures
 
 
+@drawn
 def test_the_first_page_holds_what_is_signed(store: RunStore, tmp_path: Path) -> None:
     write_report(store, good_run(store, picture()), tmp_path / "a.pdf", pages=pages, pdf=True)
     first = PdfReader(tmp_path / "a.pdf").pages[0].extract_text()
@@ -57,6 +66,7 @@ def test_the_first_page_holds_what_is_signed(store: RunStore, tmp_path: Path) ->
         assert expected in first, expected
 
 
+@drawn
 def test_nothing_is_fetched(tmp_path: Path) -> None:
     (tmp_path / "secret.png").write_bytes(picture())
     page = f'<p>before</p><img src="file://{tmp_path}/secret.png" alt="not fetched"><p>after</p>'
@@ -75,6 +85,7 @@ def test_a_computer_without_the_libraries_says_which(monkeypatch: pytest.MonkeyP
         to_pdf("<p>text</p>")
 
 
+@drawn
 def test_the_command_writes_one_file(store: RunStore, tmp_path: Path) -> None:
     run = str(good_run(store, picture()))
     where = ["--data-dir", str(store.path)]
