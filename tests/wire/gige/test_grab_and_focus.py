@@ -32,7 +32,7 @@ driver = "gige"
 simulated = true
 [cameras.eye.settings]
 producers = ["{producer}"]
-camera.serial_number = "GL-1"
+camera.user_name = "left eye"
 pixel_format = "Mono12"
 exposure_s = 0.002
 [stereo_cameras.head_1]
