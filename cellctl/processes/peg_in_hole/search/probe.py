@@ -34,7 +34,7 @@ class Felt(StrEnum):
     FACE = "face"
     DIP = "dip"
     EDGE = "edge"
-    """Of the outer face, or of a valley."""
+    """Of the outer face, of a valley, or of the hole: the peg stands below the face."""
     WALL = "wall"
     ENTRY = "entry"
 
@@ -122,7 +122,8 @@ class TouchProbe:
             await self.motions.give_way(self.press_n, _GIVE_WAY_S)
             pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
         entered = pressed.ended is Ended.CONDITION
-        self.trace.note(pressed.last, Felt.ENTRY if entered else Felt.FACE)
+        stands = Felt.EDGE if _stands_lower(pressed.last) else Felt.FACE
+        self.trace.note(pressed.last, Felt.ENTRY if entered else stands)
         self.still_in_time(pressed.last)
         return entered
 
