@@ -3,8 +3,9 @@
 import logging
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import StrEnum
+from typing import TextIO, cast
 
 import structlog
 from structlog.stdlib import ProcessorFormatter
@@ -22,6 +23,38 @@ class LogLevel(StrEnum):
     ERROR = "ERROR"
 
 
+class UnfailingStream:
+    """Where log lines go: one that cannot be written is counted, and never raises.
+
+    Who logs may be about to stop an arm. A full disk under the log must not keep it from that.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self.lost = 0
+        """Lines that could not be written since the last that could."""
+
+    def write(self, text: str) -> int:
+        """All of the text, or nothing that anybody hears of before the next line."""
+        try:
+            if self.lost:
+                self._stream.write(f'{{"event": "log lines lost", "count": {self.lost}}}\n')
+                self.lost = 0
+            self._stream.write(text)
+        except OSError:
+            self.lost += bool(text.strip())
+        return len(text)
+
+    def flush(self) -> None:
+        """What cannot be flushed stays for the next line."""
+        with suppress(OSError):
+            self._stream.flush()
+
+    def isatty(self) -> bool:
+        """As the stream below."""
+        return self._stream.isatty()
+
+
 def configure(*, level: LogLevel = LogLevel.INFO) -> None:
     """Set up logging for this process; call once, first.
 
@@ -29,6 +62,7 @@ def configure(*, level: LogLevel = LogLevel.INFO) -> None:
     """
     for name in QUIET_LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
+    stream = UnfailingStream(sys.stderr)
     before: list[Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.processors.add_log_level,
@@ -38,12 +72,12 @@ def configure(*, level: LogLevel = LogLevel.INFO) -> None:
     structlog.configure(
         processors=[*before, *after],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level)),
-        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+        logger_factory=structlog.PrintLoggerFactory(cast(TextIO, stream)),
         # Loggers are made at import, before this function runs. One that was used by then would
         # otherwise keep the old set-up.
         cache_logger_on_first_use=False,
     )
-    handler = logging.StreamHandler(sys.stderr)
+    handler = logging.StreamHandler(cast(TextIO, stream))
     handler.setFormatter(
         ProcessorFormatter(
             foreign_pre_chain=[*before, _add_module],

@@ -1,5 +1,7 @@
 """Lines of the daemon and of drivers look alike, and the level holds for both."""
 
+import errno
+import io
 import json
 import logging
 from collections.abc import Iterator
@@ -44,3 +46,32 @@ def test_the_level_holds_for_both(level: LogLevel, capsys: pytest.CaptureFixture
         logging.getLogger("foreign").log(getattr(logging, name), name)
     wanted = list(LogLevel)[list(LogLevel).index(level) :]
     assert [line["event"] for line in _lines(capsys)] == [name for name in wanted for _ in range(2)]
+
+
+class FullDisk(io.StringIO):
+    """Below the log: takes nothing while it is full."""
+
+    full = True
+
+    def write(self, text: str) -> int:
+        if self.full:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return super().write(text)
+
+    def flush(self) -> None:
+        if self.full:
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+
+def test_a_full_disk_keeps_nobody_from_going_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    disk = FullDisk()
+    monkeypatch.setattr("sys.stderr", disk)
+    log.configure()
+    logger = log.get("cellctl.runtime.unit")
+    logger.error("fault")
+    logging.getLogger("drivers.robot").warning("lost")
+    disk.full = False
+    logger.info("again")
+    first, second = (json.loads(line) for line in disk.getvalue().splitlines())
+    assert first == {"event": "log lines lost", "count": 2}
+    assert second["event"] == "again"
