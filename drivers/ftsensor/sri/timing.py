@@ -86,6 +86,8 @@ class SampleClock:
         """
         # Not at once: what one read has left in the socket, the next one catches up with.
         self.lag_s = min(self._jumped_s, self._jumped_before_s)
+        # Each pause is judged by itself: a sum over hours would grow with every hiccup of a PC.
+        self._jumped_s -= self.lag_s
         self._jumped_before_s = self._jumped_s
         self._estimate_s += self._least_delay_s
         if self._origin_s is not None:
