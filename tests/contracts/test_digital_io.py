@@ -53,7 +53,7 @@ class ModbusBench(DigitalIoBench):
             now_s,
             inputs=lambda time_s: self.values,
             output_addresses=range(16),
-            watchdog_ms=300,
+            watchdog_ms=900,
         )
 
     async def start(self) -> None:
@@ -62,7 +62,7 @@ class ModbusBench(DigitalIoBench):
         settings = ModbusCouplerConfig(
             host="127.0.0.1",
             port=self.wire.port,
-            reply_timeout_s=0.2,
+            reply_timeout_s=0.6,
             inputs=INPUT_ADDRESSES,
             outputs=OUTPUT_ADDRESSES,
         )

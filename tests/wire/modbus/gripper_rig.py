@@ -27,12 +27,12 @@ class GripperRig:
 async def gripper_rig(**changes: object) -> AsyncIterator[GripperRig]:
     """Wired up, not connected."""
     jaws = PneumaticJaws(travel_s=0.1)
-    coupler = gripper_coupler(jaws, now_s, watchdog_ms=300)
+    coupler = gripper_coupler(jaws, now_s, watchdog_ms=900)
     async with ChaosProxy(await coupler.start()) as wire:
         settings: dict[str, object] = {
             "host": "127.0.0.1",
             "port": wire.port,
-            "reply_timeout_s": 0.2,
+            "reply_timeout_s": 0.6,
             "open_valve": OPEN_COIL,
             "close_valve": CLOSE_COIL,
             "opened_sensor": SENSORS["opened"],
