@@ -9,8 +9,8 @@ from typing import Any, Self, TypeVar
 Value = TypeVar("Value")
 _LIMIT_S = 5.0
 _TURNS = 8
-"""Turns of a loop. From a client's connection to the first line of the coroutine that serves it asyncio
-needs five, and from ``abort`` to the closed socket one."""
+"""Turns of a loop. From a client's connection to the first line of the coroutine that serves it
+asyncio needs five, and from ``abort`` to the closed socket one."""
 
 
 class LoopThread:
@@ -40,7 +40,8 @@ class LoopThread:
             await self._take_turns()
             return await coroutine
 
-        return asyncio.run_coroutine_threadsafe(after_what_came_before(), self._loop).result(_LIMIT_S)
+        future = asyncio.run_coroutine_threadsafe(after_what_came_before(), self._loop)
+        return future.result(_LIMIT_S)
 
     def call(self, function: Callable[[], Value]) -> Value:
         async def wrapped() -> Value:
