@@ -12,13 +12,15 @@ pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "peg-in-hole")
 
 
-@pytest.fixture
-def pin(tmp_path: Path) -> Iterator[OwnCell]:
-    cell = OwnCell.make(tmp_path, "insertion-pin")
+@pytest.fixture(params=["insertion-pin"])
+def pin(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[OwnCell]:
+    cell = OwnCell.make(tmp_path, request.param)
     yield cell
     cell.kill_all()
 
 
+# The second arm is streamed to over its remote interface; the process is the same.
+@pytest.mark.parametrize("pin", ["insertion-pin", "insertion-pin-rpc"], indirect=True)
 def test_a_pin_is_found_and_inserted(pin: OwnCell) -> None:
     out = pin.folder / "run"
     demo = pin.demo(out, *PROCESS, "--seed", "1")
@@ -43,3 +45,18 @@ def test_a_pin_that_cannot_be_inserted_is_not_called_good(pin: OwnCell, fault: s
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert result["result"] != "good"
     assert not result["seated"]
+
+
+@pytest.mark.parametrize("pin", ["insertion-pin", "insertion-pin-rpc"], indirect=True)
+def test_the_loop_is_measured_and_used(pin: OwnCell) -> None:
+    pin.fake().ready()
+    pin.daemon().ready()
+    plc = pin.plc("--mode", "maintenance", "--recipe", "301")
+    assert plc.end(200) == 0, plc.stdout + plc.stderr
+    stored = json.loads((pin.calibration / "contact_loop_1.json").read_text(encoding="utf-8"))
+    record = stored["record"]
+    assert record["verdict"] == "pass"
+    # Fingers, wrist and arm of the scenario in series with the face, and what the wire costs.
+    assert 80.0 < record["stiffness_n_mm"] < 120.0
+    assert 5.0 < record["dead_time_ms"] < 60.0
+    assert record["fitted"]["dead_time_ms"] < 60.0

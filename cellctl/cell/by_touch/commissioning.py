@@ -46,7 +46,19 @@ _ACCELERATION_M_S2 = 1.0
 _Z = 2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
+class StepAnswer:
+    """Mean answer of the loop to steps up of its push."""
+
+    times_s: Array
+    """Since the step, shape (n,)."""
+    rise_n: Array
+    """Above the force before the step, shape (n,)."""
+    step_n: float
+    """Height of the step."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class CommissionedLoop:
     """What a commissioning has found."""
 
@@ -59,6 +71,10 @@ class CommissionedLoop:
     stiffness: StiffnessFit
     fitted: LoopFigures
     """From the closed loop."""
+    readings: Array
+    """Travel in m and force in N at standstill, shape (n, 2)."""
+    answer: StepAnswer
+    """With the gains that follow from ``figures``."""
 
 
 async def commission_contact(
@@ -73,14 +89,20 @@ async def commission_contact(
     """
     run = _Commissioning(loop)
     motion_s = await run.motion_dead_times(min(free_m, run.greatest_chirp_m))
-    stiffness = await run.stiffness(travel_m)
+    stiffness, readings = await run.stiffness(travel_m)
     dead_s = await run.force_dead_times(stiffness.stiffness_n_m)
     figures = LoopFigures(stiffness.stiffness_n_m, float(dead_s.max()))
     usual = LoopFigures(stiffness.stiffness_n_m, float(np.median(dead_s)))
-    fitted = await run.loop_figures(figures, usual)
+    fitted, answer = await run.loop_figures(figures, usual)
     await run.contact.back_out(loop.settings.follow_m)
     return CommissionedLoop(
-        figures, usual.dead_time_s, float(np.median(motion_s)), stiffness, fitted
+        figures,
+        usual.dead_time_s,
+        float(np.median(motion_s)),
+        stiffness,
+        fitted,
+        readings,
+        answer,
     )
 
 
@@ -97,7 +119,8 @@ class _Commissioning:
         poses = np.array([sample.task_position_tip_m[_Z] for sample in samples])
         return burst_dead_times(sent_s, command, read_s, poses)
 
-    async def stiffness(self, travel_m: float) -> StiffnessFit:
+    async def stiffness(self, travel_m: float) -> tuple[StiffnessFit, Array]:
+        """The fit, and travel and force of each reading, shape (n, 2)."""
         readings = []
         for force_n in _FORCES_N:
             # Force that grows while the arm answers belongs to the next reading.
@@ -110,7 +133,7 @@ class _Commissioning:
             back_m = self._loop.tip_command[_Z] - _STEP_N / slope
             await self._go(back_m)
             readings.append(await self._reading())
-        return fit_stiffness(*np.array(readings).T)
+        return fit_stiffness(*np.array(readings).T), np.array(readings)
 
     async def force_dead_times(self, stiffness_n_m: float) -> Array:
         """In the middle of the forces; with what a sampled loop adds."""
@@ -123,21 +146,23 @@ class _Commissioning:
         delays_s = burst_dead_times(sent_s, command * stiffness_n_m, read_s, press_n)
         return np.asarray(delays_s + TICKS_OF_THE_LOOP * self._loop.period_s)
 
-    async def loop_figures(self, figures: LoopFigures, usual: LoopFigures) -> LoopFigures:
+    async def loop_figures(
+        self, figures: LoopFigures, usual: LoopFigures
+    ) -> tuple[LoopFigures, StepAnswer]:
         """Twice the damping of the design shows the figures, the design itself shows its steps."""
         slow = damping(figures, levers(self._loop.settings.lever_m), 2)
-        times_s, rise_n, step_n = await self._steps(figures, slow)
-        push_n = np.full(len(times_s), step_n)
-        fitted = fit_loop(times_s, push_n, rise_n, float(slow[_Z]))
+        answer = await self._steps(figures, slow)
+        push_n = np.full(len(answer.times_s), answer.step_n)
+        fitted = fit_loop(answer.times_s, push_n, answer.rise_n, float(slow[_Z]))
         check_loop(usual, fitted)
         designed = damping(figures, levers(self._loop.settings.lever_m), 1)
-        times_s, rise_n, step_n = await self._steps(figures, designed)
-        noise_n = self._loop.sample.force_sigma_n / np.sqrt(_STEPS)
-        check_step(times_s, rise_n, step_n, figures.dead_time_s, float(noise_n))
-        return fitted
+        answer = await self._steps(figures, designed)
+        noise_n = float(self._loop.sample.force_sigma_n / np.sqrt(_STEPS))
+        check_step(answer.times_s, answer.rise_n, answer.step_n, figures.dead_time_s, noise_n)
+        return fitted, answer
 
-    async def _steps(self, figures: LoopFigures, gains: Array) -> tuple[Array, Array, float]:
-        """Mean over some steps up: times, rise of the force, height of the step."""
+    async def _steps(self, figures: LoopFigures, gains: Array) -> StepAnswer:
+        """Mean over some steps up."""
         speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
         step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
         law = self._law(figures, gains, speed_m_s)
@@ -149,7 +174,7 @@ class _Commissioning:
             samples = await self._push(law, nominal, _STEP_N + step_n, ticks)
             rises.append([-sample.force_n[_Z] - _STEP_N for sample in samples])
         times_s = np.asarray(np.arange(ticks + 1) * self._loop.period_s, dtype=np.float64)
-        return times_s, np.asarray(np.mean(rises, axis=0)), step_n
+        return StepAnswer(times_s, np.asarray(np.mean(rises, axis=0)), step_n)
 
     async def _push(
         self, law: Admittance, nominal: Array, push_n: float, ticks: int

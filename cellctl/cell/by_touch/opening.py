@@ -27,7 +27,22 @@ async def streamed_contact(
     *,
     observer: TickObserver | None = None,
 ) -> AsyncIterator[StreamedContact]:
-    """Motions by touch as long as the context lasts; the arm begins out of contact, at standstill.
+    """Motions by touch as long as the context lasts; see ``open_contact_loop``."""
+    async with open_contact_loop(cell, arm, frames, settings, limits, observer=observer) as loop:
+        yield StreamedContact(loop)
+
+
+@asynccontextmanager
+async def open_contact_loop(
+    cell: Cell,
+    arm: GuardedRobot,
+    frames: ContactFrames,
+    settings: ContactSettings,
+    limits: StreamLimits,
+    *,
+    observer: TickObserver | None = None,
+) -> AsyncIterator[ContactLoop]:
+    """The stream and the armed guard; the arm begins out of contact, at standstill.
 
     The guard watches ``settings.limit_n`` and ``limit_nm`` about the tip; ``watch_closer`` makes
     them tighter for a phase. Raises ``StreamNotOffered``, ``LoopTooSlow``, ``LoopUnstable``,
@@ -46,7 +61,7 @@ async def streamed_contact(
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
         async with robot.stream(limits) as stream:
-            loop = ContactLoop(
+            yield ContactLoop(
                 stream,
                 guard,
                 tare,
@@ -54,7 +69,6 @@ async def streamed_contact(
                 settings=settings,
                 observer=observer or NoObserver(),
             )
-            yield StreamedContact(loop)
         # After a fault the guard stays armed or latched: whoever handles the fault decides when
         # watching may end.
         await guard.disarm()

@@ -1,6 +1,6 @@
 """The process: a peg finds its hole by touch and is inserted (study of insertion by touch)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -17,9 +17,11 @@ from cellctl.runtime.process import Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
+    from cellctl.calibration.store.kind import Kinds
     from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
     from cellctl.processes.peg_in_hole.state import AtHome
     from cellctl.processes.peg_in_hole.stations import PegCell
+    from cellctl.runtime.procedure import Procedure
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
 # and an operator's command must not wait for searches and force.
@@ -47,14 +49,19 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
 
         return recipe_issues(cell, cast(PegRecipe, recipe), key)
 
+    @classmethod
+    def calibration_kinds(cls) -> "Kinds":
+        """The measured loop; without it the bounds of the settings count."""
+        from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS
+
+        return CALIBRATIONS
+
     async def prepare(self, recipe: Recipe) -> "Prepared[PegFacts]":
         """Choose the search and refuse a task or a loop that cannot be held."""
-        from cellctl.processes.peg_in_hole.planned import cycle_plan
-        from cellctl.processes.peg_in_hole.run import PegFacts
+        from cellctl.processes.peg_in_hole.facts import read_facts
 
         peg = cast(PegRecipe, recipe)
-        cell = self.cell(peg)
-        return Prepared(PegFacts.of(cell, peg, cycle_plan(peg, cell.settings)), ())
+        return await read_facts(self.cell(peg), peg, self.services.calibrations)
 
     def open(self, prepared: "Prepared[PegFacts]", context: RunContext) -> "PegRun":
         """Facts, record and board."""
@@ -92,6 +99,16 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.report.pages import pages
 
         return pages(record, read)
+
+    def procedures(self) -> "Sequence[Procedure]":
+        """Procedure 301 measures the loop."""
+        from cellctl.processes.peg_in_hole.procedures.offered import peg_procedures
+        from cellctl.processes.peg_in_hole.stations import peg_recipes
+
+        recipes = peg_recipes(self.services.cell.config)
+        if not recipes:
+            return ()
+        return peg_procedures(self.cell(recipes[0]), recipes, self.services)
 
     def cell(self, recipe: PegRecipe) -> "PegCell":
         """The devices in the roles of a recipe."""

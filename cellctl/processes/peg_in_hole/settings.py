@@ -6,20 +6,26 @@ from pydantic import Field
 
 from cellctl.config.base import Section
 
+STIFFNESS_N_MM, DEAD_TIME_MS = (1.0, 10_000.0), (1.0, 200.0)
+"""What a cell can have."""
+
 
 class PegSettings(Section):
     """What was measured of arm, sensor and loop in contact."""
 
-    stiffness_n_mm: Annotated[float, Field(ge=1, le=10_000)]
-    """Of arm and contact in series at the tip, along the axis of the hole."""
-    dead_time_ms: Annotated[float, Field(ge=1, le=200)]
-    """From a force at the tip to a motion of the tip in answer."""
+    stiffness_n_mm: Annotated[float, Field(ge=STIFFNESS_N_MM[0], le=STIFFNESS_N_MM[1])]
+    """Upper bound for arm and contact in series at the tip, along the axis of the hole."""
+    dead_time_ms: Annotated[float, Field(ge=DEAD_TIME_MS[0], le=DEAD_TIME_MS[1])]
+    """Upper bound from a force at the tip to a motion of the tip in answer. Both bounds count until
+    procedure 301 has measured better figures."""
     repeatability_mm: Annotated[float, Field(gt=0, le=1)]
     """Of the arm along a search, standard deviation."""
     height_sigma_mm: Annotated[float, Field(gt=0, le=1)]
     """Of one reading of the height in contact, standard deviation."""
     force_sigma_n: Annotated[float, Field(gt=0, le=10)]
     """Of the mean of ten samples of one component of the force, standard deviation."""
+    validity_days: Annotated[int, Field(ge=1, le=3650)] = 365
+    """Of what procedure 301 measures."""
     lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] | None = None
     """A tick of the stream that comes later than this ends the contact at standstill; left out: 50
     ms, or ten periods of the stream where they are less."""

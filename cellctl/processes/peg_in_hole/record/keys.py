@@ -3,7 +3,7 @@
 They never change: stores keep runs for years, and evaluation compares runs of all of them.
 """
 
-FACE, INSERTION = "face", "insertion"
+FACE, INSERTION, LOOP = "face", "insertion", "loop"
 """Streams; their ticks are files of these names."""
 FACE_HEIGHT, FACE_TILT = "face.height", "face.tilt"
 CHOICE, CYCLE, TRACE, MAP = "search.choice", "insertion.result", "search.trace", "search.map"

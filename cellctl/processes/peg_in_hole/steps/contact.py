@@ -3,9 +3,11 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+from cellctl.cell.by_touch.contact_loop import ContactLoop
 from cellctl.cell.by_touch.frames import ContactFrames
 from cellctl.cell.by_touch.motions import ContactMotions
-from cellctl.cell.by_touch.opening import streamed_contact
+from cellctl.cell.by_touch.opening import open_contact_loop
+from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
 from cellctl.processes.peg_in_hole.tick_log import TickLog
@@ -14,17 +16,26 @@ from cellctl.processes.peg_in_hole.tick_log import TickLog
 @asynccontextmanager
 async def contact(run: PegRun, frames: ContactFrames, name: str) -> AsyncIterator[ContactMotions]:
     """Motions by touch; the ticks become the artefact ``NAME.csv``, also when they end badly."""
+    async with recorded_loop(run, frames, name) as loop:
+        yield StreamedContact(loop)
+
+
+@asynccontextmanager
+async def recorded_loop(
+    run: PegRun, frames: ContactFrames, name: str
+) -> AsyncIterator[ContactLoop]:
+    """The same without motions, for what sends its setpoints itself."""
     cell, log = run.facts.cell, TickLog()
     try:
-        async with streamed_contact(
+        async with open_contact_loop(
             cell.cell,
             cell.arm,
             frames,
             run.facts.contact,
             cell.robot.stream_offer().limits,
             observer=log,
-        ) as motions:
-            yield motions
+        ) as loop:
+            yield loop
     finally:
         run.board.update(force_peaks=tuple(log.peaks.tolist()))
         await run.recorder.artefact(keys.ticks(name), log.text().encode(), "text/csv")

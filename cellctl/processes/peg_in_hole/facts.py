@@ -1,0 +1,45 @@
+"""Reads and checks everything that a run needs before anything moves."""
+
+import asyncio
+from dataclasses import replace
+
+from cellctl.calibration.store.snapshot import CalibrationSnapshot
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.clock import utc_now
+from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
+from cellctl.processes.peg_in_hole.planned import cycle_plan
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.run import PegFacts
+from cellctl.processes.peg_in_hole.stations import PegCell
+from cellctl.runtime.jobs.factory import PLANNED
+from cellctl.runtime.process import Prepared
+
+_MS = 1e-3
+
+
+async def read_facts(
+    cell: PegCell, recipe: PegRecipe, store: CalibrationStore
+) -> Prepared[PegFacts]:
+    """Plan with what procedure 301 has measured, else with the bounds of the settings.
+
+    Raises the faults of a damaged calibration, ``SearchImpossible``, ``HeightTooNoisy``,
+    ``LoopTooSlow`` and ``LoopUnstable``.
+    """
+    kinds = [kind.for_recipe(recipe.id) for kind in CALIBRATIONS]
+    # Looked at ahead of time, so that no calibration expires in the middle of the run.
+    snapshot = await asyncio.to_thread(store.read_all, kinds, utc_now() + PLANNED)
+    measured = _measured(cell, recipe, snapshot)
+    facts = PegFacts.of(measured, recipe, cycle_plan(recipe, measured.settings))
+    return Prepared(facts, tuple(snapshot.records))
+
+
+def _measured(cell: PegCell, recipe: PegRecipe, snapshot: CalibrationSnapshot) -> PegCell:
+    figures = snapshot.find(CONTACT_LOOP.for_recipe(recipe.id))
+    if figures is None:
+        return cell
+    better = {
+        "stiffness_n_mm": figures.stiffness_n_m * MM,
+        "dead_time_ms": figures.dead_time_s / _MS,
+    }
+    return replace(cell, settings=cell.settings.model_copy(update=better))

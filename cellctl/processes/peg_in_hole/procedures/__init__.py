@@ -1,0 +1,1 @@
+"""Procedures of Maintenance that this process offers."""
