@@ -157,7 +157,11 @@ class KinematicMotions(ContactMotions):
         return self._ended(ended, press_n)
 
     async def turn(
-        self, task_rotation_tip_rad: Array, hold_force_n: Array, speed_rad_s: float
+        self,
+        task_rotation_tip_rad: Array,
+        hold_force_n: Array,
+        speed_rad_s: float,
+        until: Condition | None = None,  # noqa: ARG002 - nothing is met by a turn here
     ) -> ContactMotion:
         self._turned(task_rotation_tip_rad, speed_rad_s)
         return self._ended(Ended.TRAVEL, float(hold_force_n[2]))
@@ -217,7 +221,10 @@ class KinematicMotions(ContactMotions):
             free = np.hypot(*offsets.T)
             inside = np.where(free < fit.catch_radius_m, fit.depth_m, 0.0)
             deep = inside if fit.rim_m is None else np.where(free > fit.rim_m, 5e-3, inside)
-            return np.asarray(face + (0.0 if self.truth.absent else 1.0) * deep)
+            deep = (0.0 if self.truth.absent else 1.0) * deep
+            # On a tilted face an upright peg stands on its rim.
+            ahead_m = fit.rim_radius_m * float(np.hypot(*self.truth.slope))
+            return np.asarray(face + np.where(deep == 0.0, -ahead_m, deep))
         leaning = np.array([-self.rotation_rad[1], self.rotation_rad[0]]) / tilt_rad
         # The slope of the face along the tilt makes the peg lean more, or less.
         relative_rad = tilt_rad + float(self.truth.slope @ leaning)

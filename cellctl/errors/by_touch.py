@@ -112,6 +112,15 @@ class HoleBlocked(ByTouchError):
     remedy = "Look into the hole; compare part and recipe."
 
 
+class KeywayNotFound(ByTouchError):
+    """The plug stands on the ends of its keyway at every angle that was tried."""
+
+    number = 555
+    text = "The keys of the plug found no keyway"
+    cause = "Another keying than the socket's, or the part is turned farther than the recipe says."
+    remedy = "Compare keying and angle of plug and socket; look for a bent or broken key."
+
+
 class PegNotInserted(ByTouchError):
     """A peg that is not known to be inserted. Subclasses say which evidence is missing."""
 

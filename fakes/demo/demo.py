@@ -33,6 +33,8 @@ class Evidence:
     """Of the fake world, at the end."""
     record: Mapping[str, Any]
     """The cell's own record, as exported; empty when no run was opened."""
+    recipe: Mapping[str, Any] = field(default_factory=dict)
+    """Of the run, likewise."""
 
     @property
     def good(self) -> bool:

@@ -42,7 +42,8 @@ def collect(
             _cellctl(folder, "runs", *arguments)
         _cellctl(folder, "runs", "export", str(run), "--out", str(folder / "report"))
         record = json.loads((folder / "report" / "run.json").read_text(encoding="utf-8"))
-        evidence = replace(evidence, record=record)
+        text = (folder / "report" / "recipe.json").read_text(encoding="utf-8")
+        evidence = replace(evidence, record=record, recipe=json.loads(text)["recipe"])
     judgement = demo.judge(evidence)
     outcome = Outcome(
         seed=truth["seed"],

@@ -107,7 +107,11 @@ class ContactMotions(ABC):
 
     @abstractmethod
     async def turn(
-        self, task_rotation_tip_rad: Vector, hold_force_n: Vector, speed_rad_s: float
+        self,
+        task_rotation_tip_rad: Vector,
+        hold_force_n: Vector,
+        speed_rad_s: float,
+        until: Condition | None = None,
     ) -> ContactMotion:
         """Turn about the tip to an attitude while forces (3,) are held; zero means stiff."""
 

@@ -28,7 +28,8 @@ class ContactSettings:
     limit_nm: float
     lateral_spring_n_m: float = 5e3
     """K sideways while the peg is fed."""
-    tilt_spring_nm_rad: float = 5.0
+    rim_spring_n_m: float = 5.6e5
+    """K of the attitude while the peg is fed, at the rim: 5 N·m/rad for a peg of 6 mm."""
     filter_s: float = 2e-3
     """Time constant of the low-pass before the law; part of the dead time."""
     acceleration_m_s2: float = 0.1
@@ -43,6 +44,11 @@ class ContactSettings:
     """See ``TickRules``."""
     old_force_s: float = 5e-3
     lost_force_s: float = 20e-3
+
+    @property
+    def tilt_spring_nm_rad(self) -> float:
+        """The spring at the rim as one of the attitude: a wide plug would tilt at its seat else."""
+        return self.rim_spring_n_m * self.lever_m**2
 
     def check(self) -> None:
         """Raise ``LoopTooSlow`` or ``LoopUnstable`` before any contact."""

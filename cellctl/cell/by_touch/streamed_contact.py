@@ -29,10 +29,13 @@ from cellctl.cell.by_touch.motions import (
 from cellctl.cell.by_touch.stalled_feed import StalledFeed
 from cellctl.cell.by_touch.streamed_motion import Press, StreamedMotion
 from cellctl.force.contact.streamed.path import PathFollower, straight
-from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import Array
 
 _TURN_LEVER_M = 0.1
+_SHORTEST_M = 1e-6
+_MET_RATIO = 0.8
+"""Of the force limit, for a contact that nobody expected."""
 """A turn on the way counts as the way of a point so far from the tip."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion may take so much longer than its way at full speed, before it is given up."""
@@ -62,7 +65,14 @@ class StreamedContact(ContactMotions):
         points, lengths = straight(self._loop.tip_command, target, _TURN_LEVER_M)
         path = self._path(points, lengths)
         touched = _force_above(self._settings.press_n)
-        speed = min(speed_m_s, fastest_m_s(self._loop), fastest_rad_s(self._loop) * _TURN_LEVER_M)
+        way = target - self._loop.tip_command
+        # The flange makes both at once, so that the steps of both add up.
+        shift_s = float(np.linalg.norm(way[:3])) / fastest_m_s(self._loop)
+        turn_s = float(np.linalg.norm(way[3:])) / fastest_rad_s(self._loop)
+        least_s = max(shift_s + turn_s, self._loop.period_s)
+        # What stands in the way after all must not be met with more than the guard allows.
+        met_m_s = met_speed_m_s(self._settings.figures, _MET_RATIO * self._settings.limit_n)
+        speed = min(speed_m_s, met_m_s, max(path.remaining, _SHORTEST_M) / least_s)
         return await self._run(path, lambda _sample: speed, _first(touched, _arrived(path)), speed)
 
     async def touch(
@@ -118,7 +128,11 @@ class StreamedContact(ContactMotions):
         return await self._run(path, lambda _sample: speed, end, speed, press)
 
     async def turn(
-        self, task_rotation_tip_rad: Vector, hold_force_n: Vector, speed_rad_s: float
+        self,
+        task_rotation_tip_rad: Vector,
+        hold_force_n: Vector,
+        speed_rad_s: float,
+        until: Condition | None = None,
     ) -> ContactMotion:
         """See ``ContactMotions``; while it is held, the attitude gives way against a spring."""
         target = self._loop.tip_command.copy()
@@ -131,7 +145,8 @@ class StreamedContact(ContactMotions):
         if held:
             push = np.concatenate([hold_force_n, np.zeros(3)])
             press = giving_way(self._loop, push, (*held, TILT_X, TILT_Y), spring=self._springs())
-        return await self._run(path, lambda _sample: speed, _arrived(path), speed, press)
+        end = _first(_when(until), _arrived(path))
+        return await self._run(path, lambda _sample: speed, end, speed, press)
 
     async def give_way(self, press_n: float, hold_s: float) -> ContactMotion:
         """See ``ContactMotions``; raises ``ContactLost``."""

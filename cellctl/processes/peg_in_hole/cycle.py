@@ -6,13 +6,17 @@ from typing import Any
 
 from cellctl.cell.by_touch.motions import ContactMotions
 from cellctl.processes.peg_in_hole.choice import SearchChoice, SearchName
-from cellctl.processes.peg_in_hole.face import TouchedFace, touch_face
+from cellctl.processes.peg_in_hole.face import FacePlan, TouchedFace, touch_face
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
 from cellctl.processes.peg_in_hole.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
+from cellctl.processes.peg_in_hole.verdict.holding import (
+    directions_that_resist_a_turn,
+    pull_that_holds_n,
+)
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, SeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
 
@@ -26,9 +30,7 @@ class CyclePlan:
     task: SearchTask
     choice: SearchChoice
     seat: SeatLimits
-    face_radius_m: float
-    """Of the circle on which the face is touched."""
-    height_uncertainty_m: float
+    face: FacePlan
     grip_force_n: float | None
     """None where nobody has measured it: the touch on the rear is needed then."""
 
@@ -62,7 +64,7 @@ def _silent(_words: str) -> None:
 
 async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
     """From above the face to the verdict, held by the gripper still; see ``search_and_insert``."""
-    face = await touch_face(motions, plan.task, plan.face_radius_m, plan.height_uncertainty_m)
+    face = await touch_face(motions, plan.task, plan.face)
     return await search_and_insert(motions, plan, face)
 
 
@@ -89,6 +91,9 @@ async def search_and_insert(
     fed = await insert(motions, task)
     tell("verify: pushed to four sides")
     capture = await measure_capture(motions, task)
+    keys, pull_n = task.fit.keys, plan.seat.pull_n
+    keyed = None if keys is None else await directions_that_resist_a_turn(motions, keys)
+    held_n = None if pull_n is None else await pull_that_holds_n(motions, task, pull_n)
     evidence = InsertionEvidence(
         depth_m=fed.depth_m - face.depth_m,
         seat_force_n=fed.seat_force_n,
@@ -97,6 +102,8 @@ async def search_and_insert(
         greatest_force_n=max(fed.greatest_force_n, task.limits.search_n),
         grip_force_n=plan.grip_force_n,
         retouch_error_m=None,
+        keyed_directions=keyed,
+        held_pull_n=held_n,
     )
     judgement = judge_peg(evidence, task, plan.seat)
     return CycleResult(face, found_by, probe.trace, hole_map, fed, evidence, judgement)

@@ -22,10 +22,15 @@ _BEYOND_M = 2e-3
 _MOST_RESIDUAL_M = 0.1e-3
 _MOST_TILT_RAD = radians(3)
 _FREE_M_S = 20e-3
+_CLEAR_M = 3e-3
+"""Over a plug that stands proud of the touched panel."""
 _UPRIGHT = np.zeros(3)
 _DOWN = np.array([0.0, 0.0, 1.0])
-_ANGLES_RAD = np.radians([0.0, 120.0, 240.0, 60.0])
-"""Three for the plane, the fourth between two of them to prove it."""
+_ANGLES_RAD = np.radians([0.0, 60.0, 120.0, 240.0])
+"""In the order of the touches: three for the plane, and one between two of them to prove it."""
+_OF_PLANE, _PROOF = [0, 2, 3], 1
+_STEP_RAD = radians(30)
+"""Of the way round a plug: chords stay near the circle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,13 +56,24 @@ class TouchedFace:
         return self.depth_m + float(self.slope @ xy_m)
 
 
-async def touch_face(
-    motions: ContactMotions, task: SearchTask, radius_m: float, height_uncertainty_m: float
-) -> TouchedFace:
+@dataclass(frozen=True, slots=True)
+class FacePlan:
+    """Where the face is touched."""
+
+    radius_m: float
+    """Of the circle of touches round the search centre."""
+    height_uncertainty_m: float
+    datum_depth_m: float = 0.0
+    """So much deeper than the face lies the plane that is touched: the panel round a plug."""
+
+
+async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) -> TouchedFace:
     """Touch on a circle round the search centre; the first point fast, since its height is unknown.
 
     Raises ``FaceAbsent``, ``FaceUneven`` and ``FaceTilted``.
     """
+    radius_m, height_uncertainty_m = plan.radius_m, plan.height_uncertainty_m
+    touching = _Touching(motions, task, plan.datum_depth_m, height_uncertainty_m)
     places = radius_m * np.stack([np.cos(_ANGLES_RAD), np.sin(_ANGLES_RAD)], axis=1)
     # The arm may press harder where nothing is known yet; vision's height may be wrong by much.
     fast_m_s = touch_speed_m_s(
@@ -65,45 +81,78 @@ async def touch_face(
     )
     above_m = height_uncertainty_m + _OVER_PLANE_M
     reach_m = 2 * height_uncertainty_m + _OVER_PLANE_M + _BEYOND_M
-    first_m = await _touch(motions, task, places[0], -above_m, reach_m, speed_m_s=fast_m_s)
+    await touching.over_first(places[0], plan.datum_depth_m - above_m)
+    first_m = await touching.at(places[0], reach_m, speed_m_s=fast_m_s)
     depths = [first_m]
-    for place in places[1:]:
+    for angle_rad, place in zip(_ANGLES_RAD[1:], places[1:], strict=True):
         # A face that is tilted by as much as is allowed is still met from above.
         apart_m = float(np.linalg.norm(place - places[0]))
         above_m = _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
-        depths.append(
-            await _touch(motions, task, place, first_m - above_m, 2 * above_m + _BEYOND_M)
-        )
-    return _checked(places, np.array(depths), task, radius_m)
+        await touching.over_next(float(angle_rad), radius_m, first_m - above_m)
+        depths.append(await touching.at(place, 2 * above_m + _BEYOND_M))
+    await touching.leave(places[-1], first_m - above_m)
+    return _checked(places, np.array(depths) - plan.datum_depth_m, task, radius_m)
 
 
-async def _touch(
-    motions: ContactMotions,
-    task: SearchTask,
-    place_m: Array,
-    from_m: float,
-    travel_m: float,
-    *,
-    speed_m_s: float | None = None,
-) -> float:
-    await motions.back_out(-from_m)
-    await motions.move_free(np.array([*place_m, from_m]), _UPRIGHT, _FREE_M_S)
-    touched = await motions.touch(_DOWN, travel_m, task.limits.search_n, speed_m_s)
-    if touched.ended is not Ended.FORCE:
-        x_mm, y_mm = place_m * 1e3
-        raise FaceAbsent(
-            f"no contact at x {x_mm:.1f}, y {y_mm:.1f} mm within {travel_m * 1e3:.1f} mm"
+@dataclass(frozen=True, slots=True)
+class _Touching:
+    motions: ContactMotions
+    task: SearchTask
+    datum_depth_m: float
+    height_uncertainty_m: float
+
+    async def over_first(self, place_m: Array, from_m: float) -> None:
+        """From over the search centre to a place (2,), at depth ``from_m``."""
+        over_m = self._over_m(from_m)
+        await self.motions.back_out(-over_m)
+        await self.motions.move_free(np.array([*place_m, over_m]), _UPRIGHT, _FREE_M_S)
+        if over_m < from_m:
+            await self.motions.move_free(np.array([*place_m, from_m]), _UPRIGHT, _FREE_M_S)
+
+    async def over_next(self, angle_rad: float, radius_m: float, from_m: float) -> None:
+        """From the last place to the next one; round a plug that stands in the way."""
+        begun = await self.motions.back_out(-from_m)
+        steps, here_rad = 1, 0.0
+        if self.datum_depth_m > 0:
+            x_m, y_m, _ = begun.last.task_position_tip_m
+            here_rad = float(np.arctan2(y_m, x_m)) % (2 * np.pi)
+            steps = max(1, round((angle_rad - here_rad) / _STEP_RAD))
+        for at_rad in np.linspace(here_rad, angle_rad, steps + 1)[1:]:
+            place_m = [radius_m * np.cos(at_rad), radius_m * np.sin(at_rad), from_m]
+            await self.motions.move_free(np.array(place_m), _UPRIGHT, _FREE_M_S)
+
+    async def leave(self, place_m: Array, from_m: float) -> None:
+        """Up from the last place (2,) by ``from_m``, straight, clear of a plug."""
+        await self.motions.back_out(-from_m)
+        await self.motions.move_free(
+            np.array([*place_m, self._over_m(from_m)]), _UPRIGHT, _FREE_M_S
         )
-    return float(touched.last.task_position_tip_m[2])
+
+    def _over_m(self, from_m: float) -> float:
+        """High enough for a plug that stands proud of what is touched."""
+        return from_m if self.datum_depth_m == 0 else -self.height_uncertainty_m - _CLEAR_M
+
+    async def at(self, place_m: Array, travel_m: float, *, speed_m_s: float | None = None) -> float:
+        """Depth of the tip in contact at a place (2,), over which it stands."""
+        touched = await self.motions.touch(_DOWN, travel_m, self.task.limits.search_n, speed_m_s)
+        if touched.ended is not Ended.FORCE:
+            x_mm, y_mm = place_m * 1e3
+            raise FaceAbsent(
+                f"no contact at x {x_mm:.1f}, y {y_mm:.1f} mm within {travel_m * 1e3:.1f} mm"
+            )
+        return float(touched.last.task_position_tip_m[2])
 
 
 def _checked(places: Array, depths: Array, task: SearchTask, radius_m: float) -> TouchedFace:
-    design = np.column_stack([np.ones(3), places[:3]])
-    depth_m, *slope = np.linalg.solve(design, depths[:3])
-    residual_m = float(depths[3] - np.array([1.0, *places[3]]) @ [depth_m, *slope])
+    design = np.column_stack([np.ones(3), places[_OF_PLANE]])
+    depth_m, *slope = np.linalg.solve(design, depths[_OF_PLANE])
+    expected_m = float(np.array([1.0, *places[_PROOF]]) @ [depth_m, *slope])
+    residual_m = float(depths[_PROOF]) - expected_m
     # Three points 120 degrees apart: each slope has the variance 2 σ² / (3 r²).
     sigma = task.cell.height_sigma_m / radius_m * float(np.sqrt(2 / 3))
-    face = TouchedFace(float(depth_m), np.array(slope), residual_m, sigma)
+    # What touches a tilted face is the rim of the peg and not its middle.
+    ahead_m = task.fit.rim_radius_m * float(np.hypot(*slope))
+    face = TouchedFace(float(depth_m) + ahead_m, np.array(slope), residual_m, sigma)
     if abs(residual_m) > _MOST_RESIDUAL_M:
         raise FaceUneven(
             f"{residual_m * 1e3:.3f} mm beside the plane, at most {_MOST_RESIDUAL_M * 1e3:.1f} mm"

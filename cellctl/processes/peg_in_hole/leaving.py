@@ -14,8 +14,7 @@ _CLEAR_M = 15e-3
 """Over the face a joint move may begin."""
 _BESIDE_M = 50e-3
 """Farther than this from the axis of a hole nothing stands in the way."""
-_PULL = WrenchTolerance(force_n=20.0, moment_n_m=2.0)
-"""What drawing a peg out may change: more, and it is held, which is for a person to see."""
+_TWIST_N_M = 2.0
 _SLOW_M_S, _SLOW_M_S2 = 5e-3, 0.05
 
 
@@ -45,7 +44,9 @@ async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
     up = base_T_hole.rotation.apply([0.0, 0.0, missing_m])
     target = RigidTransform.from_translation(up) * here
     wrench_frame = pose_from_xyzabc(recipe.flange_T_tip)
-    async with guarded_moves(cell.cell, cell.arm, wrench_frame, _PULL) as move:
+    # More, and the part is held, which is for a person to see.
+    pull = WrenchTolerance(recipe.forces.withdrawal_n, _TWIST_N_M)
+    async with guarded_moves(cell.cell, cell.arm, wrench_frame, pull) as move:
         await move(
             cell.robot.move_linear(target, speed_m_s=_SLOW_M_S, acceleration_m_s2=_SLOW_M_S2)
         )

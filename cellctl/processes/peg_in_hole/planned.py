@@ -1,11 +1,20 @@
 """From the recipe and the cell's figures to the plan of one cycle; nothing moves here."""
 
+from math import radians
+
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.choice import choose_search
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
-from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.face import FacePlan
+from cellctl.processes.peg_in_hole.recipe import KeysSection, PegRecipe
 from cellctl.processes.peg_in_hole.settings import PegSettings
-from cellctl.processes.peg_in_hole.task import CellFigures, FitGeometry, ForceLimits, SearchTask
+from cellctl.processes.peg_in_hole.task import (
+    CellFigures,
+    FitGeometry,
+    ForceLimits,
+    KeyGeometry,
+    SearchTask,
+)
 from cellctl.processes.peg_in_hole.verdict.judgement import SeatLimits
 
 _MS = 1e-3
@@ -13,14 +22,28 @@ _MS = 1e-3
 
 def cycle_plan(recipe: PegRecipe, settings: PegSettings) -> CyclePlan:
     """Raises ``SearchImpossible`` or ``HeightTooNoisy`` with the figures that say why."""
-    task = search_task(recipe, settings)
+    task, place = search_task(recipe, settings), recipe.base_T_hole
     return CyclePlan(
         task,
         choose_search(task, recipe.search),
-        SeatLimits(recipe.seat.least_n, recipe.seat.most_n),
-        recipe.base_T_hole.face_radius_mm * MM,
-        recipe.base_T_hole.height_uncertainty_mm * MM,
+        SeatLimits(
+            recipe.seat.least_n,
+            recipe.seat.most_n,
+            keyed=recipe.fit.keys is not None,
+            pull_n=recipe.seat.pull_n,
+        ),
+        FacePlan(
+            place.face_radius_mm * MM, place.height_uncertainty_mm * MM, place.datum_depth_mm * MM
+        ),
         recipe.seat.grip_n,
+    )
+
+
+def _keys(section: KeysSection) -> KeyGeometry:
+    return KeyGeometry(
+        section.depth_mm * MM,
+        radians(section.window_deg),
+        radians(section.uncertainty_deg),
     )
 
 
@@ -36,6 +59,7 @@ def search_task(recipe: PegRecipe, settings: PegSettings) -> SearchTask:
             fit.peg_chamfer_mm * MM,
             fit.depth_mm * MM,
             None if outer_mm is None else outer_mm * MM,
+            None if fit.keys is None else _keys(fit.keys),
         ),
         CellFigures(
             settings.stiffness_n_mm / MM,

@@ -13,6 +13,18 @@ _SLOW_LOOP_N_S_M = 5e3
 
 
 @dataclass(frozen=True, slots=True)
+class KeyGeometry:
+    """Keys that let a plug in at one angle about its axis only."""
+
+    depth_m: float
+    """Of the tip, where the keys meet the ends of their keyways."""
+    window_rad: float
+    """Half width of the angles that enter, and the play inside."""
+    uncertainty_rad: float
+    """The plug is turned by no more than this when it arrives, in 99 of 100 cases."""
+
+
+@dataclass(frozen=True, slots=True)
 class FitGeometry:
     """Peg and hole by the drawing."""
 
@@ -26,11 +38,18 @@ class FitGeometry:
     """From the face to the seat."""
     outer_radius_m: float | None = None
     """Of the raised plug that has the hole; None for a hole in a plate."""
+    keys: KeyGeometry | None = None
+    """None for a round part."""
 
     @property
     def bore_radius_m(self) -> float:
         """Radius of the hole."""
         return self.peg_radius_m + self.clearance_m
+
+    @property
+    def rim_radius_m(self) -> float:
+        """Of the bottom circle of the peg."""
+        return self.peg_radius_m - self.peg_chamfer_m
 
     @property
     def chamfered(self) -> bool:

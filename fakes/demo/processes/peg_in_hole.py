@@ -21,11 +21,9 @@ class PegInHoleDemo(Demo):
     scenario: ClassVar[Path] = CONFIG / "insertion-pin.scenario.toml"
     serial: ClassVar[str] = "PIN-{seed:04d}"
     steps: ClassVar[Mapping[int, str]] = {10: "approach", 20: "touch face", 30: "search and insert"}
-    insertion_n: ClassVar[float] = 30.0
-    """Largest 20 ms mean of the true force; limits of reference cell P."""
-    fault_n: ClassVar[float] = 50.0
-    """Largest 3 ms mean."""
-    fault_nm: ClassVar[float] = 1.0
+    forces: ClassVar[Mapping[str, float]] = {"insertion_n": 30.0, "fault_n": 50.0, "fault_nm": 1.0}
+    """Greatest 20 ms mean of the true force, 3 ms mean, and moment, where no run was opened; else
+    those of its recipe."""
 
     def prepare(self, control: Control) -> None:
         """The next part and the next face, with what was injected into them."""
@@ -34,38 +32,39 @@ class PegInHoleDemo(Demo):
     def judge(self, evidence: Evidence) -> Judgement:
         """In its own hole and at its seat, not slipped, and never pressed too hard."""
         figures = _figures(evidence.truth)
-        beyond = [one.name for one in self._limited() if not one.within(figures[one.key])]
+        limited = _limited({**self.forces, **evidence.recipe.get("forces", {})})
+        beyond = [one.name for one in limited if not one.within(figures[one.key])]
         beyond += [] if figures["seated"] else ["seated"]
         beyond += [f"{key} of the record" for key in failed_figures(evidence.record)]
         figures["beyond"] = beyond
-        return Judgement(evidence.good and not beyond, figures, self._rows(figures))
+        return Judgement(evidence.good and not beyond, figures, _rows(figures, limited))
 
     def rows(self, now: Message) -> Mapping[str, str]:
         """The force on the part."""
         return {"force z": force_row(now)}
 
-    def _limited(self) -> Sequence[Limited]:
-        return (
-            Limited("true depth short of the seat, mm", "short_mm", -0.3, 0.3, "{:.3f}"),
-            Limited("slip in the fingers, true, mm", "slip_mm", 0.0, 0.15, "{:.3f}"),
-            Limited(
-                "true force, 20 ms mean, N", "force_20_ms_n", 0.0, self.insertion_n, "{:.1f}"
-            ),
-            Limited("true force, 3 ms mean, N", "force_3_ms_n", 0.0, self.fault_n, "{:.1f}"),
-            Limited(
-                "true moment at the tip, 3 ms mean, N·m", "moment_3_ms_nm", 0.0, self.fault_nm,
-                "{:.2f}",
-            ),
-        )  # fmt: skip
 
-    def _rows(self, figures: Mapping[str, Any]) -> list[Row]:
-        seated, wrong = figures["seated"], ", ".join(figures["hole_faults"]) or "none"
-        return [
-            Row("in its hole and seated", seated, limit="True", within=seated),
-            Row("wrong with the hole", wrong, limit="none", within=wrong == "none"),
-            *(one.row(figures[one.key]) for one in self._limited()),
-            Row("true force, at an instant, N", figures["force_1_ms_n"], "{:.1f}"),
-        ]
+def _limited(forces: Mapping[str, float]) -> Sequence[Limited]:
+    insertion_n, fault_n, fault_nm = (forces[key] for key in ("insertion_n", "fault_n", "fault_nm"))
+    return (
+        Limited("true depth short of the seat, mm", "short_mm", -0.3, 0.3, "{:.3f}"),
+        Limited("slip in the fingers, true, mm", "slip_mm", 0.0, 0.15, "{:.3f}"),
+        Limited("true force, 20 ms mean, N", "force_20_ms_n", 0.0, insertion_n, "{:.1f}"),
+        Limited("true force, 3 ms mean, N", "force_3_ms_n", 0.0, fault_n, "{:.1f}"),
+        Limited(
+            "true moment at the tip, 3 ms mean, N·m", "moment_3_ms_nm", 0.0, fault_nm, "{:.2f}"
+        ),
+    )
+
+
+def _rows(figures: Mapping[str, Any], limited: Sequence[Limited]) -> list[Row]:
+    seated, wrong = figures["seated"], ", ".join(figures["hole_faults"]) or "none"
+    return [
+        Row("in its hole and seated", seated, limit="True", within=seated),
+        Row("wrong with the hole", wrong, limit="none", within=wrong == "none"),
+        *(one.row(figures[one.key]) for one in limited),
+        Row("true force, at an instant, N", figures["force_1_ms_n"], "{:.1f}"),
+    ]
 
 
 def _figures(truth: Mapping[str, Any]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from fakes.world.peg.attitude import Pose6
 from fakes.world.peg.contact import Contact
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.friction import Bristles, rub
-from fakes.world.peg.slots import Slots
+from fakes.world.peg.slots import Slots, among_contacts
 
 _ROUNDS: Final = 12
 _RELAXING: Final = 60
@@ -109,7 +109,7 @@ class _Load:
         moved = _difference(pose, before)
         for contact in contacts:
             self._add(contact, moved, bristles, fit.friction)
-        if fit.contact_forces and pose[2] < -fit.contact_forces[0][0]:
+        if among_contacts(fit, pose):
             self._add_inside(fit, pose[2], moved[2], bristles)
         self.wrench = np.zeros(6)
         if self._forces:

@@ -25,6 +25,13 @@ _RIM_ON_WALL, _FLOOR, _OUTER, _PANEL, _KEYS, _KEY_PLAY, _BURR, _WEDGED = (
 )  # fmt: skip
 
 
+def among_contacts(fit: Fit, pose: Pose6) -> bool:
+    """Whether the peg stands so deep in its hole that contacts inside rub at it."""
+    if not fit.contact_forces or pose[2] >= -fit.contact_forces[0][0]:
+        return False
+    return math.hypot(pose[0], pose[1]) < fit.mouth_radius_m
+
+
 class Slots:
     """All that can touch between the peg and the hole of a fit."""
 
@@ -57,8 +64,7 @@ class Slots:
 
     def free(self, pose: Pose6) -> bool:
         """True where nothing acts on the peg, contacts inside a connector included."""
-        inside = self.fit.contact_forces
-        return not (inside and pose[2] < -inside[0][0]) and not self.active(pose)
+        return not among_contacts(self.fit, pose) and not self.active(pose)
 
     def _on_face(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
         x, y, z = tip

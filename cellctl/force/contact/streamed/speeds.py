@@ -18,9 +18,14 @@ LOST_S = 0.02
 
 
 def touch_speed_m_s(figures: LoopFigures, growth_n: float) -> float:
-    """Greatest speed at which a new contact grows by no more than ``growth_n``."""
+    """Greatest speed of a touch at which its contact grows by no more than ``growth_n``."""
+    return min(FASTEST_TOUCH_M_S, met_speed_m_s(figures, growth_n))
+
+
+def met_speed_m_s(figures: LoopFigures, growth_n: float) -> float:
+    """The same for a contact that nobody expects: no touch, so nothing else bounds it."""
     delay_s = figures.dead_time_s + DETECTION_S
-    return min(FASTEST_TOUCH_M_S, growth_n / (figures.stiffness_n_m * delay_s))
+    return growth_n / (figures.stiffness_n_m * delay_s)
 
 
 def feed_override(axial_n: float, limit_n: float) -> float:

@@ -15,6 +15,7 @@ _OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
 _STAYS = 0.7
 _FOOT = 0.2
+_LINE_SAMPLES = 20
 _SEAT_ZONE_M, _WAY_M = 0.5e-3, 3e-3
 """So far before its end a feed is slowed by the seat; so far back the way counts for friction."""
 
@@ -27,6 +28,8 @@ class Standing:
     axial_n: float
     side_n: float
     moment_nm: float
+    yaw_rad: float = 0.0
+    """About the axis of the hole: that of a plug whose keys are in their keyways."""
 
     @classmethod
     def of(cls, sample: ContactSample) -> "Standing":
@@ -34,7 +37,8 @@ class Standing:
         x_n, y_n, z_n = (float(value) for value in sample.force_n)
         x_nm, y_nm, _ = (float(value) for value in sample.moment_nm)
         depth_m = float(sample.task_position_tip_m[2])
-        return cls(depth_m, -z_n, hypot(x_n, y_n), hypot(x_nm, y_nm))
+        yaw_rad = float(sample.task_rotation_tip_rad[2])
+        return cls(depth_m, -z_n, hypot(x_n, y_n), hypot(x_nm, y_nm), yaw_rad)
 
     @property
     def sideways(self) -> bool:
@@ -72,8 +76,14 @@ def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
     axial_n = axial_n[:peak]
     depth_m = np.array([sample.task_position_tip_m[2] for sample in fresh[:peak]])
     back_m = depth_m[-1] - depth_m
-    sliding = axial_n[(back_m > _SEAT_ZONE_M) & (back_m < _WAY_M)]
-    friction_n = float(np.median(sliding)) if sliding.size else 0.0
+    sliding = (back_m > _SEAT_ZONE_M) & (back_m < _WAY_M)
+    friction_n = float(np.median(axial_n[sliding])) if sliding.any() else 0.0
+    if sliding.sum() >= _LINE_SAMPLES:
+        # Contacts of a connector make a force that grows on the way; at the seat it is what their
+        # line leads to.
+        friction_n = max(
+            friction_n, float(np.polyval(np.polyfit(back_m[sliding], axial_n[sliding], 1), 0.0))
+        )
     below = np.flatnonzero(axial_n < friction_n + _FOOT * (axial_n[-1] - friction_n))
     begin = int(below[-1]) if below.size else 0
     if len(axial_n) - begin < 2 or np.ptp(depth_m[begin:]) == 0:

@@ -17,6 +17,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
     greatest_axial_n,
     seat_slope_n_m,
 )
+from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
 from cellctl.processes.peg_in_hole.task import SearchTask
 
@@ -43,8 +44,11 @@ class Fed:
 async def insert(motions: ContactMotions, task: SearchTask) -> Fed:
     """To the seat, with at most three recoveries that each gain depth.
 
-    Raises ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with the figures where the peg stands.
+    Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with the figures
+    where the peg stands.
     """
+    if task.fit.keys is not None:
+        await find_keyway(motions, task, task.fit.keys)
     feed = _Feed(motions, task)
     motion = await feed.on()
     helped: list[str] = []

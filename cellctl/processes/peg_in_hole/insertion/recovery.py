@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from cellctl.cell.by_touch.motions import ContactMotions
+from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.insertion.felt import Standing
 from cellctl.processes.peg_in_hole.task import FitGeometry
 
@@ -18,6 +19,11 @@ _GIVE_WAY_S = 1.0
 _WIGGLE_RAD, _WIGGLE_HZ, _WIGGLE_POINTS = radians(0.3), 2.0, 8
 _YAW_RAD, _YAW_RAD_S = radians(2), radians(3)
 _BACK_M = 1e-3
+
+
+def _upright(standing: Standing) -> Array:
+    """The attitude without tilt, at the angle at which the part stands."""
+    return np.array([0.0, 0.0, standing.yaw_rad])
 
 
 class Recovery(ABC):
@@ -57,8 +63,8 @@ class Wiggle(Recovery):
         speed = 2 * pi * _WIGGLE_HZ * amplitude
         for angle in np.linspace(0, 2 * pi, _WIGGLE_POINTS):
             tilted = amplitude * np.array([np.cos(angle), np.sin(angle), 0.0])
-            await motions.turn(tilted, hold, speed)
-        await motions.turn(np.zeros(3), hold, speed)
+            await motions.turn(tilted + _upright(standing), hold, speed)
+        await motions.turn(_upright(standing), hold, speed)
 
 
 class Yaw(Recovery):
@@ -66,16 +72,13 @@ class Yaw(Recovery):
 
     name: ClassVar[str] = "yaw"
 
-    async def apply(
-        self,
-        motions: ContactMotions,
-        fit: FitGeometry,  # noqa: ARG002 - alike for every fit
-        standing: Standing,
-    ) -> None:
-        """To both sides at 50 % of the force."""
+    async def apply(self, motions: ContactMotions, fit: FitGeometry, standing: Standing) -> None:
+        """To both sides at 50 % of the force; a keyed plug by its play only."""
         hold = np.array([0.0, 0.0, _HALVED * standing.axial_n])
-        for angle in (_YAW_RAD, -_YAW_RAD, 0.0):
-            await motions.turn(np.array([0.0, 0.0, angle]), hold, _YAW_RAD_S)
+        greatest = _YAW_RAD if fit.keys is None else min(_YAW_RAD, fit.keys.window_rad)
+        for angle in (greatest, -greatest, 0.0):
+            turned = _upright(standing) + np.array([0.0, 0.0, angle])
+            await motions.turn(turned, hold, _YAW_RAD_S)
 
 
 class BackAndAgain(Recovery):

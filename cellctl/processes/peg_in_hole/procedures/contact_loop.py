@@ -75,9 +75,10 @@ async def _measure(touched: FaceTouched) -> CommissionedLoop:
     async with recorded_loop(run, touched.frames, keys.LOOP) as loop:
         motions = StreamedContact(loop)
         # Where the face was touched: the peg stands beside the hole there, wherever that is.
-        await motions.move_free(
-            np.array([plan.face_radius_m, 0.0, -_HIGH_M]), np.zeros(3), _FREE_M_S
-        )
+        place = np.array([plan.face.radius_m, 0.0, -_HIGH_M])
+        await motions.move_free(place, np.zeros(3), _FREE_M_S)
+        place[2] += plan.face.datum_depth_m
+        await motions.move_free(place, np.zeros(3), _FREE_M_S)
         found = await commission_contact(loop, _TRAVEL_M, _FREE_M)
         await motions.back_out(CLEAR_M)
     return found

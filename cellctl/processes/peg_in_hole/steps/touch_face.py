@@ -15,8 +15,8 @@ async def find_face(above: AboveHole) -> FaceTouched:
     """Raises ``FaceAbsent``, ``FaceUneven``, ``FaceTilted`` or what ends the stream."""
     run, plan = above.run, above.run.facts.plan
     async with contact(run, above.frames, keys.FACE) as motions:
-        face = await touch_face(motions, plan.task, plan.face_radius_m, plan.height_uncertainty_m)
-        await motions.back_out(CLEAR_M - face.depth_m + plan.face_radius_m * face.tilt_rad)
+        face = await touch_face(motions, plan.task, plan.face)
+        await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
     await run.recorder.figure(keys.FACE_HEIGHT, -face.depth_m / MM, "mm")
     await run.recorder.figure(keys.FACE_TILT, face.tilt_rad, "rad")
     return FaceTouched(run, on_face(above.frames, face))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.by_touch.motions import ContactMotion, Ended
 from cellctl.errors.by_touch import FaceAbsent, FaceTilted, FaceUneven
-from cellctl.processes.peg_in_hole.face import TouchedFace, touch_face
+from cellctl.processes.peg_in_hole.face import FacePlan, TouchedFace, touch_face
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 FAR = np.array([100e-3, 100e-3])
@@ -15,7 +15,7 @@ FAR = np.array([100e-3, 100e-3])
 
 
 def touched(motions: KinematicMotions) -> TouchedFace:
-    return asyncio.run(touch_face(motions, motions.task, 8e-3, 3e-3))
+    return asyncio.run(touch_face(motions, motions.task, FacePlan(8e-3, 3e-3)))
 
 
 def plate(slope: tuple[float, float], seed: int = 0) -> KinematicMotions:
@@ -56,7 +56,7 @@ def test_no_face_is_a_fault() -> None:
         touched(motions)
 
 
-class ChipUnderTheLast(KinematicMotions):
+class ChipUnderTheProof(KinematicMotions):
     async def touch(
         self,
         direction: NDArray[np.float64],
@@ -65,12 +65,12 @@ class ChipUnderTheLast(KinematicMotions):
         speed_m_s: float | None = None,
     ) -> ContactMotion:
         felt = await super().touch(direction, travel_m, force_n, speed_m_s)
-        if self.touches == 4:
+        if self.touches == 2:
             felt.last.task_position_tip_m[2] -= 0.3e-3
         return felt
 
 
 def test_a_chip_is_a_fault() -> None:
-    motions = ChipUnderTheLast(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
+    motions = ChipUnderTheProof(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
     with pytest.raises(FaceUneven, match=r"-0\.\d+ mm beside the plane"):
         touched(motions)

@@ -1,0 +1,74 @@
+"""Turns a keyed plug until its keys drop into their keyways.
+
+Source: S4k in section 2 of the study of insertion by touch.
+"""
+
+from math import radians
+
+import numpy as np
+
+from cellctl.cell.by_touch.motions import Condition, ContactMotions, ContactSample, Ended
+from cellctl.errors.by_touch import KeywayNotFound
+from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
+
+_HOLD_N = 5.0
+_FASTEST_RAD_S = radians(3.0)
+_SWEEP_RATIO = 1.5
+"""Of the uncertainty: its figure is an estimate itself."""
+_BEGUN_M = 0.2e-3
+"""A drop by which the keys are seen to have begun to enter."""
+_SETTLE_S = 1.0
+_THROUGH_RATIO = 0.5
+"""Of the depth of the keys, that the plug must go further than their ends."""
+_NEAR_M = 0.5e-3
+_DAMPING = 1.5
+"""Of the admittance along z (force/contact/streamed/gains.py)."""
+
+
+async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeometry) -> None:
+    """From the entry of the hole to below the ends of the keyways; raises ``KeywayNotFound``.
+
+    Turns to both sides while it is pressed lightly, and lets the keys centre themselves where they
+    begin to drop. A plug that stands short of its keys is left to the recoveries of the insertion.
+    """
+    through_m = (1.0 + _THROUGH_RATIO) * keys.depth_m
+    motion = await motions.feed(through_m, task.limits.search_n)
+    greatest_rad = _SWEEP_RATIO * keys.uncertainty_rad
+    for target_rad in (greatest_rad, -greatest_rad):
+        if motion.ended is not Ended.FORCE or not _on_keys(motion.last, task, keys):
+            return
+        motion = await motions.turn(
+            np.array([0.0, 0.0, target_rad]),
+            np.array([0.0, 0.0, _HOLD_N]),
+            _sweep_speed_rad_s(task, keys),
+            _dropped_from(float(motion.last.task_position_tip_m[2]), task),
+        )
+        await motions.give_way(_HOLD_N, _SETTLE_S)
+        motion = await motions.feed(through_m, task.limits.search_n)
+    if motion.ended is Ended.FORCE and _on_keys(motion.last, task, keys):
+        raise KeywayNotFound(
+            f"turned by {np.degrees(greatest_rad):.1f} degrees to both sides at a depth of "
+            f"{float(motion.last.task_position_tip_m[2]) * 1e3:.2f} mm"
+        )
+
+
+def _sweep_speed_rad_s(task: SearchTask, keys: KeyGeometry) -> float:
+    """So slow that the plug drops visibly while the keys cross half of their window."""
+    drop_m_s = _HOLD_N / (_DAMPING * task.cell.loop_n_s_m)
+    return min(_FASTEST_RAD_S, keys.window_rad * drop_m_s / _BEGUN_M)
+
+
+def _dropped_from(depth_m: float, task: SearchTask) -> Condition:
+    # Under the press of the feed the arm had yielded by more than it does under this one.
+    released_m = max(task.limits.search_n - _HOLD_N, 0.0) / task.cell.stiffness_n_m
+
+    def dropped(sample: ContactSample) -> bool:
+        return float(sample.task_position_tip_m[2]) > depth_m - released_m + _BEGUN_M
+
+    return dropped
+
+
+def _on_keys(sample: ContactSample, task: SearchTask, keys: KeyGeometry) -> bool:
+    """At the depth of the keys, less what arm and contact yield."""
+    yields_m = -float(sample.force_n[2]) / task.cell.stiffness_n_m
+    return abs(float(sample.task_position_tip_m[2]) - yields_m - keys.depth_m) < _NEAR_M

@@ -1,0 +1,46 @@
+"""Turns and pulls a part that keys and contacts should hold."""
+
+from math import radians
+
+import numpy as np
+
+from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
+from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
+
+_PRESS_N = 2.0
+_TURN_RAD_S = radians(1.0)
+_MET_NM = 0.4
+"""Far above what friction at the wall makes, far below what bends a key."""
+_BEYOND_RAD = radians(1.5)
+"""What arm and fingers yield under that moment, and what the attitude is uncertain by."""
+_MARGIN_M = 0.3e-3
+_SETTLE_S = 0.5
+
+
+async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeometry) -> int:
+    """Of two; the part is left at the angle at which it was."""
+    begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
+    upright = np.array([0.0, 0.0, float(begun.task_rotation_tip_rad[2])])
+    free_nm = float(begun.moment_nm[2])
+    hold = np.array([0.0, 0.0, _PRESS_N])
+
+    def met(sample: ContactSample) -> bool:
+        return abs(float(sample.moment_nm[2]) - free_nm) > _MET_NM
+
+    resisted = 0
+    for sign in (1.0, -1.0):
+        # From wherever in its play the part stands now.
+        target = upright + np.array([0.0, 0.0, sign * (2 * keys.window_rad + _BEYOND_RAD)])
+        turned = await motions.turn(target, hold, _TURN_RAD_S, met)
+        resisted += turned.ended is Ended.CONDITION
+        await motions.turn(upright, hold, _TURN_RAD_S)
+    return resisted
+
+
+async def pull_that_holds_n(motions: ContactMotions, task: SearchTask, pull_n: float) -> float:
+    """The pull that the part has held, N; as much as was felt where it came along."""
+    way_m = pull_n / task.cell.stiffness_n_m + _MARGIN_M
+    pulled = await motions.touch(np.array([0.0, 0.0, -1.0]), way_m, pull_n)
+    held_n = float(pulled.last.force_n[2])
+    await motions.press(_PRESS_N, _SETTLE_S)
+    return held_n
