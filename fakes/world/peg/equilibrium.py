@@ -23,6 +23,10 @@ _RELAXING: Final = 60
 _RELAXED: Final = np.diag([2e6] * 3 + [50.0] * 3)
 """Further rounds as a slow slide, with this stiffness against every step. Where a contact goes over
 the edge between chamfer and bore no equilibrium is near, and Newton's steps jump to and fro."""
+_ROUNDS_CREEPING: Final = 4
+_RELAX_EVERY: Final = 10
+"""A peg that creeps gets few rounds, and the slow slide only now and then: with all of them a
+second of creeping takes several seconds, and the fake cell falls silent for its clients."""
 _FOUND_M: Final = 2e-8
 _FOUND_RAD: Final = 2e-6
 """Newton's last step. Within it forces are linear, and are carried along with it."""
@@ -53,8 +57,13 @@ class Equilibrium:
     """Active ones."""
     way: Pose6
     """Of the peg in this step."""
-    found: bool
-    """False where Newton failed and the peg crept."""
+    crept: int = 0
+    """Steps in a row in which Newton failed and the peg crept."""
+
+    @property
+    def found(self) -> bool:
+        """False where the peg crept."""
+        return self.crept == 0
 
 
 def settle(
@@ -66,12 +75,13 @@ def settle(
     held = robot_n_m + np.diag(drag)
     wanted = robot_n_m @ commanded + drag * before
     pose = _moved(before, last.way)  # a steady motion goes on
-    for number in range(_ROUNDS + _RELAXING):
+    rounds, relaxing = _effort(last.crept)
+    for number in range(rounds + relaxing):
         load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
         residual = wanted - held @ pose + load.wrench
         jacobian = load.jacobian()
         system = held + jacobian
-        if number >= _ROUNDS:
+        if number >= rounds:
             system += _RELAXED
         step = np.linalg.solve(system, residual)
         way = step.tolist()
@@ -87,12 +97,19 @@ def settle(
     load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
     # What the arm presses with is all that can be carried.
     load.wrench = -(robot_n_m @ (np.array(commanded) - pose))
-    return load.standing(pose, found=False)
+    return load.standing(pose, crept=last.crept + 1)
+
+
+def _effort(crept: int) -> tuple[int, int]:
+    """Rounds of Newton, and of the slow slide, after so many steps without an equilibrium."""
+    if crept == 0:
+        return _ROUNDS, _RELAXING
+    return _ROUNDS_CREEPING, _RELAXING if crept % _RELAX_EVERY == 0 else 0
 
 
 def free_at(pose: Pose6) -> Equilibrium:
     """A peg that touches nothing."""
-    return Equilibrium(pose, np.zeros(6), {}, (), _NOWHERE, found=True)
+    return Equilibrium(pose, np.zeros(6), {}, (), _NOWHERE)
 
 
 class _Load:
@@ -124,10 +141,10 @@ class _Load:
         rows = np.array([row for _, row in self._right])
         return np.asarray(np.array(self._left).T @ (sizes[:, None] * rows))
 
-    def standing(self, pose: Pose6, *, found: bool = True) -> Equilibrium:
+    def standing(self, pose: Pose6, *, crept: int = 0) -> Equilibrium:
         slots = tuple(contact.slot for contact in self._contacts)
-        way = _difference(pose, self._before) if found else _NOWHERE
-        return Equilibrium(pose, self.wrench, self._bristles, slots, way, found)
+        way = _NOWHERE if crept else _difference(pose, self._before)
+        return Equilibrium(pose, self.wrench, self._bristles, slots, way, crept)
 
     def _derivative(self, left: Row, size: float, right: Row) -> None:
         self._left.append(left)

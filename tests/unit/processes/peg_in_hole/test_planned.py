@@ -40,7 +40,7 @@ def test_the_shipped_recipe_is_good() -> None:
     plan = cycle_plan(RECIPE, SETTINGS)
     assert plan.choice.order[0] is SearchName.SPIRAL, "its chamfers are wide"
     assert plan.task.fit.depth_m == pytest.approx(12e-3)
-    assert plan.task.cell.stiffness_n_m == pytest.approx(1.2e5)
+    assert plan.task.cell.stiffness_n_m == pytest.approx(1e5)
     # The loop is refused before anything moves when it cannot be held.
     cell = PegCell(None, None, SETTINGS)  # type: ignore[arg-type]  # figures alone
     assert PegFacts.of(cell, RECIPE, plan).contact.limit_n == 50.0
