@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-long coverage lock clean
+	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean
 
 venv: $(VENV)/.installed
 
@@ -134,11 +134,11 @@ test: check
 
 # The tests are spread over the processors already; threads of BLAS beside them only wait for each
 # other, and waiting costs them a third of the processors' time.
-test-parallel test-version test-cell test-long coverage: export OPENBLAS_NUM_THREADS = 1
+test-parallel test-version test-cell test-explore test-long coverage: export OPENBLAS_NUM_THREADS = 1
 
 # Many containers forbid Python to keep compiled modules. Here each of the programs that the tests
 # start would compile all of cellctl anew, and each worker all tests.
-test-parallel test-version test-cell test-long coverage: export PYTHONDONTWRITEBYTECODE =
+test-parallel test-version test-cell test-explore test-long coverage: export PYTHONDONTWRITEBYTECODE =
 
 # Three workers fill two processors, since some tests wait. Not more where there are more processors:
 # time limits within tests are those of two.
@@ -154,6 +154,10 @@ test-version: venv
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
 	$(BIN)/pytest tests/cell -m "not long" --durations 25
+
+# New examples, and ten times as many, for every test that draws its own.
+test-explore: venv
+	$(BIN)/pytest -n 3 -m "hypothesis and not cell and not long" --hypothesis-profile explore --timeout 900
 
 test-long: venv
 	$(BIN)/pytest -n 2 -m "long and not cell" --durations 0

@@ -17,9 +17,11 @@ _SHARED_IMAGES = (
 _SHARED_MATING = ("tests/unit/processes/deck_to_frame/test_mate.py",)
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
-# code; pytest-timeout is there for code that hangs.
-hypothesis.settings.register_profile("no-deadline", deadline=None)
-hypothesis.settings.load_profile("no-deadline")
+# code; pytest-timeout is there for code that hangs. The same examples in every run: a commit that
+# passed must not fail on another machine. New ones are looked for by `make test-explore`.
+hypothesis.settings.register_profile("same-examples", deadline=None, derandomize=True)
+hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000)
+hypothesis.settings.load_profile("same-examples")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

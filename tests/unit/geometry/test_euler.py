@@ -51,7 +51,8 @@ def test_at_and_beside_the_poles(
     order: EulerOrder, rx: float, sign: float, beside: float, rz: float
 ) -> None:
     rotation = rotation_of(order, [rx, sign * (math.pi / 2 - beside), rz])
-    assert angle_between(rotation_of(order, angles_of(order, rotation)), rotation) < 1e-9
+    # Up to 1e-9 rad beside a pole counts as the pole: the way there, and as much across it.
+    assert angle_between(rotation_of(order, angles_of(order, rotation)), rotation) < 2.1e-9
 
 
 @pytest.mark.parametrize("order", [EulerOrder.FIXED_XYZ, EulerOrder.MOVING_XYZ])
