@@ -44,6 +44,6 @@ def _why_not(state: RobotState) -> list[str]:
         "drives off": not state.drives_on,
         f"mode is {state.mode.value}": state.mode.value != "remote",
         "stop is latched": state.stop_latched,
-        f"controller error {state.error_code}": bool(state.error_code),
+        f"controller error {state.error_words or state.error_code}": bool(state.error_code),
     }
     return [text for text, true in checks.items() if true]

@@ -41,6 +41,16 @@ class WayConfig(Section):
     """Joints at which the arm stops on its way; between them it goes straight in the joints."""
 
 
+class MaintenanceSpeeds(Section):
+    """What no move of a robot exceeds while the unit is in Maintenance."""
+
+    speed_percent: Annotated[int, Field(ge=1, le=100)]
+    """Of moves between taught poses, as a share of rated joint speed."""
+    linear_speed_mm_s: Annotated[float, Field(ge=10, le=500)]
+    """Of straight moves. At least 10: a procedure that measures how an arm stops makes it move at
+    up to 8 mm/s, and would take a slower move for a quicker stop."""
+
+
 class RobotConfig(DeviceConfig):
     """A robot, with the poses that were taught and the speeds between them."""
 
@@ -54,6 +64,8 @@ class RobotConfig(DeviceConfig):
     """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0
     linear_acceleration_mm_s2: Annotated[float, Field(ge=1, le=2000)] = 200.0
+    in_maintenance: MaintenanceSpeeds | None = None
+    """Lower speeds for the mode in which people set up the cell; none: those above."""
     d1_mm: Annotated[float, Field(ge=100, le=3000)] | None = None
     """D-H: height of the A2 axis above the base plane; the base frame's calibration needs it."""
     a1_mm: Annotated[float, Field(ge=0, le=2000)] | None = None

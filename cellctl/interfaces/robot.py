@@ -42,6 +42,8 @@ class RobotState:
     error_code: int
     """The vendor's number, 0 for none."""
     speed_override_ratio: float
+    error_words: str = ""
+    """The number with the vendor's text and what to do, as far as they are known; empty for 0."""
 
     @property
     def ready(self) -> bool:

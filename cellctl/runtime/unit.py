@@ -13,6 +13,7 @@ from cellctl.errors.line import LineLost, LineLostInContact
 from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
+from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES, State
 from cellctl.records.async_store import AsyncRunStore
@@ -68,6 +69,7 @@ class UnitController:
             },
             gate=self._gate,
         )
+        cell.pace.in_maintenance = lambda: self.machine.mode is Mode.MAINTENANCE
         self._ending = False
         self._interrupted: list[int] = []
         """Runs that an earlier process left open, as long as nobody was told of them."""

@@ -50,6 +50,7 @@ def state_as_json(state: RobotState) -> dict[str, Any]:
         "moving": state.moving,
         "stop_latched": state.stop_latched,
         "error_code": state.error_code,
+        "error_words": state.error_words,
         "override_percent": round(100.0 * state.speed_override_ratio, 1),
         "flange_xyzabc_mm_deg": [round(float(v), 4) for v in pose_to_xyzabc(state.base_T_flange)],
         "joints_deg": joints_deg(state),

@@ -21,11 +21,12 @@ _SAME_MM = 0.01
 
 
 def robot_issues(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
-    """Speeds beyond the driver's bounds, and two kinematics of one arm.
+    """Speeds beyond the driver's bounds, or faster in Maintenance, and two kinematics of one arm.
 
     ``bad`` holds the paths of devices whose settings are wrong themselves.
     """
     for name, robot in cell.robots.items():
+        yield from _maintenance(f"robots.{name}", robot)
         if f"robots.{name}" not in bad:
             yield from _speeds(f"robots.{name}", robot)
             yield from _lengths(f"robots.{name}", robot)
@@ -38,6 +39,17 @@ def _speeds(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
         if most is not None and value > most:
             # The driver would refuse the first move; that is too late to hear of it.
             yield ConfigIssue(f"{path}.{key}", f"{value:g}", f"at most {bound} = {most:g}")
+
+
+def _maintenance(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    slow = robot.in_maintenance
+    if slow is None:
+        return
+    for key in ("speed_percent", "linear_speed_mm_s"):
+        most, value = getattr(robot, key), getattr(slow, key)
+        if value > most:
+            # Whoever writes it expects the arm to be so fast; in no mode is it.
+            yield ConfigIssue(f"{path}.in_maintenance.{key}", f"{value:g}", f"at most {most:g}")
 
 
 def _lengths(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:

@@ -49,19 +49,19 @@ class Bounds:
     def joint_way(self, state: RobotState, joints_rad: Array) -> None:
         """Refuse a joint move on whose way the flange leaves the box for joint moves.
 
-        All joints move together and straight in joint space. The table is compared with what the
-        robot reports of itself first: one that does not fit would check nothing.
+        All joints move together and straight in joint space. To be asked after ``table_fits``: a
+        table that does not fit would check nothing.
         """
         kinematics = self._kinematics
         if kinematics is None:
             return
-        self.table_fits(state)
         for joints in joint_path(state.joints_rad, joints_rad):
             self._flange_in_box(kinematics, joints, "on the way to", joints_rad)
 
     def table_fits(self, state: RobotState) -> None:
         """Refuse a robot that reports its flange elsewhere than the dh table puts it: a table of
-        another arm, or a pose that is read with other units or another order of angles."""
+        another arm, a pose that is read with other units or another order of angles, or one that
+        counts in another tool or user frame, chosen at the pendant."""
         if self._kinematics is None:
             return
         base_T_flange = self._kinematics.base_T_flange(state.joints_rad)
@@ -70,7 +70,8 @@ class Bounds:
         if not (distance_m / MM <= DH_FITS_MM and math.degrees(angle_rad) <= DH_FITS_DEG):
             self._refuse(
                 f"the dh table puts the flange {distance_m / MM:.2f} mm and "
-                f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it"
+                f"{math.degrees(angle_rad):.3f} deg beside where the robot reports it; "
+                "another tool or user frame, order of angles, or dh table"
             )
 
     def joint_target(self, joints_rad: Array) -> None:

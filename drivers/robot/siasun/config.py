@@ -5,6 +5,8 @@ from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from drivers.robot.siasun.controller_errors import ErrorList
+
 Port = Annotated[int, Field(ge=1, le=65535)]
 Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Point = tuple[float, float, float]
@@ -90,7 +92,7 @@ class MotionLimits(BaseModel):
         return self
 
 
-class SiasunConfig(_Section, MotionLimits):
+class SiasunConfig(_Section, MotionLimits, ErrorList):
     """Motion and state channels of one robot, and the bounds of every target."""
 
     command_port: Port

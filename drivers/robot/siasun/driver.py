@@ -9,7 +9,7 @@ from typing import Any
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
-from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout
+from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout, VersionMismatch
 from cellctl.errors.robot import (
     ControllerFault,
     MotionAborted,
@@ -17,6 +17,7 @@ from cellctl.errors.robot import (
     NotRearmed,
     StopFailed,
     StreamNotOffered,
+    TargetOutOfBounds,
 )
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.interfaces.robot import RobotState
@@ -65,7 +66,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         Bounds(config.robot_name, config).joint_target(joints_rad)
 
     async def connect(self) -> None:
-        """Listen and wait for both channels and a first state report. Idempotent."""
+        """Listen and wait for both channels and a first state report; with a dh table,
+        ``VersionMismatch`` when the pose does not fit the joints. Idempotent."""
         async with self._connecting:
             if not self._connected:
                 await self._connect()
@@ -81,6 +83,10 @@ class SiasunRobot(DescribedArm, StreamingRobot):
                 await self._command.channel.wait_connected()
                 await self._state.channel.wait_connected()
                 await self._state.wait(lambda _: True, timeout_s)
+            self._bounds.table_fits(self._state.newest(self._config.stale_s))
+        except TargetOutOfBounds as misfit:
+            await self._close()
+            raise VersionMismatch(misfit.detail) from misfit
         except TimeoutError:
             command, state = self._command.channel, self._state.channel
             missing = state if command.connected else command
@@ -177,6 +183,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
                 await stream.finish(self._config.stop_timeout_s)
         except BaseException as error:
             await self._leave_stream(error, command)
+            await self._state.raise_controller_error(error)
             raise
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
 
@@ -231,8 +238,9 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         except (asyncio.CancelledError, ReplyTimeout):
             await self._stop_before_leaving()
             raise
-        except (MotionAborted, ControllerFault) as fault:
+        except (MotionAborted, ControllerFault, LinkLost) as fault:
             self._latch = self._latch or fault
+            await self._state.raise_controller_error(fault)
             raise
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
         state = self.state(self._config.stale_s)
@@ -253,6 +261,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
             raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
         state = self.state(self._config.stale_s)
         faults.check_ready(self.name, state, self._state.missed_beats())
+        self._bounds.table_fits(state)
 
     async def _stop_before_leaving(self) -> None:
         """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to

@@ -80,7 +80,7 @@ def check_ready(robot: str, state: RobotState, missed_beats: str) -> None:
         why = f"; {missed_beats}" if missed_beats else ""
         raise NotRearmed(f"{robot}: the controller's stop latch is set{why}")
     if state.error_code:
-        raise ControllerFault(f"{robot}: controller error {state.error_code}")
+        raise ControllerFault(f"{robot}: controller error {state.error_words}")
     if not state.ready:
         raise _not_ready(robot, state)
 

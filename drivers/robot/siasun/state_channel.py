@@ -1,13 +1,14 @@
 """The STA channel of one robot: newest state, heartbeat, silence watchdog, and stop."""
 
 import asyncio
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleData
-from cellctl.errors.robot import StopFailed
+from cellctl.errors.robot import ControllerFault, StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.robot import RobotMode, RobotState
 from drivers.robot.siasun.codec.records import Record, Status, StopDone
@@ -16,6 +17,8 @@ from drivers.robot.siasun.connection import SjlChannel
 
 BEATS_PER_DEADMAN = 4
 REPEAT_STOP_S = 0.3
+REASON_S = 0.2
+"""For the report that says why the controller has ended a command."""
 _NEARLY = 0.8
 _MODES = {"MAN": RobotMode.MANUAL, "AUT": RobotMode.AUTOMATIC, "REM": RobotMode.REMOTE}
 
@@ -41,6 +44,7 @@ class StateChannel:
         )
         self._robot = robot
         self._silence_s = config.silence_s
+        self._error_words = config.error_words
         self._on_stopped = on_stopped
         self._on_lost = on_lost
         self._status: Status | None = None
@@ -61,7 +65,8 @@ class StateChannel:
         if self._status is None or age_s > max_age_s:
             facts = "none yet" if self._status is None else f"{age_s:.3f} s old"
             raise StaleData(f"state of {self._robot}: {facts}, allowed {max_age_s:g} s")
-        return _to_state(self._status, self._time_s)
+        words = self._error_words(self._status.error_code)
+        return _to_state(self._status, self._time_s, words)
 
     async def wait(self, condition: Callable[[Status], bool], timeout_s: float) -> None:
         """Wait until a report that arrives from now on meets a condition; else ``StaleData``."""
@@ -75,6 +80,31 @@ class StateChannel:
             raise StaleData(facts) from None
         finally:
             del self._waiters[future]
+
+    async def raise_controller_error(self, fault: BaseException) -> None:
+        """Raise the controller's own error with its number, where one is behind a fault.
+
+        The answer to a command only says that there is an error, and in the compact form the main
+        job ends with it and its link is all that is seen to go. Its number comes with a report.
+        """
+        link_lost = isinstance(fault, LinkLost) and self.channel.hello.compact
+        if not self.channel.connected or not (link_lost or isinstance(fault, ControllerFault)):
+            return
+        # A lost link is told soon: the next report may be from before it, the one after it is not.
+        reports = 2 if link_lost else math.inf
+
+        def enough(status: Status) -> bool:
+            nonlocal reports
+            reports -= 1
+            return status.error_code != 0 or reports <= 0
+
+        try:
+            await self.wait(enough, REASON_S)
+            words = self.newest(REASON_S).error_words
+        except LinkError:
+            return  # the fault is told without it
+        if words:
+            raise ControllerFault(f"{self._robot}: controller error {words}") from fault
 
     def request_stop(self) -> None:
         """Send ABORT once, if a session stands; nobody waits for the standstill."""
@@ -202,7 +232,7 @@ class StateChannel:
             self._timer.cancel()
 
 
-def _to_state(status: Status, time_s: float) -> RobotState:
+def _to_state(status: Status, time_s: float, error_words: str) -> RobotState:
     return RobotState(
         time_s=time_s,
         base_T_flange=pose_from_xyzabc(status.flange_xyzabc),
@@ -213,5 +243,6 @@ def _to_state(status: Status, time_s: float) -> RobotState:
         moving=status.moving,
         stop_latched=status.latched,
         error_code=status.error_code,
+        error_words=error_words,
         speed_override_ratio=status.override_percent / 100.0,
     )

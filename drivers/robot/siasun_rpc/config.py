@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from cellctl.geometry.euler_order import EulerOrder
 from drivers.robot.siasun.config import MotionLimits, Port, Seconds
+from drivers.robot.siasun.controller_errors import ErrorList
 
 Word = Annotated[int, Field(ge=1, le=32)]
 """Number of a word register of the controller."""
@@ -31,7 +32,7 @@ class _Controller(BaseModel):
     """The controller stops the arm when it has had no heartbeat of a client for so long."""
 
 
-class SiasunRpcConfig(_Controller, MotionLimits):
+class SiasunRpcConfig(_Controller, MotionLimits, ErrorList):
     """Connections to one controller, and the bounds of every target."""
 
     state_port: Port = 2001

@@ -81,7 +81,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
                 self._bounds.table_fits(self._link.watch.state(self._config.stale_s))
             except TargetOutOfBounds as misfit:
                 self._close()
-                raise VersionMismatch(f"{misfit.detail}: euler, tool, or dh?") from misfit
+                raise VersionMismatch(misfit.detail) from misfit
 
     async def disconnect(self) -> None:
         """Stop a running motion and close all connections."""
@@ -271,7 +271,8 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         if self._latch is not None:
             raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
         report, frame = self._link.watch.newest(self._config.stale_s)
-        check_ready(self.name, report, frame)
+        check_ready(self.name, report, frame, self._config.error_words(frame.error))
+        self._bounds.table_fits(self._link.watch.state(self._config.stale_s))
 
     def _check_link(self) -> None:
         if not self._link.up:

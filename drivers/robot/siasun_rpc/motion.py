@@ -98,7 +98,8 @@ class Motion:
     def check_state(self) -> None:
         """Raise what keeps the arm from moving on: mode, drives, safety, an error, the guard; or
         that none of them is known any more."""
-        check_ready(self._robot, *self._link.watch.newest(self._config.silence_s))
+        report, frame = self._link.watch.newest(self._config.silence_s)
+        check_ready(self._robot, report, frame, self._config.error_words(frame.error))
 
     async def judge(self, state: int) -> int:
         """The same state, unless it is a bad end, whose fault is raised."""

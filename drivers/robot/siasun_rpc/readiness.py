@@ -7,12 +7,15 @@ from drivers.robot.siasun_rpc.vendor import OperationMode, Power, SafetyState, n
 from drivers.robot.siasun_rpc.watch import SAFE, Report
 
 
-def check_ready(robot: str, report: Report, frame: StateFrame) -> None:
-    """Raise ``NotRearmed``, ``ControllerFault`` or ``RobotNotReady`` when it may not move."""
+def check_ready(robot: str, report: Report, frame: StateFrame, error_words: str) -> None:
+    """Raise ``NotRearmed``, ``ControllerFault`` or ``RobotNotReady`` when it may not move.
+
+    ``error_words``: what is known of the frame's error number.
+    """
     if report.guard_stopped:
         raise NotRearmed(f"{robot}: the guard has stopped the arm")
     if frame.error:
-        raise ControllerFault(f"{robot}: controller error {frame.error}")
+        raise ControllerFault(f"{robot}: controller error {error_words}")
     if frame.collision:
         raise faults.not_ready(robot, f"collision at axis {frame.collision_axis} is not cleared")
     if frame.simulated:

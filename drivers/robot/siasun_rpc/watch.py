@@ -133,7 +133,9 @@ class StateWatch:
 
     def state(self, max_age_s: float) -> RobotState:
         """The newest report as the cell reads it; ``StaleData`` as ``newest``."""
-        return robot_state(*self.newest(max_age_s), self._config.euler)
+        report, frame = self.newest(max_age_s)
+        words = self._config.error_words(frame.error)
+        return robot_state(report, frame, self._config.euler, words)
 
     async def wait(self, condition: Callable[[Report], bool], timeout_s: float) -> None:
         """Wait for a report asked for from now on that meets a condition; else ``StaleData``."""
@@ -167,7 +169,9 @@ class StateWatch:
         await self.wait(lambda _: self._agreed, timeout_s)
 
 
-def robot_state(report: Report, frame: StateFrame, euler: EulerOrder) -> RobotState:
+def robot_state(
+    report: Report, frame: StateFrame, euler: EulerOrder, error_words: str
+) -> RobotState:
     """A report and a frame in the words of the interface.
 
     Every state of the safety functions in which the arm may not move counts as emergency stop. A
@@ -183,6 +187,7 @@ def robot_state(report: Report, frame: StateFrame, euler: EulerOrder) -> RobotSt
         moving=report.moving,
         stop_latched=report.guard_stopped,
         error_code=frame.error,
+        error_words=error_words,
         speed_override_ratio=frame.override_percent / 100.0,
     )
 

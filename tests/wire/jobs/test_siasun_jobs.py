@@ -75,10 +75,13 @@ async def test_an_open_loop_refuses_the_release(rig: JobRig) -> None:
 
 
 async def test_a_target_out_of_reach_is_an_alarm_that_ends_the_main_job() -> None:
-    async with job_rig(workspace_max_mm=(9000.0, 900.0, 9000.0)) as rig:
+    known = {"4100": {"text": "Target out of range", "remedy": "Acknowledge, start SJLMAIN."}}
+    far_mm = (9000.0, 900.0, 9000.0)
+    async with job_rig(workspace_max_mm=far_mm, controller_errors=known) as rig:
         await rig.connect()
         async with asyncio.timeout(3.0):
-            with pytest.raises(LinkError):
+            # The link goes with the main job; what its controller shows is told in its place.
+            with pytest.raises(ControllerFault, match="4100, Target out of range; Acknowledge"):
                 await move(rig, 5000.0)
         assert "REACH" in rig.controller.alarm
         await rig.robot._state.wait(lambda status: status.error_code != 0, 1.0)

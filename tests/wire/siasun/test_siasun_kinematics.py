@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.config import load_cell
+from cellctl.errors.link import VersionMismatch
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.interfaces import RobotMode, RobotState
 from drivers.robot.siasun.bounds import Bounds
@@ -108,7 +109,7 @@ def test_a_table_that_does_not_fit_the_robot_is_no_check() -> None:
     state = at_home()
     state = replace(state, base_T_flange=shifted * state.base_T_flange)
     with pytest.raises(TargetOutOfBounds, match="dh table"):
-        Bounds("main", config_of("main")).joint_way(state, HOME)
+        Bounds("main", config_of("main")).table_fits(state)
 
 
 def test_without_a_table_nothing_is_checked_and_the_driver_says_so() -> None:
@@ -129,3 +130,19 @@ async def test_nothing_is_sent_for_a_joint_move_that_leaves_the_box() -> None:
         assert not rig.arm.moving(rig.controller._clock())
         assert not rig.robot.state().stop_latched
         await rig.robot.move_joint(here_rad + 0.02 * a1_rad, speed_ratio=0.5)
+
+
+async def test_another_frame_at_the_pendant_is_found_before_anything_moves() -> None:
+    """The frames that a pose counts in are the controller's; the joints count in none."""
+    wrong = [list(row) for row in config_of("main").dh or ()]
+    wrong[5][1] += 25.0
+    async with sjl_rig(dh=wrong) as rig:
+        with pytest.raises(VersionMismatch, match=r"25\.00 mm .* another tool or user frame"):
+            await rig.connect()
+    async with sjl_rig(dh=config_of("main").dh) as rig:
+        await rig.connect()
+        rig.robot._bounds = Bounds("main", rig.settings.model_copy(update={"dh": wrong}))
+        here = rig.robot.state().base_T_flange
+        with pytest.raises(TargetOutOfBounds, match="tool or user frame"):
+            await rig.robot.move_linear(here, speed_m_s=0.01, acceleration_m_s2=0.1)
+        assert not rig.robot.state().stop_latched

@@ -133,6 +133,7 @@ async def test_ends_by_the_controller(reason: str, fault: type[CellError]) -> No
     async with offering() as cell:
         with pytest.raises(fault, match=reason):
             await answered(cell, f"ABRT,1,{reason},{POSE}")
+        cell.sta.stat()
         with pytest.raises(NotRearmed):
             await cell.move()
         assert cell.robot.state().stop_latched

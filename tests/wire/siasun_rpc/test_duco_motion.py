@@ -168,7 +168,7 @@ async def test_a_task_that_finishes_while_the_arm_moves_is_not_believed() -> Non
 @pytest.mark.parametrize("euler", ["moving-xyz", "rotation-vector"])
 async def test_a_wrong_order_of_angles_is_found_by_the_kinematics(euler: str) -> None:
     async with duco_rig(euler=euler, dh=DH) as rig:
-        with pytest.raises(VersionMismatch, match="euler"):
+        with pytest.raises(VersionMismatch, match="order of angles"):
             await rig.robot.connect()
         with pytest.raises(LinkError):
             rig.robot.state()
