@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from fakes.control import Handler
 from fakes.devices import DeviceFaults
 from fakes.faults import FaultBoard
@@ -27,6 +29,7 @@ class Operator:
             "truth": self.truth,
             "watch_begin": self.watch_begin,
             "watched": self.watched,
+            "master": self.master,
             "inject": self.inject,
             "clear": self.clear,
             "faults": self.faults,
@@ -51,6 +54,11 @@ class Operator:
     async def watched(self) -> dict[str, Any]:
         """Motions of the arms since the watch began."""
         return self._cell.watch.report(self._cell.clock())
+
+    async def master(self, robot: str, joint: int, deg: float) -> dict[str, Any]:
+        """Master a joint of a robot anew, so many degrees beside where it was."""
+        self._cell.world.arms[robot].master(joint, np.deg2rad(deg))
+        return {}
 
     async def inject(self, device: str, name: str, **parameters: Any) -> dict[str, Any]:
         """Inject a fault; ``count`` limits how often it acts."""

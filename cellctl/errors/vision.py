@@ -143,6 +143,15 @@ class ResidualsTooLarge(VisionError):
     remedy = "Look at the residuals; check feature file and head calibration."
 
 
+class HeadsMoved(VisionError):
+    """Each head sees the holes where they should be, and both together do not."""
+
+    number = 433
+    text = "The two heads no longer stand to each other as they were calibrated"
+    cause = "A head was touched, or its robot was moved or mastered anew; or a part of two pieces."
+    remedy = "Look at both heads, their robots and the part; then calibrate boards 1 and 2 again."
+
+
 class UncertaintyTooLarge(VisionError):
     """The permitted number of frames does not bring the uncertainty below its limit."""
 

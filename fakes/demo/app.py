@@ -58,7 +58,8 @@ def demo(
     ] = DEFAULT_PROCESS,
     seed: Annotated[int, typer.Option(help="Another seed is another cell.", min=0)] = 1,
     scenario: Annotated[
-        Path | None, typer.Option(help="Scenario of the fake cell; default: the process's own.")
+        Path | None,
+        typer.Option(help="Of the fake cell; default: NAME.scenario.toml beside --cell NAME.toml."),
     ] = None,
     cell: Annotated[
         Path | None, typer.Option(help="The daemon's cell file; default: the process's own.")
@@ -88,7 +89,7 @@ def demo(
     try:
         shown = registry.find(process)
         files = Files(
-            scenario=scenario or shown.scenario,
+            scenario=scenario or _beside(cell) or shown.scenario,
             cell=cell or shown.cell,
             out=out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}",
             imperfections=dict(parsed_scale(item) for item in imperfection or ()),
@@ -100,6 +101,14 @@ def demo(
         complaint.print(str(error), markup=False)
         code = NOT_STARTED
     raise typer.Exit(code)
+
+
+def _beside(cell: Path | None) -> Path | None:
+    """The scenario that belongs to a cell file, where there is one."""
+    if cell is None:
+        return None
+    scenario = cell.with_suffix(".scenario.toml")
+    return scenario if scenario.is_file() else None
 
 
 def _check(files: Files) -> None:

@@ -63,6 +63,7 @@ class RobotArm:
         self._profile = Profile(0.0, 0.0, 1.0, 1.0)
         self._travelled_m = 0.0
         self.override_percent = 100
+        self._zero_error_rad = np.zeros(6)
         self.by_hand = False
         """The key at the panel stands on manual, because somebody jogs the arm."""
         self._flaws = flaws or ArmFlaws()
@@ -154,6 +155,11 @@ class RobotArm:
             self._run_on(time_s, self._path, latency_s, braking)
         self._profile = self._profile.stopped_from(time_s + latency_s, braking)
 
+    def master(self, joint: int, beside_rad: float) -> None:
+        """Somebody masters a joint, 1 to 6, anew and so much beside where it was: the controller
+        counts as before, and the arm stands elsewhere."""
+        self._zero_error_rad[joint - 1] = beside_rad
+
     # -- state --------------------------------------------------------------------------------
     def moving(self, time_s: float) -> bool:
         """True until standstill."""
@@ -229,6 +235,7 @@ class RobotArm:
 
     def _base_T_flange(self, joints: Array) -> Array:
         """By the links as they are, without the error of a single motion."""
+        joints = joints + self._zero_error_rad
         if self._flaws.transmission is not None:
             joints = joints + self._flaws.transmission.error(joints)
         return forward_matrix(self.truth.links, joints)

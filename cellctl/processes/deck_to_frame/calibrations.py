@@ -17,7 +17,7 @@ from cellctl.errors.force import (
     SensorSaturated,
 )
 from cellctl.errors.robot import ControllerFault
-from cellctl.errors.vision import CorrectionDiverging
+from cellctl.errors.vision import CorrectionDiverging, HeadsMoved
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2
 
 HEAD_JOINTS = "head_joints_deg"
@@ -73,6 +73,8 @@ BOARD_TRANSFER = CalibrationKind(
             ControllerFault,
             # The heads and the main robot no longer agree where things are.
             CorrectionDiverging,
+            # Nor do the heads agree with each other.
+            HeadsMoved,
             # There was contact where none was expected: the deck may have met a head.
             ForceLimitExceeded,
         }

@@ -7,9 +7,10 @@ import numpy as np
 from scipy.linalg import block_diag
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
+from cellctl.errors.vision import HeadsMoved, ResidualsTooLarge, TooFewHoles
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.units import in_mm_deg
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.registration.chi_square import ChiSquare, chi_square
@@ -28,6 +29,10 @@ RESIDUAL_LIMIT_M = 0.2e-3
 _OUTLIER_SIGMAS = 5.0
 _MOVEMENT_SIGMAS = 5.0
 _OUTLIER_MIN_HOLES = 5
+_ANY_MOVEMENT = 1e4
+"""Factor on the variance of ``c1_T_c2`` with which a movement of any size is believed."""
+_ONE_PIECE_M = 0.05e-3
+"""What a movement of the heads may leave of the holes of a part that is right."""
 _NO_TRANSFER = np.zeros((6, 6))
 
 
@@ -71,7 +76,7 @@ def part_pose(
 
     Default: weighted least squares on all holes, an outlier test from five holes on, full
     covariance. ``"paper"``: the frame of section 2.2.1 from exactly six holes P1…P6 in the order of
-    ``holes``. Raises ``TooFewHoles`` or ``ResidualsTooLarge``.
+    ``holes``. Raises ``TooFewHoles``, ``HeadsMoved`` or ``ResidualsTooLarge``.
     """
     transfer_covariance = np.zeros((6, 6)) if c1_T_c2 is None else c1_T_c2.covariance
     points = MeasuredPoints.seen(head_1, head_2, c1_T_c2, holes)
@@ -102,6 +107,7 @@ def _without_outliers(
         # pose towards itself. So each is left out in turn.
         worst = _contradicting(kept, transfer_covariance, limit_m)
         if worst is None:
+            _refuse_moved_heads(kept, fit, transfer_covariance)
             facts = ", ".join(
                 f"{name} {distance / MM:.3f}"
                 for name, distance in zip(kept.names, distances, strict=True)
@@ -109,6 +115,25 @@ def _without_outliers(
             raise ResidualsTooLarge(f"residuals in mm: {facts}; allowed {limit_m / MM:.3f}")
         outliers.append(kept.names[worst])
         kept = kept.without(worst)
+
+
+def _refuse_moved_heads(
+    points: MeasuredPoints, fit: Registration, transfer_covariance: Array
+) -> None:
+    """Raise ``HeadsMoved`` when a movement of the heads, however large, explains all holes.
+
+    Three holes before each head have six distances that no movement changes: a part that is wrong
+    by its holes is not explained by one.
+    """
+    movement = _movement(points, fit, transfer_covariance * _ANY_MOVEMENT)
+    left_m = np.linalg.norm(_own_residuals_m(points, points, fit, movement.error), axis=1).max()
+    if not transfer_covariance.any() or left_m > _ONE_PIECE_M:
+        return
+    moved = ", ".join(f"{value:+.3f}" for value in in_mm_deg(movement.error))
+    raise HeadsMoved(
+        f"the holes before each head fit the drawing to {left_m / MM:.3f} mm, all of them only if "
+        f"head II has moved by ({moved}) mm and degrees since both were calibrated"
+    )
 
 
 def _contradicting(

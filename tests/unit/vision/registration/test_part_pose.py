@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.vision import ResidualsTooLarge, TooFewHoles
+from cellctl.errors.vision import HeadsMoved, ResidualsTooLarge, TooFewHoles
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.camera.ellipse import Ellipse
@@ -193,3 +193,37 @@ def test_more_images_would_not_help_against_holes_off_their_drawing() -> None:
     np.testing.assert_allclose(exact.image_covariance, exact.own_covariance)
     # The weights are others when the drawing is not trusted, so the images' share is no smaller.
     assert exact.own_covariance[5, 5] <= said.image_covariance[5, 5] < said.own_covariance[5, 5] / 4
+
+
+DRIFT = UncertainPose(C1_T_C2, np.diag(np.repeat([1e-4, np.radians(0.01)], 3) ** 2))
+"""What the recipe of the deck says of the heads: a movement of 0.1 mm and 0.01 degrees."""
+
+
+@pytest.mark.parametrize(
+    "moved",
+    [[0.9, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 0.0, 0.0, 0.1],
+     [-3.0, 2.0, 1.0, 0.1, -0.1, 0.2]],
+)  # fmt: skip
+def test_a_moved_head_is_told_from_a_bad_part(moved: list[float]) -> None:
+    rng = np.random.default_rng(3)
+    slip = pose_from_xyzabc(moved)
+    with pytest.raises(HeadsMoved, match="head II has moved by"):
+        part_pose(*heads(rng.normal(size=(6, 3)) * SIGMA_M, C1_T_C2 * slip), DRIFT, HOLES)
+
+
+def test_a_small_movement_is_taken_into_account_and_no_fault() -> None:
+    slip = pose_from_xyzabc([0.2, -0.1, 0.05, 0.0, 0.0, 0.01])
+    result = part_pose(*heads(np.zeros((6, 3)), C1_T_C2 * slip), DRIFT, HOLES)
+    assert np.linalg.norm(result.residuals_m, axis=1).max() < 50e-6
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_part_with_two_wrong_holes_is_not_a_moved_head(seed: int) -> None:
+    """Each hole 0.8 mm off in a direction of its own, one before each head or both before one."""
+    rng = np.random.default_rng(seed)
+    wrong = rng.normal(size=(6, 3)) * SIGMA_M
+    for index in rng.choice(6, 2, replace=False):
+        across = rng.normal(size=2)
+        wrong[index, :2] += 0.8e-3 * across / np.linalg.norm(across)
+    with pytest.raises(ResidualsTooLarge, match="residuals in mm"):
+        part_pose(*heads(wrong), DRIFT, HOLES)
