@@ -15,6 +15,10 @@ End = Callable[[Bench], None]
 STOP_S = 2.5
 NO_SENSOR_ARM = "the arm that moves here carries no force sensor"
 NO_IMAGES = "no image is taken here, nor later in this job"
+IMAGES_TAKEN = (
+    "the images are taken as the verification begins, perhaps before the fault; a camera that fails "
+    "just before it is tried in contact"
+)
 LINE_MAY_FINISH = (
     "the verification, in which nothing moves, is finished without a line (docs/operating.md)"
 )
@@ -84,6 +88,10 @@ def _without_images(phase: Phase) -> str | None:
     return None if phase.images else NO_IMAGES
 
 
+def _without_new_images(phase: Phase) -> str | None:
+    return IMAGES_TAKEN if phase.key == "verify" else _without_images(phase)
+
+
 def _line_finishes(phase: Phase) -> str | None:
     return LINE_MAY_FINISH if phase.key == "verify" else None
 
@@ -103,7 +111,7 @@ def _camera(key: str, title: str, name: str, value: float = 1.0) -> Fault:
         _cameras(name, value),
         Effect.AT_NEXT_USE,
         patience_s=240.0,  # the cell file's reply time-out is 60 s: the fake head renders first
-        reason_not=_without_images,
+        reason_not=_without_new_images,
     )
 
 
