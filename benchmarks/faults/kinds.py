@@ -16,8 +16,8 @@ STOP_S = 2.5
 NO_SENSOR_ARM = "the arm that moves here carries no force sensor"
 NO_IMAGES = "no image is taken here, nor later in this job"
 IMAGES_TAKEN = (
-    "the images are taken as the verification begins, perhaps before the fault; a camera that fails "
-    "just before it is tried in contact"
+    "the images are taken as the verification begins, perhaps before the fault; a camera that "
+    "fails just before it is tried in contact"
 )
 LINE_MAY_FINISH = (
     "the verification, in which nothing moves, is finished without a line (docs/operating.md)"
