@@ -100,8 +100,11 @@ class ChaosProxy:
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         try:
             far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self._target_port)
-        except ConnectionRefusedError:
-            writer.close()
+        # Refused or reset by a peer that has just closed, or given up at the end of a test: nobody
+        # else knows this end.
+        except (OSError, asyncio.CancelledError):
+            writer.transport.abort()
+            await asyncio.gather(writer.wait_closed(), return_exceptions=True)
             return
         pair = {writer, far_writer}
         self._writers |= pair

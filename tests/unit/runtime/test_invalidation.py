@@ -16,7 +16,7 @@ from cellctl.errors.force import (
     SensorSilent,
 )
 from cellctl.errors.robot import ControllerFault, HeadMoved, MotionAborted
-from cellctl.errors.vision import CorrectionDiverging, ResidualsTooLarge
+from cellctl.errors.vision import CorrectionDiverging, HeadsMoved, ResidualsTooLarge
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import AuditEntry, Calibration
@@ -28,6 +28,7 @@ HOUR = timedelta(hours=1)
 # Written out from what may have been moved, bent or proved wrong, not derived from the kinds.
 AGREED: dict[type[CellError], set[str]] = {
     ControllerFault: {"board_transfer", "payload"},
+    HeadsMoved: {"board_transfer"},
     CorrectionDiverging: {"board_transfer"},
     SensorSaturated: {"payload"},
     ForceLimitExceeded: {"board_transfer", "payload"},

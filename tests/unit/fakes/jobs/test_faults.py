@@ -7,8 +7,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
-from cellctl.errors.link import LinkError
-from cellctl.errors.robot import MotionAborted
+from cellctl.errors.robot import ControllerFault, MotionAborted
 from cellctl.interfaces.robot import RobotState
 from drivers.robot.siasun.codec.records import Status
 from tests.wire.jobs.job_rig import JobRig, job_rig
@@ -78,7 +77,7 @@ async def test_a_slow_stop_takes_its_time(rig: JobRig) -> None:
 
 async def test_a_rejected_motion_is_an_alarm_until_somebody_acknowledges(rig: JobRig) -> None:
     rig.controller.faults.inject("reject", count=1, reason="LIMIT")
-    with pytest.raises(LinkError):
+    with pytest.raises(ControllerFault, match="4100"):
         await move(rig)
     assert "LIMIT" in rig.controller.alarm
     rig.controller.acknowledge()
