@@ -4,10 +4,13 @@ from collections.abc import Mapping
 from operator import index
 from typing import Any
 
+import numpy as np
+
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, Array
 
 _WIDEST_MM = 10_000
+_DIGITS_OF_A_NANOMETRE = 6
 
 
 def board_to_record(board: CalibrationBoard) -> dict[str, Any]:
@@ -31,6 +34,22 @@ def board_from_record(record: Mapping[str, Any]) -> CalibrationBoard:
     if record["charuco_dictionary"] is not None:
         charuco = Charuco(str(record["charuco_dictionary"]), _side_m(record["charuco_marker_mm"]))
     return CalibrationBoard(columns, rows, _side_m(record["square_mm"]), charuco)
+
+
+def corners_to_record(board_m: Array) -> dict[str, Any]:
+    """Plain data of a board as it was found: its corners, shape (n, 3), in metres.
+
+    Rounded to nanometres, so that a record which is read and written again is the same to the
+    last digit: the way from metres to millimetres and back is not.
+    """
+    corners_mm = np.round(board_m / MM, _DIGITS_OF_A_NANOMETRE)
+    height_mm = float(np.round(np.ptp(corners_mm[:, 2]), _DIGITS_OF_A_NANOMETRE))
+    return {"board_flatness_mm": height_mm, "board_corners_mm": corners_mm.tolist()}
+
+
+def corners_from_record(record: Mapping[str, Any]) -> Array:
+    """The corners in metres, shape (n, 3): the inverse of ``corners_to_record``."""
+    return np.asarray(record["board_corners_mm"], dtype=float) * MM
 
 
 def _side_m(side_mm: Any) -> float:

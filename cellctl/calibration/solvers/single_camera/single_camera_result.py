@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.calibration.boards.board_record import board_from_record, board_to_record
+from cellctl.calibration.boards.board_record import (
+    board_from_record,
+    board_to_record,
+    corners_from_record,
+    corners_to_record,
+)
 from cellctl.calibration.checks import (
     Checks,
     all_passed,
@@ -19,7 +24,7 @@ from cellctl.calibration.solvers.coverage import (
     coverage_from_record,
     coverage_to_record,
 )
-from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.pose import Array
 from cellctl.vision.camera.single_camera import (
     SingleCamera,
     single_camera_from_json,
@@ -85,8 +90,7 @@ class SingleCameraResult:
             "held_out_px": self.held_out_px,
             "sigma_px": self.sigma_px,
             "board": board_to_record(self.board),
-            "board_flatness_mm": self.flatness_m / MM,
-            "board_corners_mm": (self.board_m / MM).tolist(),
+            **corners_to_record(self.board_m),
             "views": [
                 {name: getattr(view, name) for name in CameraViewResidual.__slots__}
                 for view in self.views
@@ -103,7 +107,7 @@ class SingleCameraResult:
             method=str(record["method"]),
             board=board_from_record(record["board"]),
             views=tuple(CameraViewResidual(**view) for view in record["views"]),
-            board_m=np.asarray(record["board_corners_mm"], dtype=float) * MM,
+            board_m=corners_from_record(record),
             coverage=coverage_from_record(record["coverage"]),
             sigma=np.asarray(record["sigma"], dtype=float),
             rms_px=float(record["rms_px"]),

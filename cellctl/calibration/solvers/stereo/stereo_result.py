@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.calibration.boards.board_record import board_from_record, board_to_record
+from cellctl.calibration.boards.board_record import (
+    board_from_record,
+    board_to_record,
+    corners_from_record,
+    corners_to_record,
+)
 from cellctl.calibration.checks import (
     Checks,
     all_passed,
@@ -91,8 +96,7 @@ class StereoResult:
             **evidence_to_record(self.method, self.checks, self.warnings),
             "sigma_px": self.sigma_px,
             "board": board_to_record(self.board),
-            "board_flatness_mm": self.flatness_m / MM,
-            "board_corners_mm": (self.board_m / MM).tolist(),
+            **corners_to_record(self.board_m),
             "views": [_view_to_record(view) for view in self.views],
             "coverage": [coverage_to_record(side) for side in self.coverage],
             "cross_validation": _validation_to_record(self.validation),
@@ -107,7 +111,7 @@ class StereoResult:
             method=str(record["method"]),
             board=board_from_record(record["board"]),
             views=tuple(ViewResidual(**view) for view in record["views"]),
-            board_m=np.asarray(record["board_corners_mm"], dtype=float) * MM,
+            board_m=corners_from_record(record),
             coverage=(left, right),
             validation=_validation_from_record(record["cross_validation"]),
             checks=checks_from_record(record["checks"]),

@@ -1,11 +1,17 @@
 """A board as plain data of a record, also when somebody has changed it."""
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco
-from cellctl.calibration.boards.board_record import board_from_record, board_to_record
+from cellctl.calibration.boards.board_record import (
+    board_from_record,
+    board_to_record,
+    corners_from_record,
+    corners_to_record,
+)
 
 CHESSBOARD = CalibrationBoard(11, 8, 1.5e-3)
 CHARUCO = CalibrationBoard(9, 6, 0.025, Charuco("5X5_100", 0.018))
@@ -20,6 +26,17 @@ def test_every_board_comes_back(columns: int, rows: int, square_mm: float) -> No
     again = board_from_record(board_to_record(board))
     assert (again.columns, again.rows, again.charuco) == (columns, rows, None)
     assert again.square_m == pytest.approx(board.square_m)
+
+
+@given(st.lists(st.tuples(*[st.floats(-3.0, 3.0)] * 3), min_size=1, max_size=5))
+def test_corners_are_the_same_record_however_often_they_are_read_and_written(
+    corners: list[tuple[float, float, float]],
+) -> None:
+    board_m = np.array(corners)
+    record = corners_to_record(board_m)
+    again_m = corners_from_record(record)
+    assert corners_to_record(again_m) == record
+    np.testing.assert_allclose(again_m, board_m, atol=0.51e-9)
 
 
 def test_markers_come_back() -> None:
