@@ -21,6 +21,18 @@ COMMAND = "cellctl.command"
 """Offline commands of a process: functions that add themselves to a Typer application."""
 CALIBRATE = "cellctl.calibrate"
 """The same below `cellctl calibrate`."""
+WITH_FAULTS = (
+    ROBOT,
+    STOP_CHANNEL,
+    STEREO_CAMERA,
+    CAMERA,
+    TARGET_TRACKER,
+    FT_SENSOR,
+    GRIPPER,
+    DIGITAL_IO,
+    PROCESS,
+)
+"""Groups whose packages may have a module ``faults`` with numbered faults of their own."""
 
 
 def names(group: str) -> list[str]:

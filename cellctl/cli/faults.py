@@ -1,19 +1,21 @@
 """`cellctl faults`: the fault catalogue, from the code, or one fault of it."""
 
 import json
+from collections.abc import Iterable
 from typing import Annotated
 
 import typer
 
-from cellctl.errors import CellError, catalogue
+from cellctl.errors import CellError
+from cellctl.known_faults import known_faults
 
 Number = Annotated[int | None, typer.Argument(help="Number of a fault, without the F.")]
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 
 def faults(number: Number = None, *, as_json: AsJson = False) -> None:
-    """The fault catalogue as Markdown (docs/faults.md), or one fault with cause and remedy."""
-    found = list(catalogue())
+    """All faults, installed packages' included, as Markdown; or one with cause and remedy."""
+    found = known_faults()
     if number is not None:
         found = [fault for fault in found if fault.number == number]
         if not found:
@@ -23,7 +25,7 @@ def faults(number: Number = None, *, as_json: AsJson = False) -> None:
     elif number is not None:
         typer.echo(_one(found[0]))
     else:
-        typer.echo(fault_catalogue(), nl=False)
+        typer.echo(fault_catalogue(found), nl=False)
 
 
 def _plain(fault: type[CellError]) -> dict[str, str | int]:
@@ -47,12 +49,12 @@ def _one(fault: type[CellError]) -> str:
 
 def _neighbours(number: int) -> str:
     """The numbers of the same hundred, among which the one that is meant may be."""
-    near = [f"{one.number}" for one in catalogue() if one.number // 100 == number // 100]
+    near = [f"{one.number}" for one in known_faults() if one.number // 100 == number // 100]
     return f"there is no F{number:03d}; of its hundred: {', '.join(near) or 'none'}"
 
 
-def fault_catalogue() -> str:
-    """The catalogue as Markdown."""
+def fault_catalogue(faults: Iterable[type[CellError]]) -> str:
+    """A catalogue of these faults as Markdown."""
     lines = [
         "# Fault catalogue",
         "",
@@ -64,6 +66,6 @@ def fault_catalogue() -> str:
     lines += [
         f"| F{fault.number:03d} | {fault.text} | {fault.cause} | {fault.remedy} "
         f"| {fault.reaction.value} |"
-        for fault in catalogue()
+        for fault in faults
     ]
     return "\n".join(lines) + "\n"

@@ -24,6 +24,7 @@ from cellctl.config.roles import lacking
 from cellctl.config.taught_pose_checks import taught_pose_issues
 from cellctl.config.zone_checks import zone_issues
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
+from cellctl.known_faults import misnumbered
 
 
 def load_cell(path: Path) -> CellConfig:
@@ -60,6 +61,7 @@ def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
 def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
     units = list(unit_issues(raw))
     found, cell = _parse(raw)
+    found += _fault_number_issues()
     found += _unless_named(found, units)
     if cell is None:
         return found, None
@@ -78,6 +80,14 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
         found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
     # Last: a device at a wrong address still belongs where the process wants it or not.
     return [*found, *address_issues(cell)], cell
+
+
+def _fault_number_issues() -> list[ConfigIssue]:
+    """Installed packages whose faults an operator could take for others."""
+    return [
+        ConfigIssue("(installed packages)", f"F{number}", allowed)
+        for number, allowed in misnumbered()
+    ]
 
 
 def _bad_devices(found: list[ConfigIssue]) -> set[str]:

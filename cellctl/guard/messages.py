@@ -11,10 +11,11 @@ import socket
 from dataclasses import asdict
 from typing import Any
 
-from cellctl.errors.base import CellError, catalogue
+from cellctl.errors.base import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.known_faults import known_fault
 
 Message = dict[str, Any]
 
@@ -69,9 +70,9 @@ def fault_to_json(fault: CellError) -> Message:
 
 def fault_from_json(message: Message) -> CellError:
     """The fault with that number; ``Unexpected`` for a number that nobody has."""
-    kinds = {kind.number: kind for kind in catalogue()}
     number, detail = message["number"], message["detail"]
-    # The driver of a plug-in may raise a fault of its own, which the core's catalogue lacks.
-    if number not in kinds:
+    kind = known_fault(number)
+    # The driver of a plug-in may keep its faults where only the guard's process has loaded them.
+    if kind is None:
         return Unexpected(f"the guard reports fault {number}: {detail}")
-    return kinds[number](detail)
+    return kind(detail)

@@ -122,6 +122,13 @@ def test_check_knows_what_it_needs(small: SmallCell, installed: Path) -> None:
     assert "the cell lacks [cameras.camera]: looks at the plate" in done.stdout
 
 
+def test_its_fault_is_told_with_its_remedy(installed: Path) -> None:
+    done = run("cellctl", "faults", "1001", path=(installed, ROOT))
+    assert done.returncode == 0, done.stderr
+    assert "weigh the part on a scale" in done.stdout
+    assert "stop" in done.stdout
+
+
 def test_without_the_package_the_recipe_is_refused(small: SmallCell) -> None:
     done = run("cellctl", "check", str(small.file), path=(ROOT,))
     assert done.returncode == 1
@@ -166,3 +173,8 @@ def test_a_part_of_the_wrong_weight_is_bad(
     record = small.run_record(1)
     assert record.head.result == "bad"
     assert record.head.fault_number == 1001
+    out = tmp_path / "report"
+    options = ["--data-dir", str(small.store), "--out", str(out)]
+    done = run("cellctl", "runs", "export", "1", *options, path=(installed, ROOT))
+    assert done.returncode == 0, done.stderr
+    assert "weigh the part on a scale" in (out / "report.html").read_text()

@@ -14,7 +14,8 @@ from cellctl.clock import now_s
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
-from cellctl.errors import CellError, catalogue
+from cellctl.errors import CellError
+from cellctl.known_faults import known_fault
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.unit import UnitController
@@ -33,7 +34,6 @@ class LiveView:
         self._cell = cell
         self._unit = unit
         self._arbiter = arbiter
-        self._remedies = {fault.number: fault for fault in catalogue()}
         self._slow: Object = {}
         self._slow_s = -math.inf
         self._decided_on: tuple[object, ...] = ()
@@ -93,7 +93,7 @@ class LiveView:
             "errors": _limited(_POSE, status.error_mm_deg, progress.error_limits_mm_deg),
             "forces": [self._force(name, time_s, status) for name in self._cell.guards],
             "faults": [_fault(fault) for fault in machine.faults],
-            "alarms": [self._alarm(alarm) for alarm in self._unit.alarms.active],
+            "alarms": [_alarm(alarm) for alarm in self._unit.alarms.active],
             **self._slow,
         }
 
@@ -126,19 +126,6 @@ class LiveView:
             "peaks": [number(value) for value in status.force_peaks],
         }
 
-    def _alarm(self, alarm: ActiveAlarm) -> Object:
-        # The alarm may come from an older store, or from a process that is not installed any more.
-        known = self._remedies.get(alarm.number, CellError)
-        return {
-            "number": alarm.number,
-            "text": alarm.text,
-            "cause": known.cause,
-            "remedy": known.remedy,
-            "reaction": known.reaction.name.lower(),
-            "since": alarm.since.isoformat(timespec="milliseconds"),
-            "run": alarm.run,
-        }
-
 
 def number(value: float) -> float | None:
     """JSON knows neither NaN nor infinity."""
@@ -162,6 +149,20 @@ def _fault(error: CellError) -> Object:
         "cause": error.cause,
         "remedy": error.remedy,
         "reaction": error.reaction.name.lower(),
+    }
+
+
+def _alarm(alarm: ActiveAlarm) -> Object:
+    # The alarm may come from an older store, or from a process that is not installed any more.
+    known = known_fault(alarm.number) or CellError
+    return {
+        "number": alarm.number,
+        "text": alarm.text,
+        "cause": known.cause,
+        "remedy": known.remedy,
+        "reaction": known.reaction.name.lower(),
+        "since": alarm.since.isoformat(timespec="milliseconds"),
+        "run": alarm.run,
     }
 
 

@@ -9,7 +9,8 @@ from cellctl.cell.devices import Cell
 from cellctl.clock import utc_now
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.command.validator import line_in_control
-from cellctl.errors import CellError, catalogue
+from cellctl.errors import CellError
+from cellctl.known_faults import known_fault
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.unit import UnitController
@@ -123,7 +124,7 @@ def _fault(error: CellError) -> FaultReport:
 
 def _alarm(number: int, text: str) -> FaultReport:
     # The alarm may come from an older store or from a process that is not installed any longer.
-    known = next((fault for fault in catalogue() if fault.number == number), CellError)
+    known = known_fault(number) or CellError
     return FaultReport(
         number=number,
         text=text or f"F{number:03d} {known.text}",

@@ -6,9 +6,9 @@ from fastapi import APIRouter, Request
 from fastapi.responses import StreamingResponse
 
 from cellctl.clock import now_s
-from cellctl.errors import catalogue
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.known_faults import known_fault
 from cellctl.version import software
 
 router = APIRouter(tags=["live"])
@@ -63,8 +63,8 @@ async def curve(request: Request, _visitor: Asked) -> dict[str, Any]:
 
 @router.get("/faults/{number}")
 async def fault(number: int, _visitor: Asked) -> dict[str, Any]:
-    """One fault of the catalogue."""
-    found = next((one for one in catalogue() if one.number == number), None)
+    """One fault of the catalogue, those of installed packages included."""
+    found = known_fault(number)
     if found is None:
         raise Problem(404, "fault-unknown", f"there is no F{number:03d}")
     return {

@@ -5,7 +5,7 @@ import json
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
-from cellctl.errors import catalogue
+from cellctl.known_faults import known_faults
 
 
 def said(*words: str) -> str:
@@ -15,7 +15,7 @@ def said(*words: str) -> str:
 
 
 def test_one_fault_has_its_cause_and_remedy() -> None:
-    fault = next(one for one in catalogue() if one.number == 207)
+    fault = next(one for one in known_faults() if one.number == 207)
     text = said("207")
     for words in ("F207", fault.text, fault.cause, fault.remedy, fault.reaction.value):
         assert words in text
@@ -24,7 +24,7 @@ def test_one_fault_has_its_cause_and_remedy() -> None:
 
 def test_every_fault_is_there_for_programs() -> None:
     document = json.loads(said("--json"))
-    assert [one["number"] for one in document] == [fault.number for fault in catalogue()]
+    assert [one["number"] for one in document] == [fault.number for fault in known_faults()]
     assert [one["number"] for one in json.loads(said("207", "--json"))] == [207]
 
 

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from cellctl.errors import catalogue
+from cellctl.known_faults import known_fault
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord, RunResult
 from cellctl.records.report.text import MISSING, when
 
@@ -41,9 +41,8 @@ def fault_box(record: RunRecord, audit: Sequence[AuditEntry]) -> FaultBox | None
 
 
 def cause_and_remedy(number: int) -> tuple[str, str]:
-    """From the fault catalogue; dashes for a number that this version does not know."""
-    known = {fault.number: fault for fault in catalogue()}
-    fault = known.get(number)
+    """From the fault catalogue; dashes for a number that nobody here knows."""
+    fault = known_fault(number)
     return (MISSING, MISSING) if fault is None else (fault.cause, fault.remedy)
 
 
