@@ -1,8 +1,9 @@
 """Features of a camera by their standard names (GenICam SFNC), written with clear refusals."""
 
+from difflib import get_close_matches
 from typing import Any
 
-from genicam import gentl
+from genicam import genapi, gentl
 
 from drivers.camera.gige.config import Acquisition, Region
 from drivers.camera.gige.protocol import Trouble
@@ -10,10 +11,13 @@ from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_err
 
 _OTHER_EDITIONS = {
     "ExposureTime": "ExposureTimeAbs",  # before SFNC 1.5.1, in µs too
+    "Gain": "GainAbs",  # before SFNC 1.5.1, in dB too; GainRaw has a unit of each maker's own
     "GevSCPSPacketSize": "DeviceStreamChannelPacketSize",  # from SFNC 2.0 on, of any transport
 }
-_SHOWN = 40
-"""Names of features that a refusal lists."""
+_SHOWN = 12
+"""Names of features that a refusal lists: cameras have hundreds."""
+_NOT_THERE = (genapi.EAccessMode.NI, genapi.EAccessMode.NA)
+_READABLE = (genapi.EAccessMode.RO, genapi.EAccessMode.RW)
 
 
 class Features:
@@ -24,18 +28,24 @@ class Features:
         self._label = label
 
     def has(self, name: str) -> bool:
-        """Whether the camera has a feature of this name."""
-        return hasattr(self._nodes, name)
+        """Whether the camera has a feature of this name, and has it now.
+
+        Makers describe a family of cameras by one text, in which a feature that this one lacks is
+        "not implemented", and one that its other settings exclude "not available".
+        """
+        return self._access(name) not in _NOT_THERE
 
     def text(self, name: str) -> str:
-        """A feature as text; empty where the camera does not have it."""
+        """A feature as text; empty where the camera does not have it, or does not say it."""
+        if self._access(name) not in _READABLE:
+            return ""
         with camera_errors(self._label):
-            return str(getattr(self._nodes, name).value) if self.has(name) else ""
+            return str(getattr(self._nodes, name).value)
 
     def fixed(self, name: str, automatic: str) -> float | None:
         """A number that stays as it is; None where the camera lacks it or sets it by itself."""
         name = self._name_of(name)
-        if not self.has(name) or self.text(automatic) not in ("", "Off"):
+        if self._access(name) not in _READABLE or self.text(automatic) not in ("", "Off"):
             return None
         with camera_errors(self._label):
             return float(getattr(self._nodes, name).value)
@@ -48,9 +58,7 @@ class Features:
     def write(self, name: str, value: object) -> None:
         """Set a feature; raises ``TroubleError`` with what the camera allows."""
         if not self.has(name):
-            known = ", ".join(sorted(n for n in dir(self._nodes) if n[:1].isupper())[:_SHOWN])
-            text = f"{self._label} has no feature {name}; it has {known}"
-            raise TroubleError(Trouble.FEATURE, text)
+            raise TroubleError(Trouble.FEATURE, f"{self._label} {self._lack_of(name)}")
         node = getattr(self._nodes, name)
         try:
             node.value = value
@@ -62,6 +70,8 @@ class Features:
 
     def set_up(self, settings: Acquisition) -> None:
         """Write all settings; raises ``TroubleError``."""
+        # First, so that the settings' own features meet the trigger that starts a frame.
+        self._switch_other_triggers_off()
         if settings.pixel_format:
             self.write("PixelFormat", settings.pixel_format)
         if settings.region is not None:
@@ -73,7 +83,7 @@ class Features:
             self.write(self._name_of("ExposureTime"), settings.exposure_s * 1e6)
         if settings.gain_db is not None:
             self._write_if_there("GainAuto", "Off")
-            self.write("Gain", settings.gain_db)
+            self.write(self._name_of("Gain"), settings.gain_db)
         if settings.packet_bytes is not None:
             self.write(self._name_of("GevSCPSPacketSize"), settings.packet_bytes)
         if settings.packet_delay_ticks is not None:
@@ -88,11 +98,14 @@ class Features:
             ("OffsetX", 0), ("OffsetY", 0), ("Width", region.width), ("Height", region.height),
             ("OffsetX", region.offset_x), ("OffsetY", region.offset_y),
         ):  # fmt: skip
-            self.write(name, value)
+            # Without offsets a camera reads out from its first pixel on, which is an offset of 0.
+            if value or self.has(name):
+                self.write(name, value)
 
     def _set_trigger(self, settings: Acquisition) -> None:
         self._write_if_there("AcquisitionMode", "Continuous")
-        self._switch_other_triggers_off()
+        # Again: the settings' own features may have selected another one.
+        self._write_if_there("TriggerSelector", "FrameStart")
         if settings.trigger == "none":
             self._write_if_there("TriggerMode", "Off")
             return
@@ -119,6 +132,24 @@ class Features:
         # What a camera cannot do otherwise is often there all the same, and read-only.
         if self.has(name) and self.text(name) != value:
             self.write(name, value)
+
+    def _access(self, name: str) -> int:
+        """How a feature may be used now, by the standard's ``EAccessMode``."""
+        node = getattr(self._nodes, name, None)
+        if node is None:
+            return int(genapi.EAccessMode.NI)
+        with camera_errors(self._label):
+            return int(node.get_access_mode())
+
+    def _lack_of(self, name: str) -> str:
+        if self._access(name) == genapi.EAccessMode.NA:
+            return f"has the feature {name}, but not with its other settings as they are"
+        known = {n.lower(): n for n in sorted(dir(self._nodes)) if n[:1].isupper() and self.has(n)}
+        asked = name.lower()
+        alike = [low for low in known if low in asked or asked in low]
+        alike += get_close_matches(asked, known, n=_SHOWN, cutoff=0.5)
+        shown = [known[low] for low in dict.fromkeys(alike or known)][:_SHOWN]
+        return f"has no feature {name}; it has {', '.join(shown)}"
 
     def _name_of(self, name: str) -> str:
         """The name that this camera has for a feature: that of another edition, if need be."""

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from genicam import genapi
 
 from cellctl.clock import now_s
 from cellctl.errors.camera import CameraFeatureRefused
-from drivers.camera.gige.config import GigeCameraConfig, Selection
+from drivers.camera.gige.config import GigeCameraConfig, Region, Selection
 from drivers.camera.gige.features import Features
 from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import FakeCameras, Format, expected_image
@@ -44,6 +45,15 @@ def without(name: str, text: str) -> str:
     return found[0]
 
 
+def lacking(name: str, how: str, text: str) -> str:
+    """The description with a feature that it names and the camera has not, as of a family's."""
+    found = re.subn(rf'(<\w+ Name="{name}" NameSpace="Standard">)', rf"\1<{how}>No</{how}>", text)
+    assert found[1] == 1
+    port = '  <Port Name="Device"'
+    no = "" if '"No"' in text else '  <Integer Name="No"><Value>0</Value></Integer>\n'
+    return found[0].replace(port, no + port)
+
+
 async def test_no_software_trigger(tmp_path: Path, fakes: FakeCameras) -> None:
     producer = producer_of(tmp_path, without("TriggerSoftware", description()))
     with pytest.raises(CameraFeatureRefused, match="no software trigger"):
@@ -63,6 +73,57 @@ async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCame
     assert image.exposure is not None
     assert image.exposure.gain_db is None
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
+
+
+@pytest.mark.parametrize("how", ["pIsImplemented", "pIsAvailable"])
+async def test_features_of_the_family_that_this_camera_lacks(
+    tmp_path: Path, fakes: FakeCameras, how: str
+) -> None:
+    listed = "    <pFeature>ExposureTime</pFeature>\n"
+    text = description().replace(listed, listed + listed.replace("Time", "Auto"))
+    text = text.replace('  <Float Name="ExposureTime"', AUTOMATIC + '  <Float Name="ExposureTime"')
+    for name in ("ExposureAuto", "TriggerSelector", "Gain"):
+        text = lacking(name, how, text)
+    producer = producer_of(tmp_path, text)
+    async with camera(producer) as eye:
+        image = await eye.grab()
+    assert image.exposure is not None
+    assert image.exposure.exposure_s == pytest.approx(0.001)
+    assert image.exposure.gain_db is None
+    words = "no feature Gain" if how == "pIsImplemented" else "has the feature Gain, but not"
+    with pytest.raises(CameraFeatureRefused, match=words):
+        await camera(producer, gain_db=3.0).connect()
+
+
+async def test_the_gain_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) -> None:
+    text = description().replace('"Gain"', '"GainAbs"').replace(">Gain<", ">GainAbs<")
+    async with camera(producer_of(tmp_path, text), gain_db=4.0) as eye:
+        image = await eye.grab()
+    assert image.exposure is not None
+    assert image.exposure.gain_db == pytest.approx(4.0)
+
+
+async def test_a_camera_that_cannot_move_its_region(tmp_path: Path, fakes: FakeCameras) -> None:
+    text = without("OffsetY", without("OffsetX", description()))
+    producer = producer_of(tmp_path, text)
+    async with camera(producer, region=Region(width=32, height=16)) as eye:
+        assert (await eye.grab()).pixels.shape == (16, 32)
+    with pytest.raises(CameraFeatureRefused, match="no feature OffsetX"):
+        await camera(producer, region=Region(width=32, height=16, offset_x=8)).connect()
+
+
+@pytest.mark.parametrize(
+    ("asked", "meant"),
+    [("Exposuretime", "ExposureTime"), ("PacketSize", "GevSCPSPacketSize"), ("Gian", "Gain")],
+)
+async def test_a_mistyped_feature_is_answered_with_those_that_are_meant(
+    producer: Path, fakes: FakeCameras, asked: str, meant: str
+) -> None:
+    with pytest.raises(
+        CameraFeatureRefused, match=f"it has ({meant}$|{meant},|.*, {meant})"
+    ) as said:
+        await camera(producer, features={asked: 1}).connect()
+    assert str(said.value).count(",") < 12
 
 
 async def test_the_exposure_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) -> None:
@@ -124,11 +185,15 @@ class Node:
         self.value = value
         self.symbolics = symbolics
 
+    def get_access_mode(self) -> int:
+        return int(genapi.EAccessMode.RW)
+
 
 class TriggerNodes:
-    """The triggers of a camera: TriggerMode belongs to what TriggerSelector selects."""
+    """The triggers of a camera: mode and delay belong to what TriggerSelector selects."""
 
     def __init__(self) -> None:
+        self.delays = {"AcquisitionStart": Node(0.0), "FrameStart": Node(0.0)}
         self.modes = {"AcquisitionStart": Node("On"), "FrameStart": Node("Off")}
         self.TriggerSelector = Node("AcquisitionStart", list(self.modes))
         self.TriggerSource = Node("Line1")
@@ -137,6 +202,10 @@ class TriggerNodes:
     @property
     def TriggerMode(self) -> Node:
         return self.modes[str(self.TriggerSelector.value)]
+
+    @property
+    def TriggerDelay(self) -> Node:
+        return self.delays[str(self.TriggerSelector.value)]
 
 
 def test_another_trigger_that_was_left_on_is_switched_off() -> None:
@@ -148,3 +217,23 @@ def test_another_trigger_that_was_left_on_is_switched_off() -> None:
         "FrameStart": "On",
     }
     assert nodes.TriggerSource.value == "Software"
+
+
+def test_features_of_the_settings_meet_the_trigger_of_a_frame() -> None:
+    nodes = TriggerNodes()
+    settings = GigeCameraConfig(
+        camera=Selection(serial_number=LEFT), features={"TriggerDelay": 20.0}
+    )
+    Features(nodes, "eye").set_up(settings)
+    assert nodes.delays["FrameStart"].value == 20.0
+    assert nodes.delays["AcquisitionStart"].value == 0.0
+
+
+def test_a_feature_that_selects_another_trigger_moves_no_trigger_away() -> None:
+    nodes = TriggerNodes()
+    settings = GigeCameraConfig(
+        camera=Selection(serial_number=LEFT), features={"TriggerSelector": "AcquisitionStart"}
+    )
+    Features(nodes, "eye").set_up(settings)
+    assert nodes.modes["FrameStart"].value == "On"
+    assert nodes.modes["AcquisitionStart"].value == "Off"
