@@ -91,22 +91,20 @@ async def soak_openings(producer: Path, fakes: FakeCameras, times: int) -> Soake
 async def soak_pulls(producer: Path, fakes: FakeCameras, times: int) -> Soaked:
     """An image, the cable is pulled, the next image is a fault, the cable is put in again."""
     _use_one_thread()
-    camera = _camera(producer)
+    async with _camera(producer) as camera:
 
-    async def once() -> None:
-        await camera.connect()
-        await camera.grab()
-        fakes.inject(SERIAL, "lost")
-        try:
-            await camera.grab()
-        except LinkError:
-            pass
-        else:
-            raise AssertionError("an image came through a pulled cable")
-        fakes.inject(SERIAL, "lost", 0)
-        await camera.disconnect()
+        async def once() -> None:
+            await camera.grab()  # which opens the camera anew, after the first
+            fakes.inject(SERIAL, "lost")
+            try:
+                await camera.grab()
+            except LinkError:
+                pass
+            else:
+                raise AssertionError("an image came through a pulled cable")
+            fakes.inject(SERIAL, "lost", 0)
 
-    return await _soaked("cable pulls", times, once, fakes)
+        return await _soaked("cable pulls", times, once, fakes)
 
 
 async def soak_grabs(producer: Path, fakes: FakeCameras, times: int) -> Soaked:

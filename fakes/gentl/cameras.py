@@ -25,9 +25,9 @@ _TEXT_BYTES = 64
 _WORDS = (
     "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
     "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
-    "pulses", "wired_to", "strobes",
+    "pulses", "wired_to", "strobes", "losses",
 )  # fmt: skip
-_RESERVED_WORDS = 14
+_RESERVED_WORDS = 13
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
 Format = Literal["Mono8", "Mono12", "Mono12Packed", "BayerRG8"]
@@ -79,6 +79,8 @@ class FakeCameras:
 
     def inject(self, serial: str, fault: Fault, amount: int = 1) -> None:
         """Have something go wrong; 0 puts it right. See ``camera.h`` for what each amount means."""
+        if fault == "lost" and amount:
+            self._put(serial, "losses", self._get(serial, "losses") + 1)
         self._put(serial, fault, amount)
 
     def pulse(self) -> None:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from cellctl.errors.camera import CamerasNotTogether, ImagesDamaged
-from cellctl.errors.link import LinkLost, ProtocolViolation
+from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.device import Device
 from cellctl.interfaces.exposure import ExposureRecord
@@ -70,12 +70,23 @@ class GigeDevice(Device):
                 await self._connected()
             settings = self._settings
             patience_s = settings.tries * settings.image_timeout_s * len(self._cameras)
-            answer, blocks = await self._ask(GrabRequest(), patience_s + _PATIENCE_S)
+            try:
+                answer, blocks = await self._ask(GrabRequest(), patience_s + _PATIENCE_S)
+            except (ReplyTimeout, ImagesDamaged):
+                raise  # the cameras are there
+            except LinkError:
+                # A maker's library seldom finds a camera again that it has lost: its handle stays
+                # dead when the cable is back. The next request opens the camera anew.
+                await asyncio.to_thread(self._library.end)
+                raise
             if not isinstance(answer, Grabbed) or len(blocks) != len(self._cameras):
                 raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for images")
             return answer.images, blocks
 
         return await self._in_turn(grab)
+
+    def _forget(self) -> None:
+        """Drop what earlier images have told: cameras that are opened anew may have been off."""
 
     def _next_frame(self) -> int:
         self._frame += 1
@@ -102,6 +113,7 @@ class GigeDevice(Device):
     async def _connected(self) -> None:
         if self._library.running:
             return
+        self._forget()
         await asyncio.to_thread(self._library.start)
         try:
             answer, _ = await self._ask(
@@ -168,10 +180,8 @@ class GigeHead(GigeDevice, StereoCamera):
         self._ahead: tuple[float, float] | None = None
         """At the last pair: monotonic time, and the clock of the left camera before the right."""
 
-    async def connect(self) -> None:
-        """As every camera; clocks may have been set meanwhile."""
-        self._ahead = None
-        await super().connect()
+    def _forget(self) -> None:
+        self._ahead = None  # clocks begin anew with the power
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""

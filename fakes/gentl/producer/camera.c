@@ -47,6 +47,7 @@ void camera_power_up(camera *self, int index, camera_state *state) {
     memset(self, 0, sizeof *self);
     self->index = index;
     self->state = state;
+    self->losses_seen = state->losses;
     pthread_mutex_init(&self->mutex, NULL);
     /* Waits are measured on the clock that nobody sets. */
     pthread_condattr_t attributes;
@@ -67,6 +68,11 @@ void camera_power_up(camera *self, int index, camera_state *state) {
     set_text(self, REG_USER_ID, state->user_id);
 }
 
+/* Gone from the network, or gone since it was opened: the makers' libraries do not take it up again. */
+bool camera_lost(const camera *self) {
+    return self->state->lost || !self->state->present || self->state->losses != self->losses_seen;
+}
+
 /* A camera that hangs, dies with its driver, or is gone. */
 static GC_ERROR obstacle(camera *self) {
     if (self->state->crash) {
@@ -74,7 +80,7 @@ static GC_ERROR obstacle(camera *self) {
         abort();
     }
     while (self->state->hang) usleep(1000);
-    return self->state->lost || !self->state->present ? GC_ERR_IO : GC_ERR_SUCCESS;
+    return camera_lost(self) ? GC_ERR_IO : GC_ERR_SUCCESS;
 }
 
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size) {

@@ -30,7 +30,8 @@ typedef struct {
     volatile uint32_t pulses;     /* on Line1, so far; whoever maps the file counts up */
     volatile uint32_t wired_to;   /* Line1 is the exposure output of this camera, counted from 1; 0: none */
     volatile uint32_t strobes;    /* exposures begun, each a pulse on the exposure output */
-    volatile uint32_t reserved[14];
+    volatile uint32_t losses;     /* times that it has been lost: what was open before stays dead */
+    volatile uint32_t reserved[13];
     char serial[TEXT_BYTES], user_id[TEXT_BYTES];
 } camera_state;
 
@@ -74,7 +75,7 @@ typedef struct camera {
     camera_state *state;
     uint8_t registers[REGISTER_BYTES];
     bool is_open, stream_open, acquiring, stream_running, ending, event_killed, event_registered;
-    uint32_t triggers, starts, line_seen;
+    uint32_t triggers, starts, line_seen, losses_seen;
     uint64_t frame_id, order, delivered, last_time_ns;
     frame_buffer buffers[MAX_BUFFERS];
     pthread_t thread;
@@ -83,6 +84,7 @@ typedef struct camera {
 } camera;
 
 void camera_power_up(camera *self, int index, camera_state *state);
+bool camera_lost(const camera *self);
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size);
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size);
 size_t camera_line_bytes(const camera *self);

@@ -78,7 +78,7 @@ static void take(camera *self) {
     uint64_t took_us = triggered ? (uint64_t)exposure_us : 20000;
     pause_us(self, took_us + 1000ull * self->state->slow_ms);
     /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
-    if (!self->acquiring || self->starts != starts || self->state->lost || !self->state->present) return;
+    if (!self->acquiring || self->starts != starts || camera_lost(self)) return;
     frame_buffer *buffer = first(self, INPUT);
     bool again = self->state->stale > 0;
     if (again)
