@@ -45,6 +45,7 @@ JOB_FAULTS = {
     for name, meaning in ROBOT_FAULTS.items()
     if name not in {"set_lost", "set_late", "set_repeated", "ticks_silent"}
 } | {
+    "never_ack": "a command is executed and not acknowledged",
     "frozen_stat": "the background jobs stand still",
     "clock_jump": "TIMER jumps by `jump_ms`, for STAT and for the dead man alike",
     "reject": "the next motion is an alarm with `reason` that ends the main job",

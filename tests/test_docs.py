@@ -199,3 +199,16 @@ def test_every_file_that_is_named_exists(page: Path) -> None:
     quoted = _INLINE.findall(_FENCE.sub("", page.read_text(encoding="utf-8")))
     paths = [text for text in quoted if _PATH.fullmatch(text)]
     assert [path for path in paths if not (ROOT / path).exists()] == []
+
+
+def test_every_test_that_is_named_exists() -> None:
+    tests = "\n".join(path.read_text("utf-8") for path in (ROOT / "tests").rglob("*.py"))
+    known = set(re.findall(r"def (test_\w+)\(", tests))
+    named = {
+        text
+        for page in PAGES
+        for text in _INLINE.findall(page.read_text(encoding="utf-8"))
+        if re.fullmatch(r"test_\w+", text)
+    }
+    assert len(named) > 20
+    assert named - known == set()

@@ -46,6 +46,8 @@ class Task:
     sockets: dict[str, JobSocket] = field(default_factory=dict)
     local: dict[int, Position] = field(default_factory=dict)
     executed: int = 0
+    entered: set[str] = field(default_factory=set)
+    """Labels that it has come to."""
     _place: int = 0
     _due_s: float = 0.0
     _timers_s: dict[str, float] = field(default_factory=dict)
@@ -85,6 +87,8 @@ class Task:
                 await self._branch(statement)
             case "JUMP":
                 self._place = statement.jump
+            case "LABEL":
+                self.entered.add(found[0].text)
             case "GOTO":
                 self._place = self.program.labels[found[0].text]
             case _ if word in strings.WORDS:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError
-from cellctl.errors.robot import ControllerFault, MotionAborted, MotionRejected
+from cellctl.errors.robot import ControllerFault, MotionAborted, MotionRejected, NotRearmed
 from cellctl.interfaces.robot import RobotState
 from tests.wire.jobs.job_rig import JobRig, job_rig
 
@@ -124,3 +124,11 @@ async def test_losing_only_the_commands_stops_the_arm(rig: JobRig) -> None:
         while rig.controller.moving():  # noqa: ASYNC110  the arm has no event
             await asyncio.sleep(0.01)
     assert rig.arm.cut_short
+
+
+async def test_a_release_is_refused_while_the_arm_moves(rig: JobRig) -> None:
+    """Another job moves it, of which this PC knows only that the arm is not still."""
+    rig.turn()
+    await until_moving(rig)
+    with pytest.raises(NotRearmed, match="LATCHED"):
+        await rig.robot.rearm()

@@ -1,13 +1,9 @@
 """The SIASUN driver against the fake controller: faults of the wire and of the controller."""
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable
-from contextlib import AbstractAsyncContextManager
-from typing import Protocol, TypeVar, cast
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost, ProtocolViolation, ReplyTimeout, VersionMismatch
@@ -18,63 +14,9 @@ from cellctl.errors.robot import (
     NotRearmed,
     RobotNotReady,
 )
-from cellctl.interfaces.robot import RobotState
 from fakes.sections import Channel
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.wire.siasun.any_rig import AnyRig, Make, above, move, rearm, until_moving, within
 from tests.wire.siasun.sjl_rig import Rig, sjl_rig
-
-Value = TypeVar("Value")
-AnyRig = Rig | JobRig
-
-
-class Make(Protocol):
-    """Makes a rig with changes to the driver's settings."""
-
-    def __call__(self, **changes: object) -> AbstractAsyncContextManager[AnyRig]: ...
-
-
-@pytest.fixture(params=[sjl_rig, job_rig], ids=["records", "jobs"])
-def make(request: pytest.FixtureRequest) -> Make:
-    """The fake that is written from the protocol, or the one that runs the shipped job files."""
-    return cast(Make, request.param)
-
-
-@pytest.fixture
-async def rig(make: Make) -> AsyncIterator[AnyRig]:
-    async with make() as rig:
-        await rig.connect()
-        yield rig
-
-
-def above(rig: AnyRig, dz_mm: float) -> RigidTransform:
-    """A target straight above or below the present pose."""
-    here = rig.robot.state().base_T_flange
-    return RigidTransform.from_translation([0.0, 0.0, dz_mm / 1000]) * here
-
-
-def move(rig: AnyRig, dz_mm: float = 20.0, speed_m_s: float = 0.1) -> "asyncio.Task[RobotState]":
-    return asyncio.create_task(
-        rig.robot.move_linear(above(rig, dz_mm), speed_m_s=speed_m_s, acceleration_m_s2=1.0)
-    )
-
-
-async def until_moving(rig: AnyRig) -> None:
-    await rig.robot._state.wait(lambda status: status.moving, 2.0)
-
-
-async def within(limit_s: float, task: Awaitable[Value]) -> Value:
-    async with asyncio.timeout(limit_s):
-        return await task
-
-
-async def rearm(rig: AnyRig) -> None:
-    """As an operator does: try until the robot's channels are back and it accepts."""
-    async with asyncio.timeout(5.0):
-        while True:
-            try:
-                return await rig.robot.rearm()
-            except CellError:
-                await asyncio.sleep(0.05)
 
 
 async def test_moves_arrive(rig: AnyRig) -> None:

@@ -4,31 +4,28 @@ import asyncio
 from collections.abc import AsyncIterator
 
 import pytest
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost
 from cellctl.errors.robot import MotionAborted, NotRearmed, StopFailed
 from cellctl.interfaces.robot import RobotState
-from tests.wire.siasun.sjl_rig import Rig, sjl_rig
+from tests.wire.siasun.any_rig import AnyRig, Make, move
 
 STOP_S = 0.4
 
 
 @pytest.fixture
-async def rig() -> AsyncIterator[Rig]:
-    async with sjl_rig(stop_timeout_s=STOP_S) as rig:
+async def rig(make: Make) -> AsyncIterator[AnyRig]:
+    async with make(stop_timeout_s=STOP_S) as rig:
         await rig.connect()
         yield rig
 
 
-def long_move(rig: Rig) -> "asyncio.Task[RobotState]":
-    here = rig.robot.state().base_T_flange
-    target = RigidTransform.from_translation([0.0, 0.0, 0.1]) * here
-    return asyncio.create_task(rig.robot.move_linear(target, speed_m_s=0.01, acceleration_m_s2=1.0))
+def long_move(rig: AnyRig) -> "asyncio.Task[RobotState]":
+    return move(rig, 100.0, 0.01)
 
 
-async def unconfirmed(rig: Rig) -> "asyncio.Task[RobotState]":
+async def unconfirmed(rig: AnyRig) -> "asyncio.Task[RobotState]":
     """Stop a long move that the controller goes on with; the move."""
     moving = long_move(rig)
     await rig.robot._state.wait(lambda status: status.moving, 2.0)
@@ -38,7 +35,7 @@ async def unconfirmed(rig: Rig) -> "asyncio.Task[RobotState]":
     return moving
 
 
-async def test_no_heartbeat_and_no_link_remain(rig: Rig) -> None:
+async def test_no_heartbeat_and_no_link_remain(rig: AnyRig) -> None:
     moving = await unconfirmed(rig)
     sent = rig.robot._state._beats
     async with asyncio.timeout(1.0):
@@ -54,7 +51,7 @@ async def test_no_heartbeat_and_no_link_remain(rig: Rig) -> None:
         await moving
 
 
-async def test_links_come_back_by_connect_and_the_latch_stays(rig: Rig) -> None:
+async def test_links_come_back_by_connect_and_the_latch_stays(rig: AnyRig) -> None:
     moving = await unconfirmed(rig)
     with pytest.raises((LinkLost, MotionAborted)):
         await moving
@@ -67,7 +64,7 @@ async def test_links_come_back_by_connect_and_the_latch_stays(rig: Rig) -> None:
     assert not rig.robot.state().stop_latched
 
 
-async def test_a_second_stop_fails_as_well(rig: Rig) -> None:
+async def test_a_second_stop_fails_as_well(rig: AnyRig) -> None:
     moving = await unconfirmed(rig)
     with pytest.raises(StopFailed):
         await rig.robot.stop()

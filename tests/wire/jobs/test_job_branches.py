@@ -1,0 +1,30 @@
+"""Every branch of the shipped jobs is entered; the interpreter notes the labels it comes to."""
+
+import pytest
+
+from fakes.jobs.program import load_program
+from fakes.sections import Channel
+from tests.wire.jobs.job_rig import JOBS, job_rig
+from tests.wire.jobs.job_ways import WAYS
+from tests.wire.siasun.refusals import REFUSALS
+
+
+@pytest.mark.parametrize("name", WAYS)
+async def test_a_way_through_the_jobs(name: str) -> None:
+    way = WAYS[name]
+    guard: tuple[Channel, ...] = ("GRD",) if "SJLGRD" in way.enters else ()
+    async with job_rig(channels=("CMD", "STA", *guard)) as rig:
+        await rig.connect()
+        await way.run(rig)
+        tasks = rig.controller.tasks
+        missed = {job: labels - tasks[job].entered for job, labels in way.enters.items()}
+        assert not any(missed.values()), missed
+
+
+@pytest.mark.parametrize("job", ["SJLMAIN", "SJLSTA", "SJLGRD"])
+def test_no_label_is_left_without_a_way_to_it(job: str) -> None:
+    """The refusals have a test of their own, on both fakes."""
+    entered = {label for way in WAYS.values() for label in way.enters.get(job, set())}
+    if job == "SJLMAIN":
+        entered |= {*REFUSALS, "REJECT"}
+    assert set(load_program(JOBS / f"{job}.job").labels) == entered
