@@ -134,6 +134,7 @@ class DucoController:
         if blocking:
             while logic.moving():  # noqa: ASYNC110 - the arm tells nobody
                 await asyncio.sleep(_TICK_S)
+            logic.tick()  # so that the task of an arm that stands has ended
             number = logic.tasks.state(number)
         if name != "stop" and logic.faults.active("motion_silent"):
             return b""
