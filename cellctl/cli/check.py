@@ -1,6 +1,6 @@
 """`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -95,6 +95,16 @@ def _say_what_others_need(console: Console, cell: CellConfig) -> None:
         if name in used:
             continue
         definition = process_definition(name)
-        lacks = [issue.allowed for issue in lacking_roles(cell, definition.roles)]
-        text = "no recipe; has its devices" if not lacks else "; ".join(lacks)
+        lacks = list(lacking_roles(cell, definition.roles))
+        text = "no recipe; for one this cell is not complete:" if lacks else "no recipe; has its devices"
         console.print(f"  process {name:<24} {text}", markup=False)
+        for allowed, same in _by_text(lacks).items():
+            console.print(f"     {', '.join(same)}: {allowed}", markup=False)
+
+
+def _by_text(issues: Iterable[ConfigIssue]) -> dict[str, list[str]]:
+    """Keys by what belongs there: poses of one robot make one line instead of one for each."""
+    found: dict[str, list[str]] = {}
+    for issue in issues:
+        found.setdefault(issue.allowed, []).append(issue.key)
+    return found

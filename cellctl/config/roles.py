@@ -88,9 +88,8 @@ def _lacking_for(cell: CellConfig, role: Role, device: str, key: str) -> Iterato
     place = device if isinstance(found, RobotConfig) else carrier
     for pose in role.poses if robot is not None else ():
         if robot is not None and pose not in robot.poses_deg:
-            yield ConfigIssue(
-                f"robots.{place}.poses_deg.{pose}", "(missing)", f"taught pose for {role.text}"
-            )
+            allowed = f"a taught pose, in degrees ({role.text})"
+            yield ConfigIssue(f"robots.{place}.poses_deg.{pose}", "(missing)", allowed)
 
 
 def _offers(role: Role, driver: str) -> bool:
