@@ -24,6 +24,8 @@ BLOCKS = {
     "calibration": 6,
     "line": 7,
 }
+OUTSIDE_ITS_BLOCK = {564}
+"""Numbers that were given before their fault came to the file where it belongs; they stay."""
 DRIVER_FILES = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
 
 
@@ -50,7 +52,8 @@ def test_fault_numbers_are_unique_and_in_their_block() -> None:
     assert len(set(numbers)) == len(numbers)
     for fault in faults:
         block = BLOCKS.get(fault.__module__.rsplit(".", 1)[-1])
-        assert block is None or fault.number // 100 == block, fault
+        in_block = fault.number // 100 == block or fault.number in OUTSIDE_ITS_BLOCK
+        assert block is None or in_block, fault
 
 
 def test_every_fault_tells_the_operator_what_to_do() -> None:

@@ -24,13 +24,13 @@ from rich.table import Table
 
 from benchmarks.antenna.pictures import Conditions, Trial, drawing, trial
 from cellctl.errors.base import CellError
-from cellctl.errors.connector import (
+from cellctl.geometry.pose import Array, pose_error
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorTurned,
     ForeignIntrinsics,
     ImageMirrored,
     WrongConnector,
 )
-from cellctl.geometry.pose import Array, pose_error
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import ConnectorMeasurement
 from cellctl.processes.antenna_module.vision.paper_method import measure_by_paper

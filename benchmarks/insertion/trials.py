@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.errors.by_touch import ByTouchError
 from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.faults import ByTouchError
 from cellctl.processes.peg_in_hole.parameters import search_parameters
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap

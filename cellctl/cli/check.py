@@ -96,7 +96,11 @@ def _say_what_others_need(console: Console, cell: CellConfig) -> None:
             continue
         definition = process_definition(name)
         lacks = list(lacking_roles(cell, definition.roles))
-        text = "no recipe; for one this cell is not complete:" if lacks else "no recipe; has its devices"
+        text = (
+            "no recipe; for one this cell is not complete:"
+            if lacks
+            else "no recipe; has its devices"
+        )
         console.print(f"  process {name:<24} {text}", markup=False)
         for allowed, same in _by_text(lacks).items():
             console.print(f"     {', '.join(same)}: {allowed}", markup=False)

@@ -1,4 +1,6 @@
-"""Every fault of the cell, one numbered tree; one module a block of numbers.
+"""The faults of the core, one numbered tree; one module a block of numbers.
+
+Those of a process or of another plug-in stand in the module ``faults`` of its package.
 
 CellError
 ├── ConfigError       1xx   errors.config       configuration, files, arguments
@@ -9,13 +11,9 @@ CellError
 ├── GripperError      34x   errors.gripper      grippers
 ├── DigitalIoError    35x   errors.digital_io   digital inputs and outputs
 ├── VisionError       4xx   errors.vision       images, holes, part poses
-│   └── ConnectorError 46x  errors.connector    connectors and their contacts in one image
 ├── ForceError        5xx   errors.force        sensor, guard, mating
-├── ByTouchError      54x   errors.by_touch     holes that are found by touch
 ├── StreamedContactError 57x errors.streamed_contact  contact under a stream of setpoints
-├── PluggingError     56x   errors.plugging     plan and insertion of a plug
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
-│   └── ReferenceMoved 64x  errors.plug_calibration  plugging by two cameras
 ├── LineError         7xx   errors.line         line PLC and commands
 │   └── LocalError    71x   errors.local        operator commands on the cell's PC
 ├── RecordsError      8xx   errors.records      run store and artefacts
@@ -23,11 +21,9 @@ CellError
 """
 
 from cellctl.errors import (
-    by_touch,
     calibration,
     camera,
     config,
-    connector,
     digital_io,
     force,
     gripper,
@@ -36,8 +32,6 @@ from cellctl.errors import (
     link,
     local,
     planning,
-    plug_calibration,
-    plugging,
     records,
     robot,
     streamed_contact,
@@ -48,12 +42,10 @@ from cellctl.errors.base import CellError, Reaction, catalogue
 __all__ = [
     "CellError",
     "Reaction",
-    "by_touch",
     "calibration",
     "camera",
     "catalogue",
     "config",
-    "connector",
     "digital_io",
     "force",
     "gripper",
@@ -62,8 +54,6 @@ __all__ = [
     "link",
     "local",
     "planning",
-    "plug_calibration",
-    "plugging",
     "records",
     "robot",
     "streamed_contact",

@@ -7,7 +7,7 @@ CalibrationError
 ├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
-├── PosesNotDiverse, RobotCameraMismatch                             623 624  hand-eye, tool
+├── PosesNotDiverse, RobotCameraMismatch, WristConfigurationsDiffer  623 624 564  hand-eye, tool
 └── CalibrationRecordInvalid, CalibrationMissing, CalibrationExpired,
     CalibrationNotStored, CalibrationInvalidated, ClockNotTrusted,
     HeadPoseChanged                                                  631–637  stored results
@@ -251,3 +251,12 @@ class HeadPoseChanged(CalibrationError):
     text = "A head measures from another pose than it was calibrated at"
     cause = "The measuring pose in the cell file was taught anew after procedures 104 and 105."
     remedy = "Restore the joints in the detail, or run procedures 104 and 105."
+
+
+class WristConfigurationsDiffer(CalibrationError):
+    """Poses were reached with the arm or the wrist folded in different ways."""
+
+    number = 564
+    text = "Robot poses of different wrist configurations are mixed"
+    cause = "A joint that says how the arm is folded has another sign in one of the poses."
+    remedy = "Reach all poses in one configuration; see the joint in the detail."

@@ -1,10 +1,10 @@
-"""5xx: force sensor (50x), guard (51x), mating (52x–53x), payload and commissioning (54x)."""
+"""5xx: force sensor (50x), guard (51x), contact (52x), payload and commissioning (54x)."""
 
 from cellctl.errors.base import CellError, Reaction
 
 
 class ForceError(CellError):
-    """Force sensing or mating left its window; may carry the force curve up to the fault."""
+    """Force sensing or contact left its window; may carry the force curve up to the fault."""
 
     def __init__(self, detail: str = "", curve: object | None = None) -> None:
         super().__init__(detail)
@@ -115,11 +115,7 @@ class GuardNotRealTime(ForceError):
     reaction = Reaction.WARN
 
 
-class MatingFault(ForceError):
-    """A fault that the mating step itself raises."""
-
-
-class NotSettled(MatingFault):
+class NotSettled(ForceError):
     """The wrench at the stand-off is not steady enough to tare."""
 
     number = 520
@@ -129,76 +125,17 @@ class NotSettled(MatingFault):
     reaction = Reaction.STOP
 
 
-class TareImplausible(MatingFault):
+class TareImplausible(ForceError):
     """The residual wrench before the tare is larger than compensation can leave."""
 
     number = 521
     text = "Force at the stand-off is implausible before the tare"
-    cause = "Payload identification out of date, another deck, or the deck already touches."
-    remedy = "Check that the deck hangs free; identify the payload again."
+    cause = "Payload identification out of date, another part, or the part already touches."
+    remedy = "Check that the part hangs free; identify the payload again."
     reaction = Reaction.STOP
 
 
-class ContactEarly(MatingFault):
-    """Touch before the contact window opened."""
-
-    number = 522
-    text = "Contact came too early"
-    cause = "Something between deck and frame, a pin that catches, or a wrong measurement."
-    remedy = "Inspect the gap between deck and frame; measure both again."
-    reaction = Reaction.STOP
-
-
-class ContactLate(MatingFault):
-    """No touch although the contact window has been passed."""
-
-    number = 523
-    text = "Contact did not come where it was expected"
-    cause = "Wrong measurement or deck thickness, a shifted frame, or a force signal that is dead."
-    remedy = "Measure both parts again; check that the force sensor answers a push by hand."
-    reaction = Reaction.STOP
-
-
-class FalseSeat(MatingFault):
-    """Force without seat depth, in every attempt."""
-
-    number = 524
-    text = "Deck does not seat"
-    cause = "A pin sits on its chamfer, dirt, or a burr: force is reached above the seat."
-    remedy = "Inspect pins, holes and mating faces; then start the run again."
-    reaction = Reaction.STOP
-
-
-class LateralLoad(MatingFault):
-    """Force or moment across the mating direction beyond its bound at the seat."""
-
-    number = 525
-    text = "Side load too high while mating"
-    cause = "Pins or edges catch on one side, or the deck is tilted."
-    remedy = "See components in the detail; measure both parts again."
-    reaction = Reaction.STOP
-
-
-class CreepNotConverged(MatingFault):
-    """The target force was not reached within the steps or the travel allowed."""
-
-    number = 526
-    text = "Target force was not reached"
-    cause = "Contact softer than the plan allows, slipping fixture, or a drifting sensor."
-    remedy = "See force and travel of the steps in the record; check fixture and sensor."
-    reaction = Reaction.STOP
-
-
-class MatingOverforce(MatingFault):
-    """The force along the mating direction reached its abort limit."""
-
-    number = 527
-    text = "Mating force reached its abort limit"
-    cause = "Contact stiffer or stop slower than measured at commissioning."
-    remedy = "Inspect the parts; measure stop latency and stiffness again before the next run."
-
-
-class MatingPlanInvalid(MatingFault):
+class MatingPlanInvalid(ForceError):
     """The mating plan contradicts itself, the cell's limits or the robot's position."""
 
     number = 528
@@ -208,13 +145,13 @@ class MatingPlanInvalid(MatingFault):
     reaction = Reaction.STOP
 
 
-class LiftOffHeld(MatingFault):
-    """The force changed too much while a deck was lifted off the station."""
+class LiftOffHeld(ForceError):
+    """The force changed too much while the robot left the station with or from a part."""
 
     number = 529
-    text = "Something holds the deck while lifting off"
-    cause = "Deck fastened and gripper still shut, a pin that catches, or a hose that pulls."
-    remedy = "Open the gripper or loosen the deck and free what catches; then Clear and Reset."
+    text = "Something holds the part while the robot leaves"
+    cause = "Part fastened and gripper still shut, a pin that catches, or a hose that pulls."
+    remedy = "Open the gripper or loosen the part and free what catches; then Clear and Reset."
 
 
 class PayloadFileInvalid(ForceError):

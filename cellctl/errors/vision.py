@@ -5,9 +5,8 @@ VisionError
 ├── ImageSizeMismatch, ImageBlack, ImageSaturated, ImageBlurred      411–414      one image
 ├── CamerasSwapped, CameraUpsideDown                                 415 416      the pair
 ├── HoleMissing, HoleAmbiguous, TooFewHoles                          421–423      features
-├── ResidualsTooLarge, UncertaintyTooLarge                           431 432      the pose
-└── NoProgress, CorrectionDiverging, CorrectionImplausible,          441–444      pose correction
-    CorrectionLimitReached
+├── ResidualsTooLarge, HeadsMoved                                    431 433      the pose
+└── CameraFileInvalid                                                463          one camera
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -152,72 +151,11 @@ class HeadsMoved(VisionError):
     remedy = "Look at both heads, their robots and the part; then calibrate boards 1 and 2 again."
 
 
-class UncertaintyTooLarge(VisionError):
-    """The permitted number of frames does not bring the uncertainty below its limit."""
+class CameraFileInvalid(VisionError):
+    """The calibration of a single camera cannot be used."""
 
-    number = 432
-    text = "Measurement is too uncertain for its threshold"
-    cause = "Noise, blur, weak contrast, or an uncertain calibration between the heads."
-    remedy = "Improve the light, allow more frames, or calibrate the heads again."
-
-
-class NoProgress(VisionError):
-    """The error stopped shrinking before it was within its threshold."""
-
-    number = 441
-    text = "Compensation makes no progress"
-    cause = "Robot does not resolve the step, friction, or an obstacle."
-    remedy = "Compare commanded and reported flange poses of the last iterations."
-
-
-class CorrectionDiverging(VisionError):
-    """The error grew after a correction."""
-
-    number = 442
-    text = "Compensation makes the error grow"
-    cause = "Wrong calibration between head and robot, a slipped deck, or a moved head."
-    remedy = "Check the grip and the base-to-head calibration before another run."
-
-
-class CorrectionImplausible(VisionError):
-    """A single correction exceeds what can be needed here."""
-
-    number = 443
-    text = "A correction is implausibly large"
-    cause = "A wrong measurement, a slipped deck, or a moved head."
-    remedy = "Look at the pictures of the last two measurements."
-
-
-class CorrectionLimitReached(VisionError):
-    """The permitted number of corrections was used up."""
-
-    number = 444
-    text = "Too many corrections without reaching the threshold"
-    cause = "Robot repeatability or measurement noise near the size of the threshold."
-    remedy = "See the error by iteration in the report; check robot and calibration."
-
-
-class PartMisplaced(VisionError):
-    """A part was measured far from where the recipe puts it."""
-
-    number = 451
-    text = "A part is not where it should be"
-    cause = "Frame set down wrongly, deck gripped wrongly, wrong recipe, or a wrong calibration."
-    remedy = "Look at the picture; set the part down again or check the recipe."
-    reaction = Reaction.STOP
-
-
-class SeatedOffPosition(VisionError):
-    """The mated deck is not where it should be."""
-
-    number = 452
-    text = "The seated deck is off its position"
-    cause = (
-        "The deck slipped while it was pressed, something lies between deck and frame, the last "
-        "measurement was wrong, or it is too uncertain to prove a seat that close to its limit."
-    )
-    remedy = (
-        "Check the pin holes with plug gauges and the joint with feeler gauges; do not fasten "
-        "before the cause is known."
-    )
+    number = 463
+    text = "Camera file cannot be used"
+    cause = "The file is missing, not JSON, incomplete, or was changed after it was made."
+    remedy = "Calibrate the camera again, or restore the file as it was made."
     reaction = Reaction.STOP

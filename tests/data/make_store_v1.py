@@ -27,9 +27,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell import settling
-from cellctl.errors.force import MatingOverforce
+from cellctl.processes.deck_to_frame.faults import MatingOverforce
 from cellctl.errors.link import LinkLost
-from cellctl.errors.vision import SeatedOffPosition
+from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.force.commissioning import StiffnessEstimate
 from cellctl.force.compliance import Sideways
 from cellctl.geometry.pose import pose_from_xyzabc

@@ -14,18 +14,18 @@ from benchmarks.antenna.chain.drawn_cell import (
     DrawnCell,
     base_T_flange_over_socket,
 )
-from cellctl.errors.plug_calibration import (
-    FixedCameraMoved,
-    GripperMarksMoved,
-    ReferenceMoved,
-    ReferencePlateMoved,
-)
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.reference_check import (
     ReferenceReading,
     require_reference,
 )
 from cellctl.processes.antenna_module.chain.tool_turn import TurnStop, calibrate_tool_turn
+from cellctl.processes.antenna_module.faults.calibration import (
+    FixedCameraMoved,
+    GripperMarksMoved,
+    ReferenceMoved,
+    ReferencePlateMoved,
+)
 
 ANGLES = 8
 PLATE_LOOKS = 8

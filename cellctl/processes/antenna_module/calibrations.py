@@ -7,7 +7,10 @@ from typing import Any
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.errors.plug_calibration import (
+from cellctl.errors.robot import ControllerFault
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.faults.calibration import (
     ArmMoved,
     FixedCameraMoved,
     FlangeCameraMoved,
@@ -15,10 +18,7 @@ from cellctl.errors.plug_calibration import (
     ReferenceMoved,
     ReferencePlateMoved,
 )
-from cellctl.errors.plugging import PlugOverForce
-from cellctl.errors.robot import ControllerFault
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.faults.plugging import PlugOverForce
 from cellctl.processes.antenna_module.roles import CAMERA_1, CAMERA_2
 
 CAMERA_1_INTRINSICS = CalibrationKind(

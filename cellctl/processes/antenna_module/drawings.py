@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from cellctl.errors.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
+from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
 from cellctl.processes.antenna_module.settings import ReferenceSection
 

@@ -12,7 +12,6 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.readiness import require_full_speed
 from cellctl.clock import utc_now
 from cellctl.errors.calibration import CalibrationMissing
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.calibrations import (
     CAMERA_1_INTRINSICS,
@@ -36,6 +35,7 @@ from cellctl.processes.antenna_module.chain.taught_reference import (
     TaughtReference,
 )
 from cellctl.processes.antenna_module.drawings import Drawings, Plate, read_drawings, read_plate
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.processes.antenna_module.stations import AntennaCell

@@ -12,12 +12,12 @@ from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.settling import settle
 from cellctl.cell.standstill import require_unmoved
 from cellctl.clock import now_s
-from cellctl.errors.plugging import LooksDisagree
 from cellctl.geometry.pose import MM, Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import Camera
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
 from cellctl.records.run_recorder import RunRecorder

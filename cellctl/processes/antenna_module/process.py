@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
-from cellctl.errors.plugging import (
+from cellctl.processes.antenna_module.faults.plugging import (
     GrippedOffTwice,
     MovedOnRelease,
     PlugBentPin,

@@ -7,8 +7,6 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.connector import MarksMissing
-from cellctl.errors.plugging import LooksIncomplete
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.interfaces import Camera
 from cellctl.interfaces.stereo_camera import Image
@@ -17,6 +15,8 @@ from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
 from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.drawings import Plate
 from cellctl.processes.antenna_module.facts import PluggingFacts
+from cellctl.processes.antenna_module.faults.connector import MarksMissing
+from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
 from cellctl.processes.antenna_module.looking import Eyes, Seen, nominal, plane_by
 from cellctl.processes.antenna_module.moving import Mover
 from cellctl.processes.antenna_module.recipe import Place

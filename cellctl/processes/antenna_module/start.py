@@ -2,8 +2,8 @@
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.plugging import ModuleInGripper
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.moving import Mover, raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place

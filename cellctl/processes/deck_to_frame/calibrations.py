@@ -11,13 +11,10 @@ from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.errors.force import (
-    ForceLimitExceeded,
-    MatingOverforce,
-    SensorSaturated,
-)
+from cellctl.errors.force import ForceLimitExceeded, SensorSaturated
 from cellctl.errors.robot import ControllerFault
-from cellctl.errors.vision import CorrectionDiverging, HeadsMoved
+from cellctl.errors.vision import HeadsMoved
+from cellctl.processes.deck_to_frame.faults import CorrectionDiverging, MatingOverforce
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2
 
 HEAD_JOINTS = "head_joints_deg"

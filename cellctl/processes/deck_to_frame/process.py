@@ -8,7 +8,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated_moves import StatedMove
-from cellctl.errors.vision import SeatedOffPosition
+from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import ROLES
 from cellctl.processes.deck_to_frame.settings import DeckSettings

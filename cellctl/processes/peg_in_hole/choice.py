@@ -9,8 +9,8 @@ from enum import StrEnum
 from math import pi
 from typing import Any
 
-from cellctl.errors.by_touch import HeightTooNoisy, SearchImpossible
 from cellctl.processes.peg_in_hole.derived import Derived
+from cellctl.processes.peg_in_hole.faults import HeightTooNoisy, SearchImpossible
 from cellctl.processes.peg_in_hole.parameters import SearchParameters, search_parameters
 from cellctl.processes.peg_in_hole.task import SearchTask
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotions, Ended
-from cellctl.errors.by_touch import FaceAbsent, FaceTilted, FaceUneven
+from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.task import SearchTask
 

@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
-from cellctl.errors.by_touch import HoleAbsent, HoleBlocked, PegJammed, PegNotInserted, PegWedged
+from cellctl.processes.peg_in_hole.faults import (
+    HoleAbsent,
+    HoleBlocked,
+    PegJammed,
+    PegNotInserted,
+    PegWedged,
+)
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ROLES
 from cellctl.processes.peg_in_hole.settings import PegSettings

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cellctl.errors.connector import CameraFileInvalid
+from cellctl.errors.vision import CameraFileInvalid
 from cellctl.vision.camera.stereo_head import CameraModel, camera_from_json, camera_to_json
 
 

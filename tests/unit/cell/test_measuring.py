@@ -8,9 +8,10 @@ import pytest
 
 from cellctl.errors.link import ReplyTimeout, StaleData
 from cellctl.errors.robot import HeadMoved
-from cellctl.errors.vision import HoleMissing, UncertaintyTooLarge
+from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.faults import UncertaintyTooLarge
 from cellctl.processes.deck_to_frame.poses import part_measurer as measuring
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
     HeadGeometry,

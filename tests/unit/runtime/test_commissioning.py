@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from cellctl.calibration.store.envelope import read_calibration
-from cellctl.errors.force import FalseSeat
 from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS
+from cellctl.processes.deck_to_frame.faults import DeckNotSeated
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
@@ -106,7 +106,7 @@ async def test_a_bound_that_is_too_low_does_not_pass(rig: DaemonRig, touching: T
 async def test_a_fault_in_contact_closes_the_run_with_its_curves(
     rig: DaemonRig, touching: Touching
 ) -> None:
-    touching.fault = FalseSeat("0.3 mm above the seat")
+    touching.fault = DeckNotSeated("0.3 mm above the seat")
     await commission(rig)
     await rig.to(State.ABORTED, State.STOPPED)
     record = await rig.record()

@@ -4,8 +4,8 @@ import asyncio
 
 import pytest
 
-from cellctl.errors.force import MatingOverforce
 from cellctl.errors.line import LineLostInContact
+from cellctl.processes.deck_to_frame.faults import MatingOverforce
 from cellctl.runtime.interruption import Interruption
 
 LOST = LineLostInContact("mate")

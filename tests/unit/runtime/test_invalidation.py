@@ -8,16 +8,11 @@ import pytest
 from cellctl.calibration.store.kind import kinds_invalidated_by
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationInvalidated
-from cellctl.errors.force import (
-    ForceLimitExceeded,
-    LiftOffHeld,
-    MatingOverforce,
-    SensorSaturated,
-    SensorSilent,
-)
+from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld, SensorSaturated, SensorSilent
 from cellctl.errors.robot import ControllerFault, HeadMoved, MotionAborted
-from cellctl.errors.vision import CorrectionDiverging, HeadsMoved, ResidualsTooLarge
+from cellctl.errors.vision import HeadsMoved, ResidualsTooLarge
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
+from cellctl.processes.deck_to_frame.faults import CorrectionDiverging, MatingOverforce
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import AuditEntry, Calibration
 from cellctl.records.store import RunStore

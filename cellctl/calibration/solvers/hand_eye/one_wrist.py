@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Mapping
 
-from cellctl.errors.plugging import WristConfigurationsDiffer
+from cellctl.errors.calibration import WristConfigurationsDiffer
 from cellctl.geometry.pose import Array
 from cellctl.geometry.wrist import wrist_configuration
 

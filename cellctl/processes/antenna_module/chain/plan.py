@@ -8,7 +8,6 @@ import numpy as np
 
 from cellctl.calibration.pose_record import pose_to_record
 from cellctl.errors.calibration import CalibrationMissing
-from cellctl.errors.plugging import PlugUncertain
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
@@ -31,6 +30,7 @@ from cellctl.processes.antenna_module.chain.worst_contact import (
     WorstContact,
     predict_worst_contact,
 )
+from cellctl.processes.antenna_module.faults.plugging import PlugUncertain
 
 
 @dataclass(frozen=True, slots=True, eq=False)

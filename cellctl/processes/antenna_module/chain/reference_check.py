@@ -18,7 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.errors.plug_calibration import (
+from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.faults.calibration import (
     ArmMoved,
     FixedCameraMoved,
     FlangeCameraMoved,
@@ -26,7 +27,6 @@ from cellctl.errors.plug_calibration import (
     ReferenceMoved,
     ReferencePlateMoved,
 )
-from cellctl.geometry.pose import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)

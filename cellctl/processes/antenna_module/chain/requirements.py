@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable
 
-from cellctl.errors.plugging import (
-    CalibrationsDoNotBelongTogether,
-    LooksIncomplete,
-    StaleLook,
-    WristConfigurationsDiffer,
-)
+from cellctl.errors.calibration import WristConfigurationsDiffer
 from cellctl.geometry.wrist import wrist_configuration
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.chain.looks import Look, Looks
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    LooksIncomplete,
+    StaleLook,
+)
 
 MAX_AGE_S = 60.0
 """Between a look and its plan. In this time a warming cell moves by well below a micrometre."""

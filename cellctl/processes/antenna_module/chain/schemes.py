@@ -12,12 +12,12 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.pose_average import average
-from cellctl.errors.plugging import LooksIncomplete, SocketImplausible
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell, isotropic
 from cellctl.processes.antenna_module.chain.looks import Looks, SocketLook
 from cellctl.processes.antenna_module.chain.termed_pose import Term, TermedPose, only_plane
+from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete, SocketImplausible
 
 _MAX_DISAGREEMENT = 25.0
 """Reduced chi square of several looks at one socket. Looks of one socket agree within a few

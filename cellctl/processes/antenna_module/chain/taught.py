@@ -9,11 +9,14 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Checks, all_passed, checks_from_record, evidence_to_record
 from cellctl.calibration.pose_record import matrix_mm_to_pose, pose_from_record, pose_to_record
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether, OutOfTaughtRange
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.wrist import WRIST_JOINTS
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    OutOfTaughtRange,
+)
 
 
 @dataclass(frozen=True, slots=True)

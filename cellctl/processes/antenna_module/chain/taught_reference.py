@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from cellctl.calibration.checks import Checks, all_passed, checks_from_record, evidence_to_record
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.chain.reference_check import ReferenceReading
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 
 _PLACES = ("axis_in_camera_2", "marks_from_axis", "plate_in_camera_1", "plate_in_camera_2")
 

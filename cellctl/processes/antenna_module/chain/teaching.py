@@ -8,8 +8,6 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.calibration.solvers.pose_average import average
-from cellctl.errors.plug_calibration import TeachScatter, TooFewTeachings
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.geometry.pose import MM, Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell, isotropic
@@ -18,6 +16,8 @@ from cellctl.processes.antenna_module.chain.looks import Looks
 from cellctl.processes.antenna_module.chain.requirements import require_one_set, require_one_wrist
 from cellctl.processes.antenna_module.chain.schemes import Scheme, base_T_socket
 from cellctl.processes.antenna_module.chain.taught import MadeWith, PlugCorrection, TaughtSlot
+from cellctl.processes.antenna_module.faults.calibration import TeachScatter, TooFewTeachings
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
-from cellctl.errors.plug_calibration import TurnInvalid
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.faults.calibration import TurnInvalid
 
 _MIN_SPAN_RAD = float(np.radians(180))
 

@@ -8,7 +8,10 @@ import typer
 
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.connector import (
+from cellctl.errors.vision import VisionError
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.connector.marks import read_marks
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMissing,
     ContactBent,
@@ -17,9 +20,6 @@ from cellctl.errors.connector import (
     MarksMissing,
     PaperMethodRefused,
 )
-from cellctl.errors.vision import VisionError
-from cellctl.processes.antenna_module.connector.connector import read_connector
-from cellctl.processes.antenna_module.connector.marks import read_marks
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
     ConnectorMeasurement,

@@ -16,7 +16,6 @@ from cellctl.calibration.input_file import read_input
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.plugging import InsertionCurveInvalid
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
@@ -31,6 +30,7 @@ from cellctl.processes.antenna_module.commands.trial_file import (
 )
 from cellctl.processes.antenna_module.commands.turn_file import TurnFile
 from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import parse_curve
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 

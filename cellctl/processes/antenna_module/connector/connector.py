@@ -12,7 +12,6 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from cellctl.errors.connector import ConnectorFileInvalid
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.connector.arrangement import HALF_TURN, asymmetry_m
 from cellctl.processes.antenna_module.connector.toml_file import (
@@ -23,6 +22,7 @@ from cellctl.processes.antenna_module.connector.toml_file import (
     parse_toml,
     read_bytes,
 )
+from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 
 Kind = Literal["pins", "holes"]
 _FEWEST = 3

@@ -11,7 +11,6 @@ import numpy as np
 from pydantic import Field, model_validator
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.connector import MarksFileInvalid
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.connector.arrangement import (
     HALF_TURN,
@@ -27,6 +26,7 @@ from cellctl.processes.antenna_module.connector.toml_file import (
     parse_toml,
     read_bytes,
 )
+from cellctl.processes.antenna_module.faults.connector import MarksFileInvalid
 
 _FEWEST = 3
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.errors.plugging import InsertionCurveInvalid
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 
 COLUMNS = ("t_s", "z_mm", "fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
 _FEWEST = 20

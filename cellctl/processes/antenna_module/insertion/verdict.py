@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 
 from cellctl.calibration.checks import Checks, LimitCheck
-from cellctl.errors.plugging import (
+from cellctl.geometry.pose import MM
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.faults.plugging import (
     PlugBentPin,
     PlugEarlyContact,
     PluggingError,
@@ -16,8 +18,6 @@ from cellctl.errors.plugging import (
     PlugShortSeat,
     PlugSideForce,
 )
-from cellctl.geometry.pose import MM
-from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 from cellctl.processes.antenna_module.insertion.features import InsertionFeatures, features_of
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits

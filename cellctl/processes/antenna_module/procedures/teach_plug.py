@@ -11,14 +11,14 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.settling import settle
 from cellctl.clock import now_s
-from cellctl.errors.plug_calibration import NobodyPlugged
-from cellctl.errors.plugging import ModuleMissing
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
 from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.facts import read_facts
+from cellctl.processes.antenna_module.faults.calibration import NobodyPlugged
+from cellctl.processes.antenna_module.faults.plugging import ModuleMissing
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe

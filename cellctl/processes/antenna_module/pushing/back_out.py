@@ -6,7 +6,7 @@ from cellctl.cell.leaving import able_to_leave
 from cellctl.errors.base import CellError
 from cellctl.errors.force import ForceError, LiftOffHeld
 from cellctl.errors.line import LineLostInContact
-from cellctl.errors.plugging import PluggingError
+from cellctl.processes.antenna_module.faults.plugging import PluggingError
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 
 _log = log.get(__name__)

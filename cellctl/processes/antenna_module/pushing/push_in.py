@@ -4,15 +4,15 @@ from collections import deque
 
 from cellctl.cell.guarded_moves import Motion
 from cellctl.errors.base import CellError
-from cellctl.errors.plugging import (
+from cellctl.geometry.pose import MM
+from cellctl.guard.report import GuardTrip
+from cellctl.processes.antenna_module.faults.plugging import (
     PlugEarlyContact,
     PluggingError,
     PlugOverForce,
     PlugShortSeat,
     PlugSideForce,
 )
-from cellctl.geometry.pose import MM
-from cellctl.guard.report import GuardTrip
 from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
 from cellctl.processes.antenna_module.insertion.verdict import judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, TripCause

@@ -4,7 +4,7 @@ import base64
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from cellctl.errors.plugging import InsertionCurveInvalid
+from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, parse_curve
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.report.acceptance import WORDS, acceptance

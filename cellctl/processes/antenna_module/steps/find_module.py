@@ -5,15 +5,15 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.connector import (
+from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMisplaced,
     ConnectorTurned,
     ImageMirrored,
     MarksMissing,
 )
-from cellctl.errors.plugging import ModuleMisplaced, ModuleMissing
-from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.plugging import ModuleMisplaced, ModuleMissing
 from cellctl.processes.antenna_module.looking import combined, nominal, plane_by
 from cellctl.processes.antenna_module.moving import shifted
 from cellctl.processes.antenna_module.record import keys

@@ -1,7 +1,7 @@
 """Step 45, within step 40: a badly gripped module is put back and gripped again, once."""
 
-from cellctl.errors.connector import ConnectorMisplaced
 from cellctl.geometry.pose import MM
+from cellctl.processes.antenna_module.faults.connector import ConnectorMisplaced
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun

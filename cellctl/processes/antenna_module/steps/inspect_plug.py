@@ -5,11 +5,11 @@ from functools import partial
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.connector import ConnectorMisplaced
-from cellctl.errors.plugging import GrippedOffTwice
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import PlugLook
+from cellctl.processes.antenna_module.faults.connector import ConnectorMisplaced
+from cellctl.processes.antenna_module.faults.plugging import GrippedOffTwice
 from cellctl.processes.antenna_module.looking import Seen, combined, plane_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.recipe import Place

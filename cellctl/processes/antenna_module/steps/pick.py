@@ -6,8 +6,8 @@ import numpy as np
 
 from cellctl.cell.settling import settle
 from cellctl.clock import now_s
-from cellctl.errors.plugging import WrongModuleMass
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.plugging import WrongModuleMass
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun

@@ -3,7 +3,6 @@
 import numpy as np
 
 from cellctl.clock import now_s
-from cellctl.errors.plugging import PlanFarFromDrawing
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
 from cellctl.processes.antenna_module.chain.plan import (
     ContactPattern,
@@ -11,6 +10,7 @@ from cellctl.processes.antenna_module.chain.plan import (
     PlugTolerance,
     plan_plug,
 )
+from cellctl.processes.antenna_module.faults.plugging import PlanFarFromDrawing
 from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.record import keys

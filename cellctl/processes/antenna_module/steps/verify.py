@@ -4,9 +4,9 @@ from functools import partial
 
 import numpy as np
 
-from cellctl.errors.connector import ConnectorError
-from cellctl.errors.plugging import MovedOnRelease, PlugNotHeld
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.connector import ConnectorError
+from cellctl.processes.antenna_module.faults.plugging import MovedOnRelease, PlugNotHeld
 from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
 from cellctl.processes.antenna_module.looking import combined, plane_by
 from cellctl.processes.antenna_module.mated import connector_T_plug

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.errors.connector import (
+from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMisplaced,
     ConnectorTurned,
     ImageMirrored,
 )
-from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.vision.matching import Placement
 from cellctl.processes.antenna_module.vision.pattern import Candidates
 

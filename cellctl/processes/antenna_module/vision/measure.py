@@ -3,7 +3,12 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.connector import (
+from cellctl.geometry.pose import MM
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.connector.marks import Marks
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMissing,
     ConnectorUncertain,
@@ -11,11 +16,6 @@ from cellctl.errors.connector import (
     PlaneScaleWrong,
     WrongConnector,
 )
-from cellctl.geometry.pose import MM
-from cellctl.geometry.uncertain import UncertainPose
-from cellctl.interfaces.stereo_camera import Image
-from cellctl.processes.antenna_module.connector.connector import Connector
-from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
 from cellctl.processes.antenna_module.vision.contact_states import contact_states
 from cellctl.processes.antenna_module.vision.measurement import (

@@ -3,9 +3,13 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from cellctl.errors.connector import ContactBent, ContactHidden, ContactMissing
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.antenna_module.faults.connector import (
+    ContactBent,
+    ContactHidden,
+    ContactMissing,
+)
 
 Method = Literal["default", "paper"]
 ContactState = Literal["ok", "missing", "bent", "hidden"]

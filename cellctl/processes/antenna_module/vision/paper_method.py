@@ -15,10 +15,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.errors.connector import PaperMethodRefused
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.faults.connector import PaperMethodRefused
 from cellctl.processes.antenna_module.vision.matching import rotation
 from cellctl.processes.antenna_module.vision.measure import uncertain_pose
 from cellctl.processes.antenna_module.vision.measurement import (

@@ -14,8 +14,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.calibration.input_file import InputFile, InputPose, read_input
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.connector import ForeignIntrinsics, PlaneFileInvalid
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.faults.connector import ForeignIntrinsics, PlaneFileInvalid
 from cellctl.vision.camera.lens import project, undistort
 from cellctl.vision.camera.single_camera import SingleCamera
 from cellctl.vision.camera.stereo_head import CameraModel

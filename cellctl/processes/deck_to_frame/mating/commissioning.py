@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_port import GuardPort
-from cellctl.errors.force import CommissioningFailed, FalseSeat
+from cellctl.errors.force import CommissioningFailed
 from cellctl.force.contact.commissioning import StiffnessEstimate, joint_stiffness
 from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.faults import DeckNotSeated
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report
 from cellctl.processes.deck_to_frame.mating.back_off import return_to_stand_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
@@ -32,7 +33,7 @@ async def measure_contact_stiffness(
 
     The plan must be made with an upper bound (the arm's own stiffness will do: a series is never
     stiffer). The arm stands at the stand-off before and after. Raises ``CommissioningFailed``,
-    ``FalseSeat`` and what ``mate`` raises.
+    ``DeckNotSeated`` and what ``mate`` raises.
     """
     results, estimates = [], []
     for _ in range(contacts):
@@ -40,7 +41,7 @@ async def measure_contact_stiffness(
         # On a chamfer or on dirt the stiffness of something else would be measured.
         if result.outcome is not MatingOutcome.SEATED:
             gap_mm = result.verdict.gap_m * 1e3
-            raise FalseSeat(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)
+            raise DeckNotSeated(f"a contact ends {gap_mm:.3f} mm above the seat", result.curve)
         async with ContactRecorder(robot, guard, plan.travel_of) as recorder:
             await return_to_stand_off(Attempt(robot, guard, plan, recorder, report))
         if result.stiffness is None:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cellctl.errors.force import ContactEarly
 from cellctl.force.contact.compliance import next_move, pressed
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.faults import ContactEarly
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, loop_time_s
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits, fault_of, touch_limits
 from cellctl.processes.deck_to_frame.mating.result import GivingWay, MatingPhase, Reading

@@ -4,10 +4,10 @@ import numpy as np
 
 from cellctl.cell.guard_limits import Sensing, guard_limits
 from cellctl.errors.base import CellError
-from cellctl.errors.force import LateralLoad, MatingOverforce
 from cellctl.geometry.pose import Array
 from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip
+from cellctl.processes.deck_to_frame.faults import LateralLoad, MatingOverforce
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 
 _ALONG = 2

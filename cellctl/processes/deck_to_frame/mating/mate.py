@@ -6,11 +6,11 @@ from cellctl import log
 from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.cell.guard_port import GuardPort
 from cellctl.errors.base import CellError
-from cellctl.errors.force import FalseSeat
 from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.force.contact.curve import curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
 from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.faults import DeckNotSeated
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, Report, loop_time_s
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
 from cellctl.processes.deck_to_frame.mating.phases import (
@@ -78,7 +78,7 @@ async def mate_until_seated(
     """Attempts with a fresh measurement before each, until the deck is seated.
 
     ``measured_plan(n)`` is called before attempt n = 1, 2, …; it measures, corrects, and leaves
-    the robot at the stand-off. Raises ``FalseSeat`` after ``max_tries``, and whatever ``mate``
+    the robot at the stand-off. Raises ``DeckNotSeated`` after ``max_tries``, and whatever ``mate``
     raises.
     """
     for number in range(1, max_tries + 1):
@@ -86,7 +86,7 @@ async def mate_until_seated(
         if result.outcome is MatingOutcome.SEATED:
             return result
         _log.warning("false seat", attempt=number, gap_mm=result.verdict.gap_m * 1e3)
-    raise FalseSeat(
+    raise DeckNotSeated(
         f"{max_tries} attempts, the last {result.verdict.gap_m * 1e3:.3f} mm above the seat at "
         f"{result.verdict.force_n:.1f} N",
         result.curve,

@@ -2,17 +2,11 @@
 
 import numpy as np
 
-from cellctl.errors.force import (
-    ContactEarly,
-    ContactLate,
-    ForceError,
-    MatingPlanInvalid,
-    NotSettled,
-    TareImplausible,
-)
+from cellctl.errors.force import ForceError, MatingPlanInvalid, NotSettled, TareImplausible
 from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
+from cellctl.processes.deck_to_frame.faults import ContactEarly, ContactLate
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, loop_time_s
 from cellctl.processes.deck_to_frame.mating.comply import check_lateral_load, resolve_early_contact
 from cellctl.processes.deck_to_frame.mating.limits import (

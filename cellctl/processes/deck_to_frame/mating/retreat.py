@@ -4,13 +4,8 @@ from cellctl import log
 from cellctl.cell.leaving import able_to_leave
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
-    ContactEarly,
-    ContactLate,
-    CreepNotConverged,
     ForceError,
     ForceLimitExceeded,
-    LateralLoad,
-    MatingOverforce,
     SensorDataInvalid,
     SensorFrozen,
     SensorRateWrong,
@@ -18,6 +13,13 @@ from cellctl.errors.force import (
     SensorSilent,
 )
 from cellctl.errors.line import LineLostInContact
+from cellctl.processes.deck_to_frame.faults import (
+    ContactEarly,
+    ContactLate,
+    CreepNotConverged,
+    LateralLoad,
+    MatingOverforce,
+)
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
 

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from cellctl.errors.force import CommissioningFailed, CreepNotConverged, LateralLoad
+from cellctl.errors.force import CommissioningFailed
 from cellctl.force.contact.commissioning import StiffnessEstimate, estimate_stiffness
 from cellctl.force.contact.creep import CreepLaw, after_step, begin, done, next_step
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.faults import CreepNotConverged, LateralLoad
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.comply import comply
 from cellctl.processes.deck_to_frame.mating.limits import fault_of

@@ -11,10 +11,10 @@ from cellctl import log
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.standstill import require_unmoved
 from cellctl.cell.stereo_station import StereoStation
-from cellctl.errors.vision import UncertaintyTooLarge
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
+from cellctl.processes.deck_to_frame.faults import UncertaintyTooLarge
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.processes.deck_to_frame.stations import DeckCell

@@ -11,15 +11,15 @@ from typing import Literal
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.vision import (
+from cellctl.geometry.pose import MM, Array, pose_error
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.faults import (
     CorrectionDiverging,
     CorrectionImplausible,
     CorrectionLimitReached,
     NoProgress,
     UncertaintyTooLarge,
 )
-from cellctl.geometry.pose import MM, Array, pose_error
-from cellctl.geometry.uncertain import UncertainPose
 
 CorrectionMethod = Literal["default", "paper"]
 

@@ -4,8 +4,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.robot import TargetOutOfBounds
-from cellctl.errors.vision import PartMisplaced
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.faults import PartMisplaced
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile
 

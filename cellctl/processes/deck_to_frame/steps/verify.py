@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from cellctl.errors.vision import SeatedOffPosition
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
 from cellctl.processes.deck_to_frame.poses.seat_error import SeatError, pin_holes, seat_error
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe

@@ -11,7 +11,7 @@ from cellctl.cell.by_touch.motions import (
     ContactSample,
     Ended,
 )
-from cellctl.errors.by_touch import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
     greatest_axial_n,

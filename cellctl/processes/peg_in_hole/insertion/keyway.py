@@ -8,7 +8,7 @@ from math import radians
 import numpy as np
 
 from cellctl.cell.by_touch.motions import Condition, ContactMotions, ContactSample, Ended
-from cellctl.errors.by_touch import KeywayNotFound
+from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
 
 _HOLD_N = 5.0

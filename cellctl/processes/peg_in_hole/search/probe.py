@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, ContactSample, Ended
-from cellctl.errors.by_touch import SearchGaveUp
+from cellctl.processes.peg_in_hole.faults import SearchGaveUp
 from cellctl.processes.peg_in_hole.parameters import DETECTION_S, SearchParameters
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.spirals import expanding_turns

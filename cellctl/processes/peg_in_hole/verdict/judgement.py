@@ -11,7 +11,7 @@ from math import nan
 from typing import Any
 
 from cellctl.calibration.checks import Checks, LimitCheck
-from cellctl.errors.by_touch import (
+from cellctl.processes.peg_in_hole.faults import (
     FalseSeat,
     HoleTooWide,
     NotSeated,

@@ -16,9 +16,9 @@ from cellctl.config.load import load_cell
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationMissing, CalibrationRecordInvalid
 from cellctl.errors.config import ConfigInvalid
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS
 from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
 from cellctl.vision.camera.single_camera import single_camera_from_json
 

@@ -10,8 +10,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.connector import MarksMissing
-from cellctl.errors.plugging import LooksIncomplete
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module import reference_drive
@@ -19,6 +17,8 @@ from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.drawings import Plate
 from cellctl.processes.antenna_module.facts import PluggingFacts
+from cellctl.processes.antenna_module.faults.connector import MarksMissing
+from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
 from cellctl.processes.antenna_module.looking import Eyes, Seen
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.reference_drive import ReferenceDrive

@@ -9,8 +9,9 @@ import pytest
 from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.simulated_loop import run_simulated
 from benchmarks.mating.trial import ARM_STIFFNESS_N_M, nominal_settings, plan_for
-from cellctl.errors.force import FalseSeat, MatingPlanInvalid, NotSettled, TareImplausible
+from cellctl.errors.force import MatingPlanInvalid, NotSettled, TareImplausible
 from cellctl.errors.line import LineLostInContact
+from cellctl.processes.deck_to_frame.faults import DeckNotSeated
 from cellctl.processes.deck_to_frame.mating.commissioning import measure_contact_stiffness
 from cellctl.processes.deck_to_frame.mating.mate import mate, mate_until_seated
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
@@ -151,7 +152,7 @@ def test_a_false_seat_is_measured_again_three_times() -> None:
     async def attempts() -> MatingResult:
         return await mate_until_seated(cell.robot, cell.guard, measured, lambda _: None)
 
-    with pytest.raises(FalseSeat, match="3 attempts") as caught:
+    with pytest.raises(DeckNotSeated, match="3 attempts") as caught:
         run_simulated(cell.start_s, cell.advance, attempts)
     assert asked == [1, 2, 3]
     assert caught.value.curve is not None

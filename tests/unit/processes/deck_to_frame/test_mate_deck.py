@@ -7,11 +7,11 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 import pytest
 
-from cellctl.errors.force import MatingOverforce
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.robot import HeadMoved
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.processes.deck_to_frame.faults import MatingOverforce
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.state import Corrected

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.force import LateralLoad, MatingOverforce, MatingPlanInvalid, SensorSilent
+from cellctl.errors.force import MatingPlanInvalid, SensorSilent
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.processes.deck_to_frame.faults import LateralLoad, MatingOverforce
 from cellctl.processes.deck_to_frame.mating.limits import (
     contact_limits,
     fault_of,

@@ -3,8 +3,8 @@
 import pytest
 
 from cellctl.errors.robot import TargetOutOfBounds
-from cellctl.errors.vision import PartMisplaced
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.processes.deck_to_frame.faults import PartMisplaced
 from cellctl.processes.deck_to_frame.poses.pose_limits import (
     is_near,
     require_clearance,

@@ -12,12 +12,10 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.contact_recorder import ContactRecorder
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
-    ContactEarly,
     FlangePoseStale,
     GuardDied,
     GuardRefused,
     LiftOffHeld,
-    MatingOverforce,
     NotSettled,
     SensorFrozen,
     SensorSilent,
@@ -29,6 +27,7 @@ from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import CusumTouch
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
+from cellctl.processes.deck_to_frame.faults import ContactEarly, MatingOverforce
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
 from cellctl.processes.deck_to_frame.mating.retreat import retreat

@@ -11,15 +11,15 @@ import pytest
 
 from cellctl.errors.force import ForceLimitExceeded, NotSettled
 from cellctl.errors.robot import TargetOutOfBounds
-from cellctl.errors.vision import (
+from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.processes.deck_to_frame.faults import (
     CorrectionDiverging,
     CorrectionImplausible,
     NoProgress,
     PartMisplaced,
     SeatedOffPosition,
 )
-from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
-from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.processes.deck_to_frame.state import AtStandOff, Seated
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck

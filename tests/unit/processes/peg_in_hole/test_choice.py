@@ -2,13 +2,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.errors.by_touch import HeightTooNoisy, SearchImpossible
 from cellctl.processes.peg_in_hole.choice import (
     SearchName,
     choose_search,
     estimate_searches,
     is_wide,
 )
+from cellctl.processes.peg_in_hole.faults import HeightTooNoisy, SearchImpossible
 from cellctl.processes.peg_in_hole.parameters import search_parameters, touch_speed_m_s
 from cellctl.processes.peg_in_hole.task import SearchTask
 from tests.unit.processes.peg_in_hole.tasks import pin, plug

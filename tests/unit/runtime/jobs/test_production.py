@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from cellctl.errors.calibration import CalibrationNotStored
-from cellctl.errors.force import ContactEarly, GuardDied
+from cellctl.errors.force import GuardDied
 from cellctl.errors.link import LinkLost
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.robot import StopFailed
@@ -15,6 +15,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame.faults import ContactEarly
 from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.figures import Limit
 from cellctl.records.parts import mate_serial

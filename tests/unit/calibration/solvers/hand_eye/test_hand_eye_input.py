@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
-from cellctl.errors.plugging import WristConfigurationsDiffer
+from cellctl.errors.calibration import WristConfigurationsDiffer
 
 POSE = [100, 200, 300, 10, 20, 30]
 FOLDED = [10, -40, 95, 5, 40, 20]

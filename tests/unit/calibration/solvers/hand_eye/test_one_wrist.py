@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
-from cellctl.errors.plugging import WristConfigurationsDiffer
+from cellctl.errors.calibration import WristConfigurationsDiffer
 
 ELBOW_UP = np.radians([0, -70, 110, 0, 50, 0])
 FLIPPED = np.radians([0, -70, 110, 180, -50, 180])

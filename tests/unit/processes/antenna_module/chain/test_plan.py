@@ -7,15 +7,7 @@ import numpy as np
 import pytest
 
 from cellctl.errors import CellError
-from cellctl.errors.calibration import CalibrationMissing
-from cellctl.errors.plugging import (
-    CalibrationsDoNotBelongTogether,
-    LooksIncomplete,
-    OutOfTaughtRange,
-    PlugUncertain,
-    StaleLook,
-    WristConfigurationsDiffer,
-)
+from cellctl.errors.calibration import CalibrationMissing, WristConfigurationsDiffer
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.chain.looks import Looks
@@ -27,6 +19,13 @@ from cellctl.processes.antenna_module.chain.termed_pose import Term
 from cellctl.processes.antenna_module.chain.worst_contact import (
     contact_offsets,
     predict_worst_contact,
+)
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    LooksIncomplete,
+    OutOfTaughtRange,
+    PlugUncertain,
+    StaleLook,
 )
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 

@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from cellctl.errors.plug_calibration import (
+from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.chain.reference_check import (
+    ReferenceReading,
+    require_reference,
+)
+from cellctl.processes.antenna_module.faults.calibration import (
     ArmMoved,
     FixedCameraMoved,
     FlangeCameraMoved,
     GripperMarksMoved,
     ReferenceMoved,
     ReferencePlateMoved,
-)
-from cellctl.geometry.pose import Array
-from cellctl.processes.antenna_module.chain.reference_check import (
-    ReferenceReading,
-    require_reference,
 )
 
 D, E = np.array([12e-6, -16e-6]), np.array([-20e-6, 5e-6])

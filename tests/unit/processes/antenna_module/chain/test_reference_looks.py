@@ -6,14 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cellctl.errors.plug_calibration import (
-    ArmMoved,
-    FixedCameraMoved,
-    FlangeCameraMoved,
-    GripperMarksMoved,
-    ReferenceMoved,
-    ReferencePlateMoved,
-)
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.reference_check import (
     ReferenceReading,
@@ -22,6 +14,14 @@ from cellctl.processes.antenna_module.chain.reference_check import (
 )
 from cellctl.processes.antenna_module.chain.reference_looks import turn_angles
 from cellctl.processes.antenna_module.chain.tool_turn import TurnStop, calibrate_tool_turn
+from cellctl.processes.antenna_module.faults.calibration import (
+    ArmMoved,
+    FixedCameraMoved,
+    FlangeCameraMoved,
+    GripperMarksMoved,
+    ReferenceMoved,
+    ReferencePlateMoved,
+)
 from tests.unit.processes.antenna_module.chain.reference_draws import (
     ARM,
     OFFSET_M,

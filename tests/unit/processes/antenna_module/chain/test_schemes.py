@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.plugging import LooksIncomplete, SocketImplausible
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import MountedCamera, PlugCell
@@ -15,6 +14,7 @@ from cellctl.processes.antenna_module.chain.looks import Looks
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
 from cellctl.processes.antenna_module.chain.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.termed_pose import Term, TermedPose
+from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete, SocketImplausible
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 
 NM, NRAD = 1e-9, 1e-9

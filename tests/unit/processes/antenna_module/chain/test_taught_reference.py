@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether
 from cellctl.processes.antenna_module.chain.taught_reference import (
     ReferenceMadeWith,
     TaughtReference,
 )
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from tests.unit.processes.antenna_module.chain.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import ARM, drawn_looks
 

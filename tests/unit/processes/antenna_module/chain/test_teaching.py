@@ -7,14 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.errors.calibration import CalibrationRecordInvalid
-from cellctl.errors.plug_calibration import TeachScatter, TooFewTeachings
-from cellctl.errors.plugging import CalibrationsDoNotBelongTogether, WristConfigurationsDiffer
+from cellctl.errors.calibration import CalibrationRecordInvalid, WristConfigurationsDiffer
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.calibrations import PLUG_CORRECTION
 from cellctl.processes.antenna_module.chain.schemes import DIFFERENCE
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
+from cellctl.processes.antenna_module.faults.calibration import TeachScatter, TooFewTeachings
+from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 
 SEATED = pose_from_xyzabc([0.03, -0.05, 0.2, 0.1, 0, 0])

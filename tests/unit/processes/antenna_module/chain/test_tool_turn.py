@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cellctl.errors.plug_calibration import TurnInvalid
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.tool_turn import TurnStop, calibrate_tool_turn
+from cellctl.processes.antenna_module.faults.calibration import TurnInvalid
 
 AXIS_M, OFFSET_M = np.array([3.1e-3, -1.7e-3]), np.array([0.4e-3, 0.9e-3])
 

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from cellctl.calibration.input_file import read_input
 from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
 from cellctl.errors import CellError
-from cellctl.errors.connector import PlaneFileInvalid
 from cellctl.processes.antenna_module.commands.trial_file import (
     TeachFile,
     TrialFile,
@@ -22,6 +21,7 @@ from cellctl.processes.antenna_module.commands.trial_file import (
     read_cell_file,
 )
 from cellctl.processes.antenna_module.commands.turn_file import TurnFile
+from cellctl.processes.antenna_module.faults.connector import PlaneFileInvalid
 from cellctl.processes.antenna_module.vision.plane import read_plane
 from tests.unit.processes.antenna_module.commands.test_plugging import teach_content
 

@@ -12,19 +12,23 @@ from typer.testing import CliRunner
 
 from cellctl.calibration.pose_record import pose_to_record
 from cellctl.errors import CellError
+from cellctl.errors.calibration import WristConfigurationsDiffer
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.plug_calibration import TeachScatter, TooFewTeachings, TurnInvalid
-from cellctl.errors.plugging import (
-    CalibrationsDoNotBelongTogether,
-    InsertionCurveInvalid,
-    OutOfTaughtRange,
-    StaleLook,
-    WristConfigurationsDiffer,
-)
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Look, Looks
 from cellctl.processes.antenna_module.commands import plugging as commands
+from cellctl.processes.antenna_module.faults.calibration import (
+    TeachScatter,
+    TooFewTeachings,
+    TurnInvalid,
+)
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    InsertionCurveInvalid,
+    OutOfTaughtRange,
+    StaleLook,
+)
 from cellctl.processes.antenna_module.vision.result_file import COVARIANCE_UNITS
 from tests.unit.processes.antenna_module.chain import exact_cell as exact
 from tests.unit.processes.antenna_module.insertion.curves import Shape, as_csv, curve

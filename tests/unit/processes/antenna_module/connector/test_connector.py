@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cellctl.errors.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.connector.connector import (
     Connector,
     parse_connector,
     read_connector,
 )
+from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 
 FOLDER = Path("config/connectors")
 SHIPPED = sorted(path for kind in ("pins", "holes") for path in FOLDER.glob(f"*-{kind}.toml"))

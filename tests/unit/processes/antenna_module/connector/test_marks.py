@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.errors.connector import MarksFileInvalid
 from cellctl.processes.antenna_module.connector.marks import parse_marks, read_marks
+from cellctl.processes.antenna_module.faults.connector import MarksFileInvalid
 
 PATH = Path("config/connectors/gripper.toml")
 TEXT = PATH.read_text()

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.errors.plugging import InsertionCurveInvalid
+from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import parse_curve
 from tests.unit.processes.antenna_module.insertion.curves import as_csv, curve
 

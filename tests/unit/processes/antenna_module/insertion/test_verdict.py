@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.plugging import (
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.faults.plugging import (
     PlugBentPin,
     PlugEarlyContact,
     PluggingError,
@@ -14,7 +15,6 @@ from cellctl.errors.plugging import (
     PlugShortSeat,
     PlugSideForce,
 )
-from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, InsertionPhase
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch, TripCause

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from cellctl.errors.force import LiftOffHeld
-from cellctl.errors.plugging import (
+from cellctl.errors.robot import ControllerFault
+from cellctl.processes.antenna_module.faults.plugging import (
     PlugBentPin,
     PlugEarlyContact,
     PluggingError,
@@ -12,7 +13,6 @@ from cellctl.errors.plugging import (
     PlugShortSeat,
     PlugSideForce,
 )
-from cellctl.errors.robot import ControllerFault
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 from cellctl.processes.antenna_module.pushing.back_out import back_out
 from cellctl.processes.antenna_module.pushing.push_in import push_in

@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.connector import ConnectorMisplaced, ContactBent
 from cellctl.errors.force import ForceLimitExceeded
-from cellctl.errors.plugging import GrippedOffTwice
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.antenna_module.faults.connector import ConnectorMisplaced, ContactBent
+from cellctl.processes.antenna_module.faults.plugging import GrippedOffTwice
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import ModuleFound, Picked

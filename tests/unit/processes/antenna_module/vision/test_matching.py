@@ -5,15 +5,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.connector import (
+from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.connector.marks import read_marks
+from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMisplaced,
     ConnectorTurned,
     ImageMirrored,
 )
-from cellctl.geometry.pose import Array
-from cellctl.processes.antenna_module.connector.connector import read_connector
-from cellctl.processes.antenna_module.connector.marks import read_marks
 from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
 from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
 from cellctl.processes.antenna_module.vision.pattern import Candidates

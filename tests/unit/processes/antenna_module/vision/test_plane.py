@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.connector import CameraFileInvalid, ForeignIntrinsics, PlaneFileInvalid
+from cellctl.errors.vision import CameraFileInvalid
+from cellctl.processes.antenna_module.faults.connector import ForeignIntrinsics, PlaneFileInvalid
 from cellctl.processes.antenna_module.vision.plane import MeasuringPlane, read_plane
 from cellctl.vision.camera.single_camera import (
     SingleCamera,

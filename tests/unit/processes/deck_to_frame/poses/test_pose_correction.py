@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
-from cellctl.errors.vision import (
+from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.faults import (
     CorrectionDiverging,
     CorrectionImplausible,
     CorrectionLimitReached,
     NoProgress,
     UncertaintyTooLarge,
 )
-from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
-from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.poses.pose_correction import (
     CorrectionLimits,
     Judgement,

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.by_touch.motions import Condition, ContactMotion, ContactSample, Ended
-from cellctl.errors.by_touch import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from tests.unit.processes.peg_in_hole.tasks import pin

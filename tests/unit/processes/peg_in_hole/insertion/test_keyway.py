@@ -8,8 +8,8 @@ import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.by_touch.motions import Condition, ContactMotion, Ended
-from cellctl.errors.by_touch import KeywayNotFound
 from cellctl.geometry.pose import Array
+from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
 from cellctl.processes.peg_in_hole.verdict.holding import directions_that_resist_a_turn

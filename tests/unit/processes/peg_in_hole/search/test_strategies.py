@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.errors.by_touch import HoleAbsent, SearchGaveUp
 from cellctl.processes.peg_in_hole.choice import SearchName, choose_search
+from cellctl.processes.peg_in_hole.faults import HoleAbsent, SearchGaveUp
 from cellctl.processes.peg_in_hole.parameters import search_parameters
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap

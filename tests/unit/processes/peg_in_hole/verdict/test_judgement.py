@@ -2,7 +2,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from cellctl.errors.by_touch import PegNotHeld, PegSlipped
+from cellctl.processes.peg_in_hole.faults import PegNotHeld, PegSlipped
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, SeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n

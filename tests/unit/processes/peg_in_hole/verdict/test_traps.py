@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.insertion.traps import PegState, run_trap
-from cellctl.errors.by_touch import (
+from cellctl.processes.peg_in_hole.faults import (
     FalseSeat,
     HoleTooWide,
     NotSeated,

@@ -1,8 +1,7 @@
 """46x–47x: electrical connectors and gripper marks, measured in one image and a known plane.
 
 ConnectorError
-├── ConnectorFileInvalid, MarksFileInvalid, PlaneFileInvalid,
-│   CameraFileInvalid                                           460–463  inputs
+├── ConnectorFileInvalid, MarksFileInvalid, PlaneFileInvalid    460–462  inputs
 ├── ForeignIntrinsics, PlaneScaleWrong                          464 465  the set of calibrations
 ├── ConnectorMissing, ConnectorAmbiguous, WrongConnector        466–468  which connector
 ├── ConnectorTurned, ImageMirrored                              469 470  which way round
@@ -48,15 +47,6 @@ class PlaneFileInvalid(ConnectorError):
     text = "Plane file cannot be used"
     cause = "The file is missing, not JSON, incomplete, or the plane is not before the camera."
     remedy = "Calibrate the plane with this camera again."
-
-
-class CameraFileInvalid(ConnectorError):
-    """The calibration of a single camera cannot be used."""
-
-    number = 463
-    text = "Camera file cannot be used"
-    cause = "The file is missing, not JSON, incomplete, or was changed after it was made."
-    remedy = "Calibrate the camera again, or restore the file as it was made."
 
 
 class ForeignIntrinsics(ConnectorError):

@@ -2,7 +2,7 @@
 
 PluggingError
 ├── StaleLook, PlugUncertain, OutOfTaughtRange, CalibrationsDoNotBelongTogether,
-│   WristConfigurationsDiffer, LooksIncomplete, SocketImplausible,
+│   LooksIncomplete, SocketImplausible,
 │   LooksDisagree, PlanFarFromDrawing                                    560–568  the plan
 ├── PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce,
 │   PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
@@ -60,15 +60,6 @@ class CalibrationsDoNotBelongTogether(PluggingError):
         "taught with another camera, gripper, connector or scheme."
     )
     remedy = "Calibrate hand-eye with the intrinsics in use, then teach the plug correction again."
-
-
-class WristConfigurationsDiffer(PluggingError):
-    """Poses were reached with the arm or the wrist folded in different ways."""
-
-    number = 564
-    text = "Robot poses of different wrist configurations are mixed"
-    cause = "A joint that says how the arm is folded has another sign in one of the poses."
-    remedy = "Reach all poses in one configuration; see the joint in the detail."
 
 
 class LooksIncomplete(PluggingError):
