@@ -173,11 +173,8 @@ class StateChannel:
             raise ProtocolViolation(f"{self.channel}: {type(record).__name__} on this channel")
 
     def _take_status(self, status: Status) -> None:
-        """A report that repeats its predecessor's count or clock is not news."""
-        last = self._status
-        # A job that hangs in a loop may send the same report for ever; it would look fresh by its
-        # time of arrival.
-        if last is not None and (status.count <= last.count or status.robot_ms == last.robot_ms):
+        """Not of a report that is no news."""
+        if self._status is not None and not status.follows(self._status):
             return
         self._status, self._time_s = status, now_s()
         # A slow interpreter reads one record in each of its rounds. Unasked heartbeats would

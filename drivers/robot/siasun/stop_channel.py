@@ -227,7 +227,7 @@ def _is_news(record: Record, last: Status | None) -> TypeGuard[Status]:
         return False
     if not isinstance(record, Status):
         raise ProtocolViolation(f"{type(record).__name__} on GRD")
-    return last is None or (record.count > last.count and record.robot_ms != last.robot_ms)
+    return last is None or record.follows(last)
 
 
 def flange_state(status: Status, time_s: float) -> FlangeState:

@@ -22,7 +22,7 @@ from drivers.robot.siasun.codec.words import words_of
 WORDS = CompactWords(1000.0)
 POSE = (1900.0, -0.125, 927.0, 90.0, 0.0, 180.0)
 WRITTEN = b"19000000,-1250,9270000,900000,0,1800000"
-HELLO = b"HELLO,SJL,2,CMD,SR500A,2.0,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"
+HELLO = b"HELLO,SJL,2,CMD,SR500A,2.1,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.5000,DEADMAN=300"
 
 
 def test_what_the_pc_says() -> None:

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 COMPACT_VERSION = "2"
 """Of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
+REPORT_COUNTS = 500_000_000
+"""After so many reports, and so many milliseconds, a job begins to count anew: their sum in a report
+has to fit into 32 bits. Days at the pace of a slow interpreter."""
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -106,6 +109,13 @@ class Status:
     override_percent: int
     flange_xyzabc: Six
     joints_deg: Six
+
+    def follows(self, last: "Status") -> bool:
+        """Whether it moves on from an earlier report of the same session: a later number, which may
+        have begun anew, and another time. A job that hangs in a loop sends the same one for ever,
+        and by its time of arrival that would look fresh."""
+        ahead = (self.count - last.count) % REPORT_COUNTS
+        return 0 < ahead < REPORT_COUNTS // 2 and self.robot_ms != last.robot_ms
 
 
 @dataclass(frozen=True, slots=True)
