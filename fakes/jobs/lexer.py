@@ -13,15 +13,16 @@ _TOKEN = re.compile(
   | (?P<scalar>PR?\[(?:\d+|I\[\d+\])\]\.(?:X|Y|Z|RX|RY|RZ|J[1-6])\b)
   | (?P<variable>[A-Z]+\[(?:\d+|I\[\d+\])\])
   | (?P<address>\d+\.\d+\.\d+\.\d+)
-  | (?P<number>\d+(?:\.\d+)?)
+  | (?P<number>\d+\.\d+|0|[1-9]\d*)
   | (?P<word>[A-Za-z_][A-Za-z0-9_]*)
   | (?P<sign>==|!=|>=|<=|[=+\-*/&|<>:])
     )""",
     re.VERBOSE,
 )
 _KINDS = {
-    **dict.fromkeys(("I",), "I"),
-    **dict.fromkeys(("H", "B", "R"), "V"),
+    "I": "I",
+    **dict.fromkeys(("H", "B"), "H"),
+    "R": "R",
     "S": "S",
     **dict.fromkeys(("P", "PR"), "P"),
     **dict.fromkeys(("DI", "DO", "GIB", "GIH", "GII", "GIF", "GOB", "GOH", "GOI", "GOF"), "D"),
@@ -34,8 +35,9 @@ class JobError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """``kind`` is one letter: I, V (other number), S, P, C (scalar of a position), D (digital),
-    T (text), N (number), A (address), W (word or sign)."""
+    """``kind`` is one letter: I, H (shorter whole number), R (float), S, P, C (coordinate of a
+    position), J (joint of a position), D (digital), T (text), N (number), A (address), W (word or
+    sign). The grammar allows coordinates where it does not allow joints."""
 
     kind: str
     text: str
@@ -64,7 +66,7 @@ def _token(match: re.Match[str]) -> Token:
     if kind == "text":
         return Token("T", text[1:-1])
     if kind == "scalar":
-        return Token("C", text)
+        return Token("J" if text.rpartition(".")[2].startswith("J") else "C", text)
     if kind == "variable":
         family = text.partition("[")[0]
         if family not in _KINDS:

@@ -5,9 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from fakes.jobs.lexer import JobError, Token
+from fakes.jobs.position import Position
 
-Position = dict[str, float]
-"""X, Y, Z in mm, RX, RY, RZ and J1 to J6 in degrees."""
 STRING_MAX = 128
 """Bytes of a string variable: an assumption, so that no job relies on more."""
 _WHOLE = {"I": 2**31, "H": 2**15, "B": 2**8}
@@ -20,7 +19,7 @@ class Memory:
     inputs: Callable[[str, int], int]
     numbers: dict[tuple[str, int], float] = field(default_factory=lambda: defaultdict(float))
     strings: dict[int, str] = field(default_factory=lambda: defaultdict(str))
-    positions: dict[int, Position] = field(default_factory=lambda: defaultdict(dict))
+    positions: dict[int, Position] = field(default_factory=lambda: defaultdict(Position))
     """PR, the global ones."""
     outputs: dict[tuple[str, int], int] = field(default_factory=lambda: defaultdict(int))
 
@@ -28,11 +27,9 @@ class Memory:
         """The value of a number, a variable, a scalar of a position or a digital signal."""
         if token.kind == "N":
             return float(token.text)
-        if token.kind == "C":
+        if token.kind in "CJ":
             position, name = self.scalar(token, local)
-            if name not in position:
-                raise JobError(f"{token.text} has never been set")
-            return position[name]
+            return position.read(name)
         family, index = self._place(token.text)
         if token.kind != "D":
             return self.numbers[family, index]
@@ -42,9 +39,9 @@ class Memory:
 
     def set_number(self, token: Token, value: float, local: dict[int, Position]) -> None:
         """Assign; whole variables take no fraction and must not overflow."""
-        if token.kind == "C":
+        if token.kind in "CJ":
             position, name = self.scalar(token, local)
-            position[name] = value
+            position.write(name, value)
             return
         family, index = self._place(token.text)
         if limit := _WHOLE.get(family):
@@ -73,7 +70,7 @@ class Memory:
     def position(self, token: Token, local: dict[int, Position]) -> Position:
         """A position variable, P of the job or PR of the controller."""
         family, index = self._place(token.text)
-        return (self.positions if family == "PR" else local).setdefault(index, {})
+        return (self.positions if family == "PR" else local).setdefault(index, Position())
 
     def scalar(self, token: Token, local: dict[int, Position]) -> tuple[Position, str]:
         """The position that a scalar belongs to, and its name there."""

@@ -6,15 +6,13 @@ import numpy as np
 
 from fakes.faults import FaultBoard
 from fakes.jobs.lexer import JobError
-from fakes.jobs.memory import Position
+from fakes.jobs.position import JOINTS, POSE, Position
 from fakes.wire.sjl.panel import Panel
 from fakes.world.frames import MM, from_written, matrix_to_written
 from fakes.world.robot import RefusedMotionError, RobotArm
 
 ACCELERATION_MAX_MM_S2 = 1000.0
 """What ``ACC = 100`` means on this controller."""
-_CARTESIAN = ("X", "Y", "Z", "RZ", "RY", "RX")
-_JOINTS = ("J1", "J2", "J3", "J4", "J5", "J6")
 _EMERGENCY_LATENCY_S = 0.02
 
 
@@ -27,12 +25,12 @@ class Motions:
         self._arm, self._clock, self._panel = arm, clock, panel
         self._begun, self._begun_s = False, 0.0
 
-    def here(self) -> Position:
-        """The encoders' pose and joints."""
+    def here(self) -> dict[str, float]:
+        """The encoders' pose and joints, as GETP reads them."""
         now_s = self._clock()
         pose = matrix_to_written(self._arm.encoder_matrix(now_s))
         joints = np.rad2deg(self._arm.joints(now_s)).tolist()
-        return dict(zip((*_CARTESIAN, *_JOINTS), (*pose, *joints), strict=True))
+        return dict(zip((*POSE, *JOINTS), (*pose, *joints), strict=True))
 
     def begin(self, word: str, target: Position, speed: float, acceleration: float) -> None:
         """Raises ``JobError`` where the controller would show an alarm."""
@@ -43,10 +41,10 @@ class Motions:
             raise JobError(f"alarm of the controller: {rejected.text('reason', 'LIMIT')}")
         try:
             if word == "MOVJ":
-                joints = np.deg2rad([target[name] for name in _JOINTS])
+                joints = np.deg2rad(target.target(JOINTS))
                 self._arm.start_joint(now_s, joints, speed)
             else:
-                pose = from_written([target[name] for name in _CARTESIAN])
+                pose = from_written(target.target(POSE))
                 path_mm_s2 = ACCELERATION_MAX_MM_S2 * acceleration / 100
                 self._arm.start_linear(now_s, pose, speed * MM, path_mm_s2 * MM)
         except RefusedMotionError as refused:

@@ -5,41 +5,48 @@ from pathlib import Path
 
 from fakes.jobs.lexer import JobError, Token, tokens
 
-NUMBER = "I|V|N|C"
-_MOTION = ("P 'V '= N|I|V 'ACC '= N 'FINE", "P 'V '= N|I|V 'ACC '= N 'FINE ': 'SKIP T")
+_VARIABLES = "IHR"
+_OPERANDS = "NIHRC"
+"""Of an expression: the grammar allows the coordinates of a position there and not its joints."""
+_VALUES = "NIHRCJ"
+"""Of SET, of a condition, and behind ABS and SQRT."""
+_MOTION = ("P 'V '= N|I|H|R 'ACC '= N 'FINE", "P 'V '= N|I|H|R 'ACC '= N 'FINE ': 'SKIP T")
 FORMS: dict[str, tuple[str, ...]] = {
-    "SET": ("P P", f"I|V|C {NUMBER}", "S S|T"),
+    "SET": ("P P", "I|H|R|C|J N|I|H|R|C|J", "S S|T"),
     "GETP": ("P",),
-    "SETFRAME": ("'TF N|I|V", "'UF N|I|V"),
+    "SETP": ("P 'FRAME 'TF N|I|H", "P 'FRAME 'UF N|I|H"),
+    "SETFRAME": ("'TF N|I|H", "'UF N|I|H"),
     "STRLEN": ("S I",),
     "STRFIND": ("S S I",),
     "STRFINDEND": ("S S I",),
     "STRSUB": ("S I I S",),
     "STRCMP": ("S S I",),
     "STR2I": ("S I",),
-    "STR2R": ("S V",),
+    "STR2R": ("S R",),
     "I2STR": ("I S",),
-    "IN": ("I|V '= D",),
-    "OUT": ("D N|I|V",),
-    "DELAY": ("'T '= N|I|V",),
-    "WAIT": ("D '= N|I|V 'T '= N|I|V",),
+    "IN": ("I|R '= D",),
+    "OUT": ("D N|I|H|R",),
+    "DELAY": ("'T '= N|I|H|R",),
+    "WAIT": ("D '= N|I|H 'T '= N|I|H",),
     "LABEL": ("T",),
     "GOTO": ("T",),
     "START_BG": ("W",),
     "STOP_BG": ("W",),
-    "UALM": ("'CODE '= N|I",),
+    "UALM": ("'CODE '= N|I|H",),
     "PAUSE": ("",),
-    "TIMER": ("'START 'INDEX '= N", "'STOP 'INDEX '= N I|V"),
+    "TIMER": ("'START 'INDEX '= N", "'STOP 'INDEX '= N I|R"),
     "SKIP": ("'CONDITION D '== N",),
     "MOVJ": _MOTION,
     "MOVL": _MOTION,
     "TCPCREATE": ("T 'SERVERIP '= A 'PORT '= N|I",),
     "TCPSEND": ("T S|N",),
-    "TCPRECV": ("T S N|I|V 'TIMEOUT '= N|I|V I",),
+    "TCPRECV": ("T S N|I|H 'TIMEOUT '= N|I|H I",),
     "TCPCLOSE": ("T",),
 }
 """Word by word, what may follow it: kinds of tokens, and words of the language after a quote."""
 _AFTER_IF = {"GOTO", "OUT", "DELAY", "WAIT"}
+_FUNCTIONS = {"ABS": _VARIABLES, "SQRT": "R"}
+"""By word, kinds of the variable that may take the result."""
 _RELATIONS = {"==", "!=", ">", ">=", "<", "<="}
 
 
@@ -178,21 +185,20 @@ def _fits(form: list[str], found: list[Token]) -> bool:
 
 
 def _assignment(found: list[Token]) -> tuple[Token, ...]:
-    """``I|V|C = value``, ``= ABS value``, ``= SQRT value``, a chain of values with one operator, or
-    a chain of strings with ``+``.
+    """``number = value``, ``= ABS value``, ``= SQRT value``, a chain of values with one operator,
+    or a chain of strings with ``+``.
 
     No public text says which operator binds stronger, so a chain of two kinds is refused.
     """
     if len(found) < 3 or found[1].text != "=":
         raise JobError(f"not a statement: {[token.text for token in found]}")
     target, values = found[0], found[2:]
-    allowed = {"S"} if target.kind == "S" else set(NUMBER.split("|"))
-    if target.kind not in "IVCS":
+    if target.kind not in (*_VARIABLES, "C", "S"):
         raise JobError(f"nothing can be assigned to {target.text}")
-    if target.kind != "S" and values[0].text in {"ABS", "SQRT"}:
-        if len(values) != 2:
-            raise JobError(f"{values[0].text} takes one value")
-        values = values[1:]
+    if values[0].text in _FUNCTIONS:
+        _check_function(target, values)
+        return tuple(found)
+    allowed = "S" if target.kind == "S" else _OPERANDS
     operators = {token.text for token in values[1::2]}
     correct = len(values) % 2 and all(token.kind in allowed for token in values[::2])
     if not correct or len(operators) > 1 or not operators <= set("+-*/&"):
@@ -202,12 +208,21 @@ def _assignment(found: list[Token]) -> tuple[Token, ...]:
     return tuple(found)
 
 
+def _check_function(target: Token, values: list[Token]) -> None:
+    word = values[0].text
+    if target.kind not in _FUNCTIONS[word]:
+        raise JobError(f"{word} has no result for {target.text}")
+    if len(values) != 2 or values[1].kind not in _VALUES:
+        raise JobError(f"{word} takes one value")
+
+
 def _condition(found: list[Token]) -> Condition:
     words = {token.text for token in found[3::4]}
     parts = [found[place : place + 3] for place in range(0, len(found), 4)]
     if len(words) > 1 or not words <= {"AND", "OR"} or any(len(part) != 3 for part in parts):
         raise JobError("not a condition")
     for left, relation, right in parts:
-        if left.kind not in "IVCND" or right.kind not in "IVCN" or relation.text not in _RELATIONS:
+        known = left.kind in (*_VALUES, "D") and right.kind in _VALUES
+        if not known or relation.text not in _RELATIONS:
             raise JobError(f"cannot compare {left.text} {relation.text} {right.text}")
     return Condition(words != {"OR"}, tuple((part[0], part[1].text, part[2]) for part in parts))

@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 from fakes.jobs import strings
 from fakes.jobs.lexer import JobError, Token
-from fakes.jobs.memory import Memory, Position
+from fakes.jobs.memory import Memory
 from fakes.jobs.motion import Motions
+from fakes.jobs.position import Position
 from fakes.jobs.program import Condition, Program, Statement
 from fakes.jobs.sockets import JobSocket, Route
 
@@ -108,7 +109,9 @@ class Task:
             case "SET":
                 self._set(found)
             case "GETP":
-                memory.position(found[0], self.local).update(self.shared.motions.here())
+                memory.position(found[0], self.local).get(self.shared.motions.here())
+            case "SETP":
+                memory.position(found[0], self.local).set_frame(int(self._value(found[3])))
             case "IN":
                 memory.set_number(found[0], self._value(found[2]), self.local)
             case "OUT":
@@ -188,7 +191,7 @@ class Task:
         if target.kind == "S":
             memory.set_string(target, memory.string(source))
         elif target.kind == "P":
-            memory.position(target, self.local).update(memory.position(source, self.local))
+            memory.position(target, self.local).copy(memory.position(source, self.local))
         else:
             memory.set_number(target, self._value(source), self.local)
 

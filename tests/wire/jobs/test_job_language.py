@@ -6,12 +6,19 @@ from pathlib import Path
 
 import pytest
 
+from fakes.faults import JOB_FAULTS, FaultBoard
 from fakes.jobs.lexer import JobError
 from fakes.jobs.memory import Memory
+from fakes.jobs.motion import Motions
 from fakes.jobs.program import load_program
 from fakes.jobs.strings import WORDS
 from fakes.jobs.task import Shared, Task
+from fakes.scenario import load
+from fakes.wire.sjl.panel import Panel
+from fakes.world.robot import RobotArm
+from fakes.world.truth import draw
 from tests.wire.jobs.job_rig import JOBS
+from tests.wire.siasun.sjl_rig import SCENARIO
 
 
 def job(folder: Path, *lines: str) -> Path:
@@ -20,11 +27,18 @@ def job(folder: Path, *lines: str) -> Path:
     return path
 
 
+def still_arm() -> Motions:
+    scenario = load(SCENARIO)
+    arm = RobotArm(scenario.robots["main"], draw(scenario, seed=1).robots["main"], seed=1)
+    board = FaultBoard("robot", JOB_FAULTS)
+    return Motions(arm, lambda: arm.standstill_s, lambda: Panel(board, arm.by_hand))
+
+
 def run(folder: Path, *lines: str) -> Memory:
     memory = Memory(lambda family, index: 1)
     shared = Shared(
         memory=memory,
-        motions=None,  # type: ignore[arg-type]
+        motions=still_arm(),
         clock=lambda: 0.0,
         timer=lambda: 0.0,
         route=lambda host, port: (host, port),
@@ -43,6 +57,16 @@ def run(folder: Path, *lines: str) -> Memory:
         "MOVE P[1]",
         "MOVL P[1] V = 5 ACC = R[1] FINE",
         "R[1] = R[2] + R[3] * 2",
+        "I[1] = P[1].J1 * 100000",
+        "R[1] = R[2] - PR[3].J6",
+        "P[1].J1 = R[1]",
+        "P[1].X = ABS R[1]",
+        "I[1] = SQRT R[1]",
+        "STR2R S[1] H[1]",
+        "IN H[1] = GIB[1]",
+        "SET R[1] 007",
+        "SETP P[1] FRAME XF 0",
+        "SETP P[1] FRAME UF R[1]",
         "S[1] = R[1]",
         "SET S[1] S[2] S[3]",
         "STRSUB S[1] 0 4 S[2]",
@@ -98,12 +122,38 @@ def test_numbers_strings_and_jumps(tmp_path: Path) -> None:
         ("SET R[1] 3000000000", "SET I[1] R[1]"),
         ("UALM CODE = 7",),
         ("R[1] = P[1].X + 1",),
+        ("P[1].X = 1900",),
+        ("SETP P[1] FRAME UF 0",),
+        ("GETP P[1]", "SETP P[1] FRAME UF 3"),
+        ("GETP P[1]", "SET P[1].J1 30", "P[1].X = 1900"),
+        ("GETP P[1]", "P[1].X = 1900", "SET R[1] P[1].J1"),
+        ("GETP P[1]", "P[1].X = 1900", "MOVJ P[1] V = 10 ACC = 100 FINE"),
+        ("GETP P[1]", "SET P[1].J1 30", "MOVL P[1] V = 10 ACC = 100 FINE"),
+        ("MOVJ PR[1] V = 10 ACC = 100 FINE",),
         (f'SET S[1] "{"A" * 100}"', "S[1] = S[1] + S[1]"),
     ],
 )
 def test_what_a_controller_would_stop_with_an_alarm(tmp_path: Path, lines: tuple[str, ...]) -> None:
     with pytest.raises(JobError, match=r"TRY, line \d"):
         run(tmp_path, *lines)
+
+
+def test_a_position_of_where_the_arm_is_has_pose_and_joints(tmp_path: Path) -> None:
+    memory = run(
+        tmp_path,
+        "GETP P[1]",
+        "SETP P[1] FRAME TF 0",
+        "R[1] = P[1].X - P[1].X",
+        "SET R[2] P[1].J2",
+        "R[2] = ABS P[1].J2",
+        "IF P[1].J2 == P[1].J2 : OUT DO[1] 1",
+        "SET PR[2] P[1]",
+        "SET PR[2].J1 30",
+        "SET R[3] PR[2].J1",
+        "R[4] = P[1].RZ - 0",
+    )
+    assert (memory.numbers["R", 1], memory.numbers["R", 3]) == (0.0, 30.0)
+    assert memory.outputs["DO", 1] == 1
 
 
 def test_the_two_background_jobs_differ_in_their_places_only() -> None:

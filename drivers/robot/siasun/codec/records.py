@@ -8,8 +8,8 @@ from dataclasses import dataclass
 COMPACT_VERSION = "2"
 """Of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
 REPORT_COUNTS = 500_000_000
-"""After so many reports, and so many milliseconds, a job begins to count anew: their sum in a report
-has to fit into 32 bits. Days at the pace of a slow interpreter."""
+"""After so many reports, and so many milliseconds, a job begins to count anew: their sum, which a
+report contains, has to fit into 32 bits."""
 Six = tuple[float, float, float, float, float, float]
 
 
