@@ -1,23 +1,19 @@
 """The ways to stop an arm, each with the driver, the fake controller and the wires it needs."""
 
 import asyncio
-import time
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from cellctl.interfaces.robot import Robot
 from cellctl.interfaces.stop_channel import StopChannel
-from drivers.io.modbus_coupler.config import ModbusCouplerConfig
-from drivers.io.modbus_coupler.driver import ModbusCouplerIo
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
-from fakes.wire.couplers.coupler import CouplerServer
 from fakes.world.robot import RobotArm
-from tests.wire.jobs.job_rig import JobRig, job_rig
-from tests.wire.proxy import ChaosProxy
+from tests.wire.jobs.job_rig import job_rig
+from tests.wire.jobs.permit_loop import PERMIT, permit_loop
 from tests.wire.siasun_rpc.duco_rig import duco_rig
 
 STATEMENT_S = 0.001
@@ -28,8 +24,6 @@ ROUND_MS = 150.0
 much again."""
 HOST_MS = 50.0
 """What a busy PC may need for one write and its wire."""
-PERMIT = 3
-"""Address of the output whose contact is in the permit loop."""
 SLOW: dict[str, Any] = {
     "stale_s": 10.0,
     "silence_s": 10.0,
@@ -85,14 +79,17 @@ async def _grd(*, silent: bool) -> AsyncIterator[Ready]:
 
 @asynccontextmanager
 async def _digital(*, silent: bool) -> AsyncIterator[Ready]:
-    async with job_rig(statement_s=STATEMENT_S, **SLOW) as rig, _contact(rig) as (io, wire):
+    async with (
+        job_rig(statement_s=STATEMENT_S, **SLOW) as rig,
+        permit_loop(rig, watchdog_ms=WATCHDOG_MS) as (io, wire),
+    ):
         await rig.connect()
 
         async def stop() -> None:
             if silent:
                 wire.forth.blocked = True
             else:
-                await io.write({"permit": False})
+                await io.write({PERMIT: False})
 
         yield Ready(rig.robot, rig.arm, rig.controller.moving, stop)
 
@@ -119,40 +116,6 @@ def _guards_stop(
             channel.request_stop()
 
     return stop
-
-
-@asynccontextmanager
-async def _contact(rig: JobRig) -> AsyncIterator[tuple[ModbusCouplerIo, ChaosProxy]]:
-    """The PC's output, closed, in the permit loop of the controller."""
-
-    def drive(_time_s: float, outputs: Any) -> None:
-        rig.controller.contact_closed = outputs[PERMIT]
-
-    coupler = CouplerServer(
-        time.monotonic,
-        inputs=lambda _: {0: True},
-        output_addresses=[PERMIT],
-        on_outputs=drive,
-        watchdog_ms=WATCHDOG_MS,
-    )
-    async with AsyncExitStack() as stack:
-        wire = await stack.enter_async_context(ChaosProxy(await coupler.start()))
-        stack.push_async_callback(coupler.stop)
-        watching = asyncio.create_task(_watchdog(coupler))
-        stack.callback(watching.cancel)
-        settings = ModbusCouplerConfig(
-            host="127.0.0.1", port=wire.port, inputs={"ready": 0}, outputs={"permit": PERMIT}
-        )
-        io = await stack.enter_async_context(ModbusCouplerIo("permit", settings))
-        await io.write({"permit": True})
-        yield io, wire
-
-
-async def _watchdog(coupler: CouplerServer) -> None:
-    """The coupler's own clock, which needs nobody to ask."""
-    while True:
-        coupler.expire()
-        await asyncio.sleep(0.002)
 
 
 @asynccontextmanager

@@ -1,18 +1,33 @@
 """A digital output of this PC in the permit loop of a robot: a stop that no program has to read.
 
-The contact is closed when the robot is re-armed and opened with every stop of the daemon. Its
+The contact is closed when the robot is re-armed. It is opened with every stop of the daemon, and
+when a motion ends with a fault of its link or an error of the controller: a program that would have
+stopped the arm may be what has ended. Its
 coupler opens it by its own watchdog when it no longer hears this PC, and any stop of the guard goes
 its own way beside it. It protects the process; it is no safety function.
 """
 
 import asyncio
-from collections.abc import Mapping
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+
+from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
-from cellctl.interfaces import DigitalIo, Robot, StreamingRobot
+from cellctl.errors.link import LinkError
+from cellctl.errors.robot import ControllerFault
+from cellctl.geometry.pose import Array
+from cellctl.interfaces import (
+    DigitalIo,
+    PoseStream,
+    Robot,
+    RobotState,
+    StreamingRobot,
+    StreamLimits,
+)
 
 _log = log.get(__name__)
 
@@ -23,6 +38,25 @@ class PermittedRobot(RobotLayer):
     def __init__(self, robot: Robot, io: DigitalIo, output: str) -> None:
         super().__init__(robot)
         self._io, self._output = io, output
+
+    async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
+        """As the robot behind it; opens the contact when nobody knows how the motion goes on."""
+        async with self._opened_on_doubt():
+            return await super().move_joint(joints_rad, speed_ratio=speed_ratio)
+
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        """The same."""
+        async with self._opened_on_doubt():
+            return await super().move_linear(
+                base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
+            )
+
+    async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
+        """The same."""
+        async with self._opened_on_doubt():
+            return await super().step(base_T_flange, speed_m_s=speed_m_s)
 
     async def stop(self) -> None:
         """The robot confirms the stop; a contact that cannot be opened is only logged, as its
@@ -39,6 +73,17 @@ class PermittedRobot(RobotLayer):
         await self._io.write({self._output: True})
         await super().rearm()
 
+    @asynccontextmanager
+    async def _opened_on_doubt(self) -> AsyncIterator[None]:
+        try:
+            yield
+        except (LinkError, ControllerFault):
+            # Before whoever commands the cell hears of it and stops everything: over the link a
+            # stop may reach nobody. No such fault is passed over, so the robot is re-armed before
+            # it moves again.
+            await asyncio.shield(asyncio.create_task(self._open()))
+            raise
+
     async def _open(self) -> None:
         try:
             await self._io.write({self._output: False})
@@ -52,6 +97,12 @@ class PermittedStreamingRobot(PermittedRobot, StreamingRobotLayer):
     def __init__(self, robot: StreamingRobot, io: DigitalIo, output: str) -> None:
         super().__init__(robot, io, output)
         self._streaming = robot
+
+    @asynccontextmanager
+    async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
+        """As the robot behind it; opens the contact as a move does."""
+        async with self._opened_on_doubt(), self._streaming.stream(limits) as stream:
+            yield stream
 
 
 def permitted(config: CellConfig, robot: Robot, ios: Mapping[str, DigitalIo]) -> Robot:

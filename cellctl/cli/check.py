@@ -8,7 +8,7 @@ import typer
 from rich.console import Console
 
 from cellctl.atomic_files import may_write
-from cellctl.config import CellConfig, load_cell, problems
+from cellctl.config import CellConfig, load_cell, problems_before_commissioning
 from cellctl.config.document.lines import FILL_IN, left_open
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
@@ -20,7 +20,7 @@ from cellctl.config.zone_checks import taught_in_zone
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
     """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
-    found = [*problems(cell_file), *_left_open(cell_file)]
+    found = [*problems_before_commissioning(cell_file), *_left_open(cell_file)]
     console = Console(soft_wrap=True, highlight=False)
     if found:
         errors = "1 error" if len(found) == 1 else f"{len(found)} errors"

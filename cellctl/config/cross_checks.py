@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import MixedSimulation
 from cellctl.spelling import nearest
@@ -59,6 +60,24 @@ def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
             # A robot has one channel for a guard, and a guard has one sensor (decision 0003).
             key = f"force_sensors.{name}.mounted_on"
             yield ConfigIssue(key, repr(sensor.mounted_on), "a robot carries one force sensor")
+
+
+def unpermitted(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
+    """Real robots that only programs of their controllers would stop without this PC.
+
+    ``bad`` holds the paths of devices whose settings are wrong themselves.
+    """
+    for name, robot in cell.robots.items():
+        if robot.simulated or robot.permit is not None or f"robots.{name}" in bad:
+            continue
+        driver, settings = robot_driver(robot)
+        if driver.needs_permit(settings):
+            allowed = (
+                "{ device, output }: a contact of this PC in the arm's permit loop, which stops it "
+                "when a program of its controller has ended; drivers/robot/siasun/job/README.md, "
+                "section 3"
+            )
+            yield ConfigIssue(f"robots.{name}.permit", "(missing)", allowed)
 
 
 def _permits(cell: CellConfig) -> Iterator[ConfigIssue]:

@@ -14,7 +14,7 @@ from cellctl.config.between.addresses import address_issues
 from cellctl.config.between.robots import robot_issues
 from cellctl.config.between.units import unit_issues
 from cellctl.config.cell import CellConfig
-from cellctl.config.cross_checks import cross_issues
+from cellctl.config.cross_checks import cross_issues, unpermitted
 from cellctl.config.document.findings import model_issues, shorten, validated
 from cellctl.config.document.lines import key_lines, line_of
 from cellctl.config.issue import ConfigIssue
@@ -40,6 +40,12 @@ def problems(path: Path) -> list[ConfigIssue]:
     return _examine(path)[0]
 
 
+def problems_before_commissioning(path: Path) -> list[ConfigIssue]:
+    """The same, and what a daemon takes that whoever commissions the cell must not leave so."""
+    # A cell that has worked for a year must still start after an update that asks for more.
+    return _examine(path, commissioning=True)[0]
+
+
 def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
     """A cell file that was understood before, as the record of a run keeps it.
 
@@ -51,10 +57,14 @@ def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
     return cell
 
 
-def _examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
+def _examine(
+    path: Path, *, commissioning: bool = False
+) -> tuple[list[ConfigIssue], CellConfig | None]:
     text, raw = _read_toml(path)
     lines = key_lines(text)
     found, cell = _issues(raw, path.parent)
+    if commissioning and cell is not None:
+        found += unpermitted(cell, _bad_devices(found))
     return [replace(issue, line=line_of(issue.key, lines)) for issue in found], cell
 
 

@@ -77,6 +77,13 @@ class Robot(Device):
         return False
 
     @classmethod
+    def needs_permit(cls, config: Any) -> bool:  # noqa: ARG003
+        """Whether only programs that somebody has loaded into the controller stop this arm when the
+        link is lost: a real cell then needs a contact of the PC in the arm's permit loop.
+        `cellctl check` asks."""
+        return False
+
+    @classmethod
     def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
         """Raise ``TargetOutOfBounds`` when, with these settings, the arm may not stand there.
 

@@ -61,6 +61,11 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._connected = False
 
     @classmethod
+    def needs_permit(cls, config: Any) -> bool:  # noqa: ARG003
+        """Always: dead man and stop are job programs, and an alarm of one ends it."""
+        return True
+
+    @classmethod
     def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
         """Limits of the joints, and with a dh table the box of the flange in joint moves."""
         Bounds(config.robot_name, config).joint_target(joints_rad)

@@ -1,16 +1,23 @@
 """The contact in the permit loop: open with every stop, closed before the release."""
 
 import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import cast
 
+import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.permitted_robot import PermittedRobot
+from cellctl.cell.permitted_robot import PermittedRobot, PermittedStreamingRobot
 from cellctl.config import CellConfig
 from cellctl.config.cross_checks import cross_issues
+from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost, ReplyTimeout
-from cellctl.errors.robot import StopFailed
+from cellctl.errors.robot import ControllerFault, StopFailed, TargetOutOfBounds
+from cellctl.interfaces import StreamingRobot, StreamLimits
 from tests.contracts.inprocess.digital_io import InProcessIo
 from tests.unit.cell.robots import StillRobot
 
@@ -73,6 +80,61 @@ async def test_whoever_gives_up_the_stop_leaves_it_open(
     await asyncio.sleep(0)
     stopping.cancel()
     await asyncio.gather(stopping, return_exceptions=True)
+    assert io.driven["main"] is False
+
+
+@pytest.mark.parametrize("fault", [LinkLost("main"), ReplyTimeout("main"), ControllerFault("17")])
+async def test_it_opens_when_a_motion_ends_in_doubt(
+    io: InProcessIo, robot: PermittedRobot, behind: StillRobot, fault: CellError
+) -> None:
+    up = RigidTransform.from_translation([1.5, 0.0, 1.6])
+    moves: tuple[Callable[[], Awaitable[object]], ...] = (
+        lambda: robot.move_joint(np.zeros(6), speed_ratio=0.1),
+        lambda: robot.move_linear(up, speed_m_s=0.01, acceleration_m_s2=0.1),
+        lambda: robot.step(up, speed_m_s=0.01),
+    )
+    for move in moves:
+        behind.faults.clear()
+        await robot.rearm()
+        await move()
+        assert io.driven["main"] is True
+        behind.faults["move"] = fault
+        with pytest.raises(type(fault)):
+            await move()
+        assert io.driven["main"] is False
+
+
+async def test_a_motion_that_is_refused_leaves_it_closed(
+    io: InProcessIo, robot: PermittedRobot, behind: StillRobot
+) -> None:
+    await robot.rearm()
+    behind.faults["move"] = TargetOutOfBounds("main")
+    with pytest.raises(TargetOutOfBounds):
+        await robot.step(RigidTransform.identity(), speed_m_s=0.01)
+    assert io.driven["main"] is True
+
+
+async def test_it_opens_when_a_stream_loses_its_link(
+    io: InProcessIo, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @asynccontextmanager
+    async def stream(_limits: StreamLimits) -> AsyncIterator[None]:
+        yield
+
+    behind = StillRobot("main")
+    monkeypatch.setattr(behind, "stream", stream, raising=False)
+    robot = PermittedStreamingRobot(cast(StreamingRobot, behind), io, "main")
+    await robot.rearm()
+    closed: list[object] = []
+
+    async def lose_it() -> None:
+        async with robot.stream(cast(StreamLimits, None)):
+            closed.append(io.driven["main"])
+            raise LinkLost("main")
+
+    with pytest.raises(LinkLost):
+        await lose_it()
+    assert closed == [True]
     assert io.driven["main"] is False
 
 
