@@ -141,3 +141,19 @@ class ZoneTaken(RobotError):
         "its panel. Where its place is not known, restore its link first."
     )
     reaction = Reaction.STOP
+
+
+class WayNotReached(RobotError):
+    """A straight move that the arm cannot follow was not sent."""
+
+    number = 318
+    text = "Arm cannot follow a straight move to its target"
+    cause = (
+        "The way leaves the arm's reach or the limits of its joints, or comes through a singular "
+        "pose: wrong calibration, recipe or measurement, or the arm is folded otherwise than it "
+        "was taught."
+    )
+    remedy = (
+        "See in the detail how far the arm would come. Check calibration and recipe; bring the "
+        "arm to a taught pose by its panel, and teach the pose before this move anew if it recurs."
+    )

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.pose import Array
-from cellctl.interfaces.arm_chain import ArmChain
 from cellctl.interfaces.device import Device
 
 ForwardKinematics = Callable[[Array], RigidTransform]
@@ -65,7 +65,8 @@ class Robot(Device):
     until ``rearm``. Nothing resumes by itself.
 
     Every method may raise ``LinkLost``, ``ReplyTimeout`` or ``ProtocolViolation``; moves also
-    ``MotionRejected``, ``MotionAborted``, ``RobotNotReady``, ``NotRearmed``, ``TargetOutOfBounds``.
+    ``MotionRejected``, ``MotionAborted``, ``RobotNotReady``, ``NotRearmed``, ``TargetOutOfBounds``,
+    ``WayNotReached``.
     """
 
     @classmethod
@@ -99,7 +100,7 @@ class Robot(Device):
     @classmethod
     def chain(cls, config: Any) -> ArmChain | None:  # noqa: ARG003
         """The links of the arm and the limits of its joints; None where these settings do not say
-        it. Asked by offline planning alone."""
+        it."""
         return None
 
     @abstractmethod

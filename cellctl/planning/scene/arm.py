@@ -10,9 +10,9 @@ from cellctl.config.devices import RobotConfig
 from cellctl.config.robot_drivers import robot_driver
 from cellctl.errors.planning import ArmNotDescribed
 from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot
-from cellctl.interfaces.arm_chain import ArmChain
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,18 +31,11 @@ class PlannedArm:
 
     def link_frames(self, joints_rad: Array) -> Array:
         """``cell_T_link`` of base and all six links, shape (7, 4, 4), at joints of shape (6,)."""
-        frames = np.empty((7, 4, 4))
-        frames[0] = self.cell_T_base.as_matrix()
-        for index, (matrix, row) in enumerate(zip(self._turns(joints_rad), frames, strict=False)):
-            frames[index + 1] = row @ matrix
-        return frames
+        return self.cell_T_base.as_matrix() @ self.chain.link_frames(joints_rad)
 
     def base_T_flange(self, joints_rad: Array) -> RigidTransform:
         """By the table, at joints of shape (6,)."""
-        pose = np.eye(4)
-        for matrix in self._turns(joints_rad):
-            pose = pose @ matrix
-        return RigidTransform.from_matrix(pose)
+        return self.chain.base_T_flange(joints_rad)
 
     def refusal(self, joints_rad: Array) -> str | None:
         """Why the robot's driver would not let it stand there; None when it would."""
@@ -69,18 +62,6 @@ class PlannedArm:
             beyond = np.hypot(d_m, a_m)[joint + 1 : link].sum()
             lever[joint] = a_m[joint] + beyond + radius_m
         return lever
-
-    def _turns(self, joints_rad: Array) -> Array:
-        """Each joint's Rz(theta) Tz(d) Tx(a) Rx(alpha), shape (6, 4, 4)."""
-        theta, d_m, a_m, alpha = self.chain.dh.T
-        angle = theta + joints_rad
-        c, s, ca, sa = np.cos(angle), np.sin(angle), np.cos(alpha), np.sin(alpha)
-        matrices = np.zeros((6, 4, 4))
-        matrices[:, 0] = np.column_stack([c, -s * ca, s * sa, a_m * c])
-        matrices[:, 1] = np.column_stack([s, c * ca, -c * sa, a_m * s])
-        matrices[:, 2, 1], matrices[:, 2, 2], matrices[:, 2, 3] = sa, ca, d_m
-        matrices[:, 3, 3] = 1.0
-        return matrices
 
 
 def planned_arm(

@@ -6,20 +6,26 @@ from dataclasses import fields
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.errors.robot import TargetOutOfBounds, WayNotReached
+from cellctl.geometry.arm.chain import ArmChain
+from cellctl.geometry.arm.linear_way import BrokenWay, WaySteps, linear_joint_way
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import StreamLimits, StreamOffer
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.config import MotionLimits
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.kinematics import arm_chain
 
 STEP_MAX_ANGLE_DEG = 0.5
 """The controller refuses a STEP that turns further (protocol, section 4)."""
 DH_FITS_MM = 5.0
 DH_FITS_DEG = 0.5
 """A table of the right arm fits its controller's pose much better, one of another does not."""
+LINEAR_STEPS = WaySteps(
+    way_m=0.05, turn_rad=math.radians(10.0), jump_rad=math.radians(45.0), at_most=8
+)
+"""The check runs on the event loop before every straight move: 8 points take 2 ms of it."""
 
 
 class Bounds:
@@ -28,7 +34,7 @@ class Bounds:
     def __init__(self, name: str, config: MotionLimits) -> None:
         self._name = name
         self._config = config
-        self._kinematics = Kinematics(config.dh) if config.dh is not None else None
+        self._chain = arm_chain(config)
 
     def joints(self, joints_rad: Array, speed_ratio: float) -> tuple[Array, int]:
         """Joint angles in degrees and speed in percent."""
@@ -41,30 +47,54 @@ class Bounds:
         # 28.
         return joints_deg, max(1, math.floor(speed_ratio * 100.0 + 1e-9))
 
-    @property
-    def knows_joint_ways(self) -> bool:
-        """True when the configuration says where the flange is at given joints."""
-        return self._kinematics is not None
-
     def joint_way(self, state: RobotState, joints_rad: Array) -> None:
         """Refuse a joint move on whose way the flange leaves the box for joint moves.
 
         All joints move together and straight in joint space. To be asked after ``table_fits``: a
         table that does not fit would check nothing.
         """
-        kinematics = self._kinematics
-        if kinematics is None:
+        if self._chain is None:
             return
         for joints in joint_path(state.joints_rad, joints_rad):
-            self._flange_in_box(kinematics, joints, "on the way to", joints_rad)
+            self._flange_in_box(self._chain, joints, "on the way to", joints_rad)
+
+    def linear_way(self, state: RobotState, base_T_flange: RigidTransform) -> None:
+        """Refuse a straight move, of any length, that the arm cannot follow: out of its reach,
+        beyond the limits of its joints, or through a singular pose.
+
+        To be asked after ``table_fits``. Raises ``WayNotReached``.
+        """
+        if self._chain is None:
+            return
+        way = linear_joint_way(self._chain, state.joints_rad, base_T_flange, LINEAR_STEPS)
+        broken = way if isinstance(way, BrokenWay) else self._beyond_limits(way)
+        if broken is not None:
+            target = np.round(pose_to_xyzabc(base_T_flange), 3).tolist()
+            raise WayNotReached(
+                f"{self._name}: to {target} mm/deg: {broken.why} {broken.share:.0%} of the way"
+            )
+
+    def _beyond_limits(self, way_rad: Array) -> BrokenWay | None:
+        """The first of these joints, shape (n, 6), that is out of limits; where the arm stands
+        already counts not, because a move may lead out of there."""
+        for number, joints_rad in enumerate(way_rad[1:], start=1):
+            joints_deg = np.degrees(joints_rad)
+            if self._beyond(joints_deg):
+                lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
+                why = (
+                    f"joints {np.round(joints_deg, 1).tolist()} deg, allowed {list(lower)} to "
+                    f"{list(upper)},"
+                )
+                return BrokenWay(number / (len(way_rad) - 1), why)
+        return None
 
     def table_fits(self, state: RobotState) -> None:
         """Refuse a robot that reports its flange elsewhere than the dh table puts it: a table of
         another arm, a pose that is read with other units or another order of angles, or one that
         counts in another tool or user frame, chosen at the pendant."""
-        if self._kinematics is None:
+        if self._chain is None:
             return
-        base_T_flange = self._kinematics.base_T_flange(state.joints_rad)
+        base_T_flange = self._chain.base_T_flange(state.joints_rad)
         distance_m, angle_rad = state.distance_to(base_T_flange)
         # Written so that a table that gives no number is refused.
         if not (distance_m / MM <= DH_FITS_MM and math.degrees(angle_rad) <= DH_FITS_DEG):
@@ -80,27 +110,29 @@ class Bounds:
         Without a dh table only the limits of the joints themselves are known.
         """
         self._joints_deg(joints_rad)
-        if self._kinematics is not None:
-            self._flange_in_box(self._kinematics, joints_rad, "at", joints_rad)
+        if self._chain is not None:
+            self._flange_in_box(self._chain, joints_rad, "at", joints_rad)
 
     def _joints_deg(self, joints_rad: Array) -> Array:
         joints_deg: Array = np.degrees(np.asarray(joints_rad, dtype=float))
-        lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
-        inside = joints_deg.shape == (6,) and bool(
-            np.all((joints_deg >= lower) & (joints_deg <= upper))
-        )
-        if not inside:
+        if self._beyond(joints_deg):
+            lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
             self._refuse(
                 f"joints {np.round(joints_deg, 3).tolist()} deg, allowed "
                 f"{list(lower)} to {list(upper)}"
             )
         return np.asarray(joints_deg)
 
+    def _beyond(self, joints_deg: Array) -> bool:
+        """Whether joints are not six, not numbers, or not within their limits."""
+        lower, upper = self._config.joints_min_deg, self._config.joints_max_deg
+        return joints_deg.shape != (6,) or not np.all((joints_deg >= lower) & (joints_deg <= upper))
+
     def _flange_in_box(
-        self, kinematics: Kinematics, joints_rad: Array, where: str, target_rad: Array
+        self, chain: ArmChain, joints_rad: Array, where: str, target_rad: Array
     ) -> None:
         lower, upper = self._config.joint_workspace_mm
-        place_mm = kinematics.base_T_flange(joints_rad).translation / MM
+        place_mm = chain.base_T_flange(joints_rad).translation / MM
         if not np.all((place_mm >= lower) & (place_mm <= upper)):
             self._refuse(
                 f"{where} joints {np.round(np.degrees(target_rad), 3).tolist()} deg the flange "

@@ -49,10 +49,11 @@ class MotionLimits(BaseModel):
     """Corners of the box, in the robot base, that the flange must stay in."""
     joints_min_deg: Joints
     joints_max_deg: Joints
-    """What a joint move may ask for; at most the robot's own range."""
+    """What a joint move may ask for, and with a dh table what a straight move may need on its way;
+    at most the robot's own range."""
     dh: tuple[Row, Row, Row, Row, Row, Row] | None = None
     """Standard Denavit-Hartenberg table, base to flange: offset of the angle (deg), d (mm), a (mm),
-    alpha (deg) of each joint. Without it the way of a joint move is not checked."""
+    alpha (deg) of each joint. Without it no way is checked."""
     joint_workspace_min_mm: Point | None = None
     """Corners of a wider box for the flange in joint moves; None: that of all other moves."""
     joint_workspace_max_mm: Point | None = None

@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from cellctl.interfaces.arm_chain import ArmChain
+from cellctl.geometry.arm.chain import ArmChain
 from cellctl.interfaces.robot import ForwardKinematics, Robot
-from drivers.robot.siasun.kinematics import Kinematics, arm_chain
+from drivers.robot.siasun.kinematics import arm_chain
 
 
 class DescribedArm(Robot):
@@ -18,7 +18,8 @@ class DescribedArm(Robot):
     @classmethod
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
         """By the dh table of the configuration."""
-        return None if config.dh is None else Kinematics(config.dh).base_T_flange
+        chain = arm_chain(config)
+        return None if chain is None else chain.base_T_flange
 
     @classmethod
     def chain(cls, config: Any) -> ArmChain | None:

@@ -28,7 +28,6 @@ from cellctl.interfaces.streaming_robot import (
     StreamOffer,
 )
 from drivers.robot.siasun import faults, protocol
-from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.command_channel import CommandChannel
 from drivers.robot.siasun.config import SiasunConfig
@@ -37,6 +36,7 @@ from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
 from drivers.robot.siasun.stream import SiasunStream
+from drivers.robot.siasun.targets import Target, Targets
 
 
 class SiasunRobot(DescribedArm, StreamingRobot):
@@ -52,7 +52,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self.name = name
         self._config = config
         self._bounds = Bounds(name, config)
-        self._arrival = Arrival(config)
+        self._targets = Targets(self._bounds, config)
         self._latch: CellError | None = None
         """Why moves are refused until ``rearm``."""
         self._command = CommandChannel(name, config, self._on_command_lost)
@@ -128,26 +128,24 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
-        if self._bounds.knows_joint_ways:
-            self._check_ready()
-            self._bounds.joint_way(self.state(self._config.stale_s), joints_rad)
         words = self._command.words
         return await self._move(
             lambda session, seq: words.move_joint(session, seq, joints_deg.tolist(), percent),
-            lambda state: self._arrival.off_joints(state, joints_rad),
+            self._targets.joints(joints_rad),
         )
 
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """MOVL: straight move of the flange, ends at standstill."""
+        """MOVL: straight move of the flange, ends at standstill. With a dh table, refused when the
+        arm cannot follow it."""
         xyzabc = self._bounds.pose(base_T_flange).tolist()
         speed = self._bounds.speed_mm_s(speed_m_s)
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
         words = self._command.words
         return await self._move(
             lambda session, seq: words.move_linear(session, seq, xyzabc, speed, acceleration),
-            lambda state: self._arrival.off_pose(state, base_T_flange),
+            self._targets.flange(base_T_flange),
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
@@ -158,7 +156,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
         return await self._move(
             lambda session, seq: self._command.words.step(session, seq, xyzabc, speed),
-            lambda state: self._arrival.off_pose(state, base_T_flange),
+            self._targets.flange(base_T_flange),
         )
 
     def stream_offer(self) -> StreamOffer:
@@ -232,11 +230,10 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._latch = None
         self._state.forget_pauses()
 
-    async def _move(
-        self, build: Callable[[int, int], bytes], off_target: Callable[[RobotState], str | None]
-    ) -> RobotState:
+    async def _move(self, build: Callable[[int, int], bytes], target: Target) -> RobotState:
         """Run one motion to standstill; leave it early only after stopping the robot."""
         self._check_ready()
+        target.check_way(self.state(self._config.stale_s))
         try:
             end_xyzabc = await self._command.run(build, self._config.move_timeout_s)
         # Nobody knows whether the arm still moves, and nobody waits for its end any more.
@@ -253,7 +250,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         end = replace(state, base_T_flange=pose_from_xyzabc(end_xyzabc))
         # A controller that says DONE elsewhere has another idea of the target, such as another
         # Euler order; the next move would be wrong as well.
-        if off := off_target(end):
+        if off := target.off(end):
             self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
             raise self._latch
         return end

@@ -2,7 +2,7 @@
 (docs/protocols/siasun-rpc.md)."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import replace
 from typing import Any
@@ -28,10 +28,10 @@ from cellctl.interfaces.streaming_robot import (
     StreamLimits,
     StreamOffer,
 )
-from drivers.robot.siasun.arrival import Arrival
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.described_arm import DescribedArm
+from drivers.robot.siasun.targets import Target, Targets
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
@@ -57,7 +57,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         self.name = name
         self._config = config
         self._bounds = Bounds(name, config)
-        self._arrival = Arrival(config)
+        self._targets = Targets(self._bounds, config)
         self._latch: CellError | None = None
         """Why moves are refused until ``rearm``."""
         self._motion: Motion | None = None
@@ -104,16 +104,14 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """movej. With a dh table, refused when the flange would leave its box on the way."""
         _, percent = self._bounds.joints(joints_rad, speed_ratio)
-        if self._bounds.knows_joint_ways:
-            self._check_ready()
-            self._bounds.joint_way(self.state(self._config.stale_s), joints_rad)
         call = calls.move_joint(self._config, np.asarray(joints_rad, dtype=float), percent)
-        return await self._move(call, lambda state: self._arrival.off_joints(state, joints_rad))
+        return await self._move(call, self._targets.joints(joints_rad))
 
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """movel: straight move of the flange, ends at standstill."""
+        """movel: straight move of the flange, ends at standstill. With a dh table, refused when the
+        arm cannot follow it."""
         self._bounds.pose(base_T_flange)
         speed_m_s = self._bounds.speed_mm_s(speed_m_s) * MM
         acceleration_m_s2 = self._bounds.acceleration_mm_s2(acceleration_m_s2) * MM
@@ -220,13 +218,12 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             speed_m_s=speed_m_s,
             acceleration_m_s2=acceleration_m_s2,
         )
-        return await self._move(call, lambda end: self._arrival.off_pose(end, base_T_flange))
+        return await self._move(call, self._targets.flange(base_T_flange))
 
-    async def _move(
-        self, call: Request, off_target: Callable[[RobotState], str | None]
-    ) -> RobotState:
+    async def _move(self, call: Request, target: Target) -> RobotState:
         """Run one motion to standstill; leave it early only after stopping the robot."""
         self._check_ready()
+        target.check_way(self.state(self._config.stale_s))
         with self._claim() as motion:
             try:
                 await motion.begin(call)
@@ -237,7 +234,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         end = self.state(self._config.stale_s)
         # A controller that says "finished" elsewhere has another idea of the target, such as
         # another Euler order; the next move would be wrong as well.
-        if off := off_target(end):
+        if off := target.off(end):
             self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
             raise self._latch
         return end

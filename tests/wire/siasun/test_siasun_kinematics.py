@@ -10,11 +10,12 @@ from cellctl.clock import now_s
 from cellctl.config import load_cell
 from cellctl.errors.link import VersionMismatch
 from cellctl.errors.robot import TargetOutOfBounds
+from cellctl.geometry.arm.chain import ArmChain
 from cellctl.interfaces import RobotMode, RobotState
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from drivers.robot.siasun.kinematics import Kinematics
+from drivers.robot.siasun.kinematics import arm_chain
 from fakes.scenario import load
 from fakes.world.arm import forward_matrix, nominal_links
 from tests.wire.siasun.sjl_rig import SCENARIO, sjl_rig
@@ -43,29 +44,30 @@ def standing_at(joints_rad: np.ndarray, base_T_flange: RigidTransform) -> RobotS
     )
 
 
+def chain_of(robot: str) -> ArmChain:
+    chain = arm_chain(config_of(robot))
+    assert chain is not None
+    return chain
+
+
 def at_home() -> RobotState:
-    dh = config_of("main").dh
-    assert dh is not None
-    return standing_at(HOME, Kinematics(dh).base_T_flange(HOME))
+    return standing_at(HOME, chain_of("main").base_T_flange(HOME))
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_the_table_of_the_cell_file_is_the_arm_of_the_scenario(robot: str) -> None:
-    dh = config_of(robot).dh
-    assert dh is not None
     links = nominal_links(load(SCENARIO).robots[robot].chain_mm)
     for joints_rad in np.random.default_rng(1).uniform(-2.0, 2.0, (20, 6)):
-        found = Kinematics(dh).base_T_flange(joints_rad).as_matrix()
+        found = chain_of(robot).base_T_flange(joints_rad).as_matrix()
         np.testing.assert_allclose(found, forward_matrix(links, joints_rad), atol=1e-9)
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_all_taught_poses_of_the_cell_file_can_be_reached(robot: str) -> None:
     config = config_of(robot)
-    assert config.dh is not None
     poses = [np.radians(pose) for pose in load_cell(CELL).robots[robot].poses_deg.values()]
     for start in poses:
-        state = standing_at(start, Kinematics(config.dh).base_T_flange(start))
+        state = standing_at(start, chain_of(robot).base_T_flange(start))
         for target in poses:
             Bounds(robot, config).joint_way(state, target)
 
@@ -96,9 +98,8 @@ def test_a_way_that_leaves_the_box_is_refused_though_both_ends_lie_inside() -> N
             "joint_workspace_max_mm": (x_mm * 0.9, 2000.0, z_mm + 10.0),
         }
     )
-    assert config.dh is not None
     start = HOME - np.radians([60.0, 0.0, 0.0, 0.0, 0.0, 0.0])
-    state = standing_at(start, Kinematics(config.dh).base_T_flange(start))
+    state = standing_at(start, chain_of("main").base_T_flange(start))
     with pytest.raises(TargetOutOfBounds, match="on the way"):
         Bounds("main", narrow).joint_way(state, turned)
     Bounds("main", narrow).joint_way(state, start)

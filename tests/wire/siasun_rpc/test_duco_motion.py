@@ -18,6 +18,7 @@ from cellctl.errors.robot import (
     StopFailed,
     StreamNotOffered,
     TargetOutOfBounds,
+    WayNotReached,
 )
 from cellctl.interfaces.robot import RobotMode
 from drivers.robot.siasun_rpc import faults
@@ -190,6 +191,17 @@ async def test_a_joint_move_whose_way_leaves_the_box_is_not_sent() -> None:
         with pytest.raises(TargetOutOfBounds, match="on the way"):
             await rig.robot.move_joint(target_rad, speed_ratio=0.1)
         assert rig.logic.motions == 0
+
+
+async def test_a_straight_move_that_the_arm_cannot_follow_is_not_sent() -> None:
+    async with duco_rig(dh=DH, joints_min_deg=(-360.0, -52.77, *(-360.0,) * 4)) as rig:
+        await rig.robot.connect()
+        with pytest.raises(WayNotReached, match="of the way"):
+            await move(rig, 50.0)
+        with pytest.raises(WayNotReached, match="of the way"):
+            await rig.robot.step(up(rig, 0.4), speed_m_s=0.01)
+        assert rig.logic.motions == 0
+        await move(rig, -3.0)
 
 
 async def test_a_frame_that_does_not_exist() -> None:
