@@ -46,6 +46,16 @@ def test_every_module_says_what_it_is(path: Path) -> None:
     assert not tree.body or ast.get_docstring(tree)
 
 
+def test_no_two_classes_have_one_name() -> None:
+    # Fakes are left out: they read the same manuals independently, and so use the same words.
+    places: dict[str, list[str]] = {}
+    for path in (path for path in SOURCES if path.relative_to(ROOT).parts[0] != "fakes"):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    assert {name: paths for name, paths in places.items() if len(paths) > 1} == {}
+
+
 def test_fault_numbers_are_unique_and_in_their_block() -> None:
     faults = shipped_faults()
     numbers = [fault.number for fault in faults]

@@ -15,12 +15,12 @@ from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.by_touch.motions import Condition, ContactMotion, Ended
 from cellctl.processes.peg_in_hole.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
-from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, SeatLimits, judge_peg
+from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
 
 Array = NDArray[np.float64]
 
-SEAT = SeatLimits(least_n=5.0, most_n=30.0)
+SEAT = PegSeatLimits(least_n=5.0, most_n=30.0)
 _WIDER_M = 0.15e-3
 _FAR_M = 10e-3
 _Z0_WRONG_M = 1e-3

@@ -13,7 +13,7 @@ from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.noted_robot import RobotNotes
 from cellctl.cell.permitted_robot import permitted
-from cellctl.cell.slowed_robot import Pace, slowed
+from cellctl.cell.slowed_robot import MaintenancePace, slowed
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
@@ -50,7 +50,7 @@ class Cell:
         ]
         # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
         noted = map(self.robot_notes.noted, built)
-        self.pace = Pace()
+        self.pace = MaintenancePace()
         moving = slowed(config, {robot.name: robot for robot in noted}, self.pace)
         self.robots = zoned_robots(config, moving)
         self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")

@@ -20,7 +20,7 @@ from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, St
 
 
 @dataclass(slots=True)
-class Pace:
+class MaintenancePace:
     """Asked before each move whether the unit is in Maintenance now."""
 
     in_maintenance: Callable[[], bool] = lambda: False
@@ -30,7 +30,7 @@ class SlowedRobot(RobotLayer):
     """Holds every move to the speeds of Maintenance while the unit is in it; raises what the robot
     behind it raises."""
 
-    def __init__(self, robot: Robot, speeds: MaintenanceSpeeds, pace: Pace) -> None:
+    def __init__(self, robot: Robot, speeds: MaintenanceSpeeds, pace: MaintenancePace) -> None:
         super().__init__(robot)
         self._speeds, self._pace = speeds, pace
 
@@ -61,7 +61,9 @@ class SlowedRobot(RobotLayer):
 class SlowedStreamingRobot(SlowedRobot, StreamingRobotLayer):
     """The same before a robot that follows a stream."""
 
-    def __init__(self, robot: StreamingRobot, speeds: MaintenanceSpeeds, pace: Pace) -> None:
+    def __init__(
+        self, robot: StreamingRobot, speeds: MaintenanceSpeeds, pace: MaintenancePace
+    ) -> None:
         super().__init__(robot, speeds, pace)
         self._streaming = robot
 
@@ -78,12 +80,14 @@ class SlowedStreamingRobot(SlowedRobot, StreamingRobotLayer):
         return super().stream(limits)
 
 
-def slowed(config: CellConfig, robots: Mapping[str, Robot], pace: Pace) -> Mapping[str, Robot]:
+def slowed(
+    config: CellConfig, robots: Mapping[str, Robot], pace: MaintenancePace
+) -> Mapping[str, Robot]:
     """All robots by name; those whose section states speeds of Maintenance are held to them."""
     return {name: _slowed(config, robot, pace) for name, robot in robots.items()}
 
 
-def _slowed(config: CellConfig, robot: Robot, pace: Pace) -> Robot:
+def _slowed(config: CellConfig, robot: Robot, pace: MaintenancePace) -> Robot:
     speeds = config.robots[robot.name].in_maintenance
     if speeds is None:
         return robot

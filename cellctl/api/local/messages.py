@@ -143,14 +143,14 @@ class Failed(Message):
     text: str
 
 
-class Status(Message):
+class StatusAnswer(Message):
     """Answer to a status request."""
 
     answer: Literal["status"] = "status"
     report: StatusReport
 
 
-Answer = Taken | Refused | Failed | Status
+Answer = Taken | Refused | Failed | StatusAnswer
 
 _REQUEST: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="request")])
 _ANSWER: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="answer")])

@@ -6,13 +6,13 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict
 
 
-class Part(BaseModel):
+class StrictModel(BaseModel):
     """Strict, as the messages are."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
-class FaultReport(Part):
+class FaultReport(StrictModel):
     """A fault, latched in the machine or still on the list of alarms."""
 
     number: int
@@ -22,7 +22,7 @@ class FaultReport(Part):
     remedy: str
 
 
-class CalibrationReport(Part):
+class CalibrationReport(StrictModel):
     """One calibration; without dates where none can be read."""
 
     kind: str
@@ -32,7 +32,7 @@ class CalibrationReport(Part):
     """Why production cannot use it; empty when it can."""
 
 
-class RunReport(Part):
+class RunReport(StrictModel):
     """The newest run of the store."""
 
     number: int
@@ -44,7 +44,7 @@ class RunReport(Part):
     """Empty while it is open."""
 
 
-class StatusReport(Part):
+class StatusReport(StrictModel):
     """A snapshot of the cell."""
 
     cell: str

@@ -16,7 +16,7 @@ from cellctl.api.local.messages import (
     Refused,
     Request,
     StartCommand,
-    Status,
+    StatusAnswer,
     StatusRequest,
     Taken,
 )
@@ -79,7 +79,7 @@ class Terminal:
         A command is being executed, or is refused, when this returns.
         """
         if isinstance(request, StatusRequest):
-            return Status(report=await self._reporter.report())
+            return StatusAnswer(report=await self._reporter.report())
         if isinstance(request, PageCommand):
             return await self._desk.handle(request, uid)
         assert not isinstance(request, FollowRequest), "the server sees to those who follow"

@@ -15,7 +15,7 @@ from cellctl.api.local.messages import (
     Failed,
     Refused,
     Request,
-    Status,
+    StatusAnswer,
     StatusRequest,
     parse_answer,
     to_line,
@@ -59,7 +59,7 @@ class DaemonClient:
     def status(self) -> StatusReport:
         """The cell at this moment; raises ``DaemonNotReached`` or ``MessageMalformed``."""
         answer = self._ask(StatusRequest())
-        if not isinstance(answer, Status):
+        if not isinstance(answer, StatusAnswer):
             raise MessageMalformed(f"no status: {answer}")
         return answer.report
 

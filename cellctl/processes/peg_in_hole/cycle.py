@@ -17,7 +17,7 @@ from cellctl.processes.peg_in_hole.verdict.holding import (
     directions_that_resist_a_turn,
     pull_that_holds_n,
 )
-from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, SeatLimits, judge_peg
+from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
 
 _PRESS_S = 0.1
@@ -29,7 +29,7 @@ class CyclePlan:
 
     task: SearchTask
     choice: SearchChoice
-    seat: SeatLimits
+    seat: PegSeatLimits
     face: FacePlan
     grip_force_n: float | None
     """None where nobody has measured it: the touch on the rear is needed then."""

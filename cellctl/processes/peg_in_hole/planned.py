@@ -15,7 +15,7 @@ from cellctl.processes.peg_in_hole.task import (
     KeyGeometry,
     SearchTask,
 )
-from cellctl.processes.peg_in_hole.verdict.judgement import SeatLimits
+from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 
 _MS = 1e-3
 
@@ -26,7 +26,7 @@ def cycle_plan(recipe: PegRecipe, settings: PegSettings) -> CyclePlan:
     return CyclePlan(
         task,
         choose_search(task, recipe.search),
-        SeatLimits(
+        PegSeatLimits(
             recipe.seat.least_n,
             recipe.seat.most_n,
             keyed=recipe.fit.keys is not None,

@@ -42,7 +42,7 @@ class Fit(Section):
     """Left out for a round part."""
 
 
-class Place(Section):
+class HolePlace(Section):
     """Where the hole is believed to be, and how far off it may be."""
 
     pose: WrittenPose
@@ -95,7 +95,7 @@ class PegRecipe(Recipe):
 
     process: Literal["peg-in-hole"]
     fit: Fit
-    base_T_hole: Place
+    base_T_hole: HolePlace
     flange_T_tip: WrittenPose
     """How the part is held: the middle of its foremost circle, z into the hole."""
     load: Load

@@ -27,7 +27,7 @@ class FaceTouched(AboveHole):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Inserted(FaceTouched):
+class PegInserted(FaceTouched):
     """The peg is in its hole, judged, and still held."""
 
     result: CycleResult

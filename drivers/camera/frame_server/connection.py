@@ -8,7 +8,7 @@ from cellctl.clock import now_s
 from cellctl.errors.link import ProtocolViolation
 from drivers.camera.frame_server import faults, protocol
 from drivers.camera.frame_server.config import FrameServerConfig
-from drivers.camera.frame_server.protocol import Command, Header, Status
+from drivers.camera.frame_server.protocol import Header, ServerCommand, ServerStatus
 from drivers.camera.link import RequestLink
 
 _log = logging.getLogger(__name__)
@@ -51,11 +51,11 @@ class FrameServerConnection:
     async def serial_number(self) -> str:
         """Serial number of the camera or head."""
         await self._ready()
-        _, payload = await self._exchange(Command.IDENTIFY)
+        _, payload = await self._exchange(ServerCommand.IDENTIFY)
         _, serial, _ = protocol.parse_identity(payload)
         return serial
 
-    async def expose(self, command: Command) -> Exposure:
+    async def expose(self, command: ServerCommand) -> Exposure:
         """Expose now. A frame number or time stamp that does not move on is a violation: the
         server would have sent an old image of a scene that has moved since."""
         await self._ready()
@@ -76,7 +76,7 @@ class FrameServerConnection:
             # A server that was started again counts its frames from the beginning.
             self._last = None
 
-    async def _exchange(self, command: Command) -> tuple[Header, bytes]:
+    async def _exchange(self, command: ServerCommand) -> tuple[Header, bytes]:
         """Send a request and return its checked reply; ``DeviceFault`` for a refusal."""
         # 32 bits on the wire; zero is left out, so that an empty header never fits.
         self._request_id = self._request_id % 0xFFFF_FFFF + 1
@@ -95,6 +95,6 @@ class FrameServerConnection:
             return header, payload
 
         header, payload = await self.link.exchange(talk, self._reply_timeout_s)
-        if header.status is not Status.OK:
+        if header.status is not ServerStatus.OK:
             raise faults.refused(self.link.peer, header.status)
         return header, payload

@@ -8,7 +8,7 @@ from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
 from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.connection import FrameServerConnection
-from drivers.camera.frame_server.protocol import Command
+from drivers.camera.frame_server.protocol import ServerCommand
 
 
 class FrameServerDevice(Device):
@@ -40,7 +40,7 @@ class FrameServerHead(FrameServerDevice, StereoCamera):
         """Expose both cameras now."""
         # One request for both: the server triggers them together, two requests would be two
         # moments.
-        exposure = await self._connection.expose(Command.GRAB_PAIR)
+        exposure = await self._connection.expose(ServerCommand.GRAB_PAIR)
         left, right = protocol.split_images(exposure.header, exposure.payload)
         header = exposure.header
         one = protocol.exposure_record(header)
@@ -52,7 +52,7 @@ class FrameServerCamera(FrameServerDevice, Camera):
 
     async def grab(self) -> CameraImage:
         """Expose now. The server of a stereo head refuses this with ``DeviceFault``."""
-        exposure = await self._connection.expose(Command.GRAB_IMAGE)
+        exposure = await self._connection.expose(ServerCommand.GRAB_IMAGE)
         pixels, pixel_format = protocol.to_pixels(exposure.header, exposure.payload)
         header = exposure.header
         record = protocol.exposure_record(header)

@@ -25,7 +25,7 @@ _HEADER = struct.Struct(">4sHHIIQIHHHHIII")
 HEADER_BYTES = _HEADER.size
 
 
-class Command(IntEnum):
+class ServerCommand(IntEnum):
     """What the client asks for."""
 
     IDENTIFY = 1
@@ -33,7 +33,7 @@ class Command(IntEnum):
     GRAB_IMAGE = 3
 
 
-class Status(IntEnum):
+class ServerStatus(IntEnum):
     """How the server answers."""
 
     OK = 0
@@ -62,11 +62,11 @@ _LAYOUTS = {
     3: _Layout(PixelFormat.RGB8, ">u1", 3),
 }
 """By the number on the wire."""
-_IMAGES = {Command.IDENTIFY: 0, Command.GRAB_PAIR: 2, Command.GRAB_IMAGE: 1}
+_IMAGES = {ServerCommand.IDENTIFY: 0, ServerCommand.GRAB_PAIR: 2, ServerCommand.GRAB_IMAGE: 1}
 _FORMATS = {
     # A stereo head measures holes in 8 bit grey; the interface of the head says so.
-    Command.GRAB_PAIR: (PixelFormat.MONO8,),
-    Command.GRAB_IMAGE: tuple(PixelFormat),
+    ServerCommand.GRAB_PAIR: (PixelFormat.MONO8,),
+    ServerCommand.GRAB_IMAGE: tuple(PixelFormat),
 }
 
 
@@ -74,7 +74,7 @@ _FORMATS = {
 class Header:
     """The fixed part of a reply."""
 
-    status: Status
+    status: ServerStatus
     request_id: int
     frame_id: int
     exposure_time_us: int
@@ -88,12 +88,12 @@ class Header:
     payload_crc: int
 
 
-def request(command: Command, request_id: int) -> bytes:
+def request(command: ServerCommand, request_id: int) -> bytes:
     """One request, 16 bytes."""
     return _REQUEST.pack(b"CFSQ", VERSION, command, request_id, 0)
 
 
-def parse_header(data: bytes, command: Command, request_id: int) -> Header:
+def parse_header(data: bytes, command: ServerCommand, request_id: int) -> Header:
     """The header of the reply to a request; ``ProtocolViolation`` when any field does not fit."""
     if len(data) != HEADER_BYTES:
         raise ProtocolViolation(f"header of {len(data)} bytes")
@@ -104,9 +104,9 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
         raise ProtocolViolation("header CRC does not match")
     if magic != b"CFSR" or version != VERSION:
         raise ProtocolViolation(f"magic {magic!r}, version {version}")
-    if status not in {known.value for known in Status}:
+    if status not in {known.value for known in ServerStatus}:
         raise ProtocolViolation(f"unknown status {status}")
-    header = Header(Status(status), *fields)
+    header = Header(ServerStatus(status), *fields)
     # The late reply to an earlier request would be an image from before the arm moved.
     if header.request_id != request_id:
         raise ProtocolViolation(f"reply to request {header.request_id} instead of {request_id}")
@@ -118,13 +118,13 @@ def parse_header(data: bytes, command: Command, request_id: int) -> Header:
     return header
 
 
-def _size_fits(header: Header, command: Command) -> bool:
+def _size_fits(header: Header, command: ServerCommand) -> bool:
     """Whether the announced images are what the command asks for and fill the payload exactly."""
-    if header.status is not Status.OK:
+    if header.status is not ServerStatus.OK:
         return header.payload_bytes == 0
     if header.images != _IMAGES[command]:
         return False
-    if command is Command.IDENTIFY:
+    if command is ServerCommand.IDENTIFY:
         return header.payload_bytes <= IDENTITY_BYTES
     layout = _LAYOUTS.get(header.format_code)
     if layout is None or layout.pixel_format not in _FORMATS[command]:

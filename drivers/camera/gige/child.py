@@ -15,14 +15,14 @@ from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.genicam_camera import GenicamCamera, seen_cameras
 from drivers.camera.gige.protocol import (
     Answer,
-    Failed,
+    CamerasSeen,
     Grabbed,
     GrabRequest,
     ListRequest,
     Opened,
     OpenRequest,
     Request,
-    Seen,
+    RequestFailed,
     SentImage,
     Trouble,
 )
@@ -66,14 +66,14 @@ class _Cameras:
         try:
             match request:
                 case ListRequest(acquisition):
-                    return Seen(seen_cameras(self._producers(acquisition))), []
+                    return CamerasSeen(seen_cameras(self._producers(acquisition))), []
                 case OpenRequest():
                     return self._opened(request), []
                 case GrabRequest():
                     return self._grabbed()
         except TroubleError as error:
             self._clean = False
-            return Failed(error.trouble, str(error)), []
+            return RequestFailed(error.trouble, str(error)), []
 
     def close(self) -> None:
         """Let everything go; a camera that is gone does not hinder the others."""

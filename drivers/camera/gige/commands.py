@@ -10,7 +10,7 @@ from rich.table import Table
 from cellctl.errors.link import ReplyTimeout
 from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.connection import LibraryProcess
-from drivers.camera.gige.protocol import ListRequest, Seen, SeenCamera
+from drivers.camera.gige.protocol import CamerasSeen, ListRequest, SeenCamera
 
 _PANEL = "Cell"
 _COLUMNS = ("serial_number", "user_name", "id", "vendor", "model", "state")
@@ -37,7 +37,7 @@ def devices(
         )
     finally:
         library.end()
-    if not isinstance(answer, Seen):
+    if not isinstance(answer, CamerasSeen):
         raise ReplyTimeout(f"{type(answer).__name__} for a list of cameras")
     if not answer.cameras:
         typer.echo("no camera is seen: look at its power, its cable and its subnet")

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from drivers.camera.gige import entry, faults
-from drivers.camera.gige.protocol import Answer, Failed, Grabbed, Request
+from drivers.camera.gige.protocol import Answer, Grabbed, Request, RequestFailed
 
 Block = NDArray[np.uint8]
 _END_S = 2.0
@@ -67,7 +67,7 @@ class LibraryProcess:
         except (EOFError, OSError) as error:
             self.end()
             raise LinkLost(f"{self._name}: the maker's library has crashed") from error
-        if isinstance(answer, Failed):
+        if isinstance(answer, RequestFailed):
             raise faults.of(self._name, answer)
         return answer, blocks
 

@@ -2,7 +2,7 @@
 
 from multiprocessing.connection import Connection
 
-from drivers.camera.gige.protocol import Failed, Trouble
+from drivers.camera.gige.protocol import RequestFailed, Trouble
 
 
 def serve(connection: Connection, parent: int) -> None:
@@ -14,7 +14,7 @@ def serve(connection: Connection, parent: int) -> None:
     except ImportError as error:
         connection.recv()
         connection.send(
-            Failed(
+            RequestFailed(
                 Trouble.PRODUCER, f"harvesters is not installed: {error}; pip install harvesters"
             )
         )

@@ -8,7 +8,7 @@ from cellctl.errors.camera import (
     ProducerUnusable,
 )
 from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout
-from drivers.camera.gige.protocol import Failed, Trouble
+from drivers.camera.gige.protocol import RequestFailed, Trouble
 
 _FAULTS: dict[Trouble, type[LinkError]] = {
     Trouble.ABSENT: CameraAbsent,
@@ -21,6 +21,6 @@ _FAULTS: dict[Trouble, type[LinkError]] = {
 }
 
 
-def of(name: str, failed: Failed) -> LinkError:
+def of(name: str, failed: RequestFailed) -> LinkError:
     """The fault of a request that was not carried out; ``name`` is that of the device."""
     return _FAULTS[failed.trouble](f"{name}: {failed.text}")

@@ -114,18 +114,18 @@ class Grabbed:
 
 
 @dataclass(frozen=True, slots=True)
-class Seen:
+class CamerasSeen:
     """The answer to ``ListRequest``."""
 
     cameras: tuple[SeenCamera, ...]
 
 
 @dataclass(frozen=True, slots=True)
-class Failed:
+class RequestFailed:
     """The request was not carried out."""
 
     trouble: Trouble
     text: str
 
 
-Answer = Opened | Grabbed | Seen | Failed
+Answer = Opened | Grabbed | CamerasSeen | RequestFailed

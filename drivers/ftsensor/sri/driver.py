@@ -7,7 +7,7 @@ from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.links import Link, link_for
 from drivers.ftsensor.sri.sampler import Sampler
-from drivers.ftsensor.sri.session import Session
+from drivers.ftsensor.sri.session import BoxSession
 
 _LONGEST_WAIT_S = 0.05
 """Time-outs of the start-up are looked at this often."""
@@ -22,7 +22,7 @@ class SriSensor(FtSensor):
         self._config = config
         self._link: Link = link_for(config)
         self._sampler = Sampler(config)
-        self._session: Session | None = None
+        self._session: BoxSession | None = None
         self._opened = False
         self._retry_s = 0.0
         self._firmware = ""
@@ -139,7 +139,7 @@ class SriSensor(FtSensor):
 
     def _begin(self) -> None:
         link = self._link
-        self._session = Session(
+        self._session = BoxSession(
             self._config, link.connection, link.decoder(), link.start_up(), now_s()
         )
 

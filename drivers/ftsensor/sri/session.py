@@ -7,7 +7,7 @@ from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.connection import Connection
 from drivers.ftsensor.sri.protocol import Frame, Reply
-from drivers.ftsensor.sri.startup import Exchange, Setup, StartUp
+from drivers.ftsensor.sri.startup import BoxSetup, Exchange, StartUp
 
 
 class Decoder(Protocol):
@@ -21,7 +21,7 @@ class Decoder(Protocol):
         ...
 
 
-class Session:
+class BoxSession:
     """Never waits: ``pump`` takes what is there and looks at the clock.
 
     ``pump`` raises ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``StaleData`` or
@@ -36,7 +36,7 @@ class Session:
         start_up: StartUp,
         now_s: float,
     ) -> None:
-        self.setup: Setup | None = None
+        self.setup: BoxSetup | None = None
         """Known once the start-up is through."""
         self.streaming = False
         """True from the first good frame on."""

@@ -38,7 +38,7 @@ class Exchange:
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class BoxSetup:
     """What the start-up has found out."""
 
     firmware: str
@@ -46,7 +46,7 @@ class Setup:
 
 
 _T = TypeVar("_T")
-StartUp = Generator[Exchange, Reply | None, Setup]
+StartUp = Generator[Exchange, Reply | None, BoxSetup]
 _Ask = Generator[Exchange, Reply | None, str | None]
 
 
@@ -74,7 +74,7 @@ class AtStartUp:
         convert = yield from self._conversion(matrix)
         # The start is not acknowledged: the first good frame is the answer.
         yield Exchange(command("GSD"), "", 0.0)
-        return Setup(firmware or "unknown firmware", convert)
+        return BoxSetup(firmware or "unknown firmware", convert)
 
     def _matrix(self) -> Generator[Exchange, Reply | None, values.Matrix]:
         text = yield from self._need("DCPM", "?")
@@ -159,7 +159,7 @@ class CanStartUp:
         """Stop what a previous session left running, then start."""
         yield Exchange(self.STOP, "", _DRAIN_S, _QUIET_S)
         yield Exchange(self.START, "", 0.0)
-        return Setup("firmware not readable over CAN", values.engineering)
+        return BoxSetup("firmware not readable over CAN", values.engineering)
 
 
 def _parsed(what: str, parse: Callable[[str], _T], text: str) -> _T:

@@ -18,7 +18,7 @@ SMOOTHED: Version = (3, 8, 4)
 
 
 @dataclass(frozen=True, slots=True)
-class Features:
+class ControllerFeatures:
     """Of one controller."""
 
     version: str
@@ -34,7 +34,7 @@ class Features:
         return StreamNotOffered(f"{robot}: {facts}")
 
 
-def features(version: str | None) -> Features:
+def features(version: str | None) -> ControllerFeatures:
     """Read a version text; None for a controller that does not know the call for it.
 
     A controller without a readable version moves, but does not stream: how streamed motion behaves
@@ -42,8 +42,8 @@ def features(version: str | None) -> Features:
     """
     found = re.search(r"(\d{1,3})\.(\d{1,3})(?:\.(\d{1,5}))?", version or "")
     if found is None:
-        return Features(version or "", streams=False)
+        return ControllerFeatures(version or "", streams=False)
     major, minor, patch = (int(part or 0) for part in found.groups())
     if (major, minor, patch) < OLDEST:
         raise VersionMismatch(f"controller software {version}, at least 3.2.0 is needed")
-    return Features(version or "", streams=(major, minor, patch) >= SMOOTHED)
+    return ControllerFeatures(version or "", streams=(major, minor, patch) >= SMOOTHED)

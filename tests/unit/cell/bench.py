@@ -13,7 +13,7 @@ from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.noted_robot import RobotNotes
-from cellctl.cell.slowed_robot import Pace
+from cellctl.cell.slowed_robot import MaintenancePace
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
@@ -136,7 +136,7 @@ class CellInMemory:
         self.main.watched_by = self.guard
         self.workers = InlineWorkers()
         self.robot_notes = RobotNotes()
-        self.pace = Pace()
+        self.pace = MaintenancePace()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}
         self.unstopped: dict[str, BaseException] = {}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.slowed_robot import Pace, SlowedRobot, SlowedStreamingRobot
+from cellctl.cell.slowed_robot import MaintenancePace, SlowedRobot, SlowedStreamingRobot
 from cellctl.config import load_cell
 from cellctl.config.between.robots import robot_issues
 from cellctl.config.devices import MaintenanceSpeeds
@@ -35,7 +35,7 @@ async def speeds_of_moves(robot: SlowedRobot, behind: StillRobot) -> list[float]
 
 
 async def test_moves_are_held_to_the_speeds_of_maintenance_and_of_no_other_mode() -> None:
-    behind, pace = StillRobot("main"), Pace()
+    behind, pace = StillRobot("main"), MaintenancePace()
     robot = SlowedRobot(behind, SLOW, pace)
     assert await speeds_of_moves(robot, behind) == [0.4, 0.05, 0.05, 0.008, 0.03]
     behind.moves.clear()
@@ -44,7 +44,7 @@ async def test_moves_are_held_to_the_speeds_of_maintenance_and_of_no_other_mode(
 
 
 async def test_a_stream_that_was_made_for_more_is_refused() -> None:
-    behind, pace = InProcessStreamingRobot("main"), Pace(lambda: True)
+    behind, pace = InProcessStreamingRobot("main"), MaintenancePace(lambda: True)
     await behind.connect()
     await behind.rearm()
     robot = SlowedStreamingRobot(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cellctl.api.local.messages import Answer, Refused, Request, Status, StatusRequest, Taken
+from cellctl.api.local.messages import Answer, Refused, Request, StatusAnswer, StatusRequest, Taken
 from cellctl.api.local.report import StatusReport
 from cellctl.api.local.server import LocalServer
 from cellctl.api.local.socket_file import SocketFile
@@ -64,7 +64,7 @@ class Agreeable:
 
     async def handle(self, request: Request, _uid: int) -> Answer:
         if isinstance(request, StatusRequest):
-            return Status(report=StatusReport(**self.shows))
+            return StatusAnswer(report=StatusReport(**self.shows))
         self.asked.append(request)
         if self.refusal is not None:
             return self.refusal

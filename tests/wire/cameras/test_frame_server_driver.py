@@ -20,7 +20,7 @@ from cellctl.errors.link import (
 from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
-from drivers.camera.frame_server.protocol import Command
+from drivers.camera.frame_server.protocol import ServerCommand
 from tests.ports import free_ports
 from tests.wire.scripted_server import Script, serving
 
@@ -191,11 +191,13 @@ async def test_bad_identity(payload: bytes) -> None:
 @given(st.binary(min_size=0, max_size=60))
 def test_noise_is_a_violation(data: bytes) -> None:
     with pytest.raises(ProtocolViolation):
-        protocol.parse_header(data, Command.GRAB_PAIR, 1)
+        protocol.parse_header(data, ServerCommand.GRAB_PAIR, 1)
 
 
 @given(st.binary(min_size=44, max_size=44))
 def test_noise_with_a_good_crc_is_a_violation(data: bytes) -> None:
     signed = b"CFSR\0\1" + data[6:]
     with pytest.raises(ProtocolViolation):
-        protocol.parse_header(signed + struct.pack(">I", zlib.crc32(signed)), Command.GRAB_PAIR, 1)
+        protocol.parse_header(
+            signed + struct.pack(">I", zlib.crc32(signed)), ServerCommand.GRAB_PAIR, 1
+        )

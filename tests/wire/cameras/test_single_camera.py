@@ -15,7 +15,7 @@ from cellctl.interfaces.camera import PixelFormat
 from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerCamera, FrameServerHead
-from drivers.camera.frame_server.protocol import Command
+from drivers.camera.frame_server.protocol import ServerCommand
 from fakes.wire.cameras.image_server import ImageServer, Picture
 from tests.wire.cameras import cfs_golden as golden
 from tests.wire.cameras.camera_bench import HEIGHT, WIDTH, PictureTaker
@@ -57,15 +57,15 @@ async def good(camera: FrameServerCamera) -> None:
 
 
 def test_golden_frames_in_the_codec() -> None:
-    assert protocol.request(Command.GRAB_IMAGE, 7) == golden.IMAGE_REQUEST
-    assert protocol.request(Command.GRAB_PAIR, 8) == golden.PAIR_REQUEST
-    header = protocol.parse_header(golden.IMAGE_HEADER, Command.GRAB_IMAGE, 7)
+    assert protocol.request(ServerCommand.GRAB_IMAGE, 7) == golden.IMAGE_REQUEST
+    assert protocol.request(ServerCommand.GRAB_PAIR, 8) == golden.PAIR_REQUEST
+    header = protocol.parse_header(golden.IMAGE_HEADER, ServerCommand.GRAB_IMAGE, 7)
     protocol.check_payload(header, golden.IMAGE_PAYLOAD)
     assert (header.frame_id, header.exposure_time_us, header.exposure_us) == (5, 1_000_000, 8000)
     pixels, pixel_format = protocol.to_pixels(header, golden.IMAGE_PAYLOAD)
     assert pixel_format is PixelFormat.RGB8
     assert pixels.tolist() == [[[255, 128, 0], [0, 0, 255]]]
-    header = protocol.parse_header(golden.PAIR_HEADER, Command.GRAB_PAIR, 8)
+    header = protocol.parse_header(golden.PAIR_HEADER, ServerCommand.GRAB_PAIR, 8)
     protocol.check_payload(header, golden.PAIR_PAYLOAD)
     left, right = protocol.split_images(header, golden.PAIR_PAYLOAD)
     assert (left.tolist(), right.tolist()) == ([[16, 32]], [[48, 64]])
@@ -93,12 +93,12 @@ def test_samples_of_16_bit_come_in_network_order() -> None:
     fields = struct.pack(">4sHHIIQIHHHHII", b"CFSR", 1, 0, 1, 1, 1, 1, 2, 1, 1, 2, 4,
                          zlib.crc32(payload))  # fmt: skip
     data = fields + struct.pack(">I", zlib.crc32(fields))
-    header = protocol.parse_header(data, Command.GRAB_IMAGE, 1)
+    header = protocol.parse_header(data, ServerCommand.GRAB_IMAGE, 1)
     pixels, _ = protocol.to_pixels(header, payload)
     assert pixels.dtype == np.uint16
     assert pixels.tolist() == [[0x0102, 0xFFEE]]
     with pytest.raises(ProtocolViolation):  # a pair has two images, and 8 bit
-        protocol.parse_header(data, Command.GRAB_PAIR, 1)
+        protocol.parse_header(data, ServerCommand.GRAB_PAIR, 1)
 
 
 async def test_a_head_is_no_camera_and_a_camera_is_no_head(rig: CameraRig) -> None:

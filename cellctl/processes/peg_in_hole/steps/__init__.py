@@ -1,6 +1,6 @@
 """The steps of one insertion in their order, with the numbers that the line and the record see."""
 
-from cellctl.processes.peg_in_hole.state import AtHome, Inserted
+from cellctl.processes.peg_in_hole.state import AtHome, PegInserted
 from cellctl.processes.peg_in_hole.steps.approach import approach
 from cellctl.processes.peg_in_hole.steps.insert_peg import find_and_insert
 from cellctl.processes.peg_in_hole.steps.touch_face import find_face
@@ -13,4 +13,4 @@ INSERT = StepSpec(
     30, "search and insert", find_and_insert, contact=True, restart=Restart.NO_WAY_BACK
 )
 
-INSERTION: Steps[AtHome, Inserted] = Steps.first(APPROACH).then(TOUCH_FACE).then(INSERT)
+INSERTION: Steps[AtHome, PegInserted] = Steps.first(APPROACH).then(TOUCH_FACE).then(INSERT)

@@ -7,7 +7,7 @@ from cellctl.processes.peg_in_hole.cycle import search_and_insert
 from cellctl.processes.peg_in_hole.face import TouchedFace
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.cycle import record_cycle
-from cellctl.processes.peg_in_hole.state import FaceTouched, Inserted
+from cellctl.processes.peg_in_hole.state import FaceTouched, PegInserted
 from cellctl.processes.peg_in_hole.steps.contact import contact
 from cellctl.processes.peg_in_hole.steps.touch_face import CLEAR_M
 
@@ -17,7 +17,7 @@ _ON_FACE = TouchedFace(0.0, np.zeros(2), 0.0, 0.0)
 """Frame A lies on the face."""
 
 
-async def find_and_insert(touched: FaceTouched) -> Inserted:
+async def find_and_insert(touched: FaceTouched) -> PegInserted:
     """Raises the faults of search, insertion and verdict; the peg stays where it is then."""
     run, plan = touched.run, touched.run.facts.plan
     await run.recorder.document(keys.CHOICE, plan.choice.to_record())
@@ -35,4 +35,4 @@ async def find_and_insert(touched: FaceTouched) -> Inserted:
     fault = result.judgement.fault
     if fault is not None:
         raise fault
-    return Inserted(run, touched.frames, result)
+    return PegInserted(run, touched.frames, result)

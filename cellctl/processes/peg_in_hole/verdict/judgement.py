@@ -49,7 +49,7 @@ _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class SeatLimits:
+class PegSeatLimits:
     """What a good part feels like at its seat, from its recipe."""
 
     least_n: float
@@ -90,7 +90,7 @@ class PegJudgement:
         }
 
 
-def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: SeatLimits) -> PegJudgement:
+def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLimits) -> PegJudgement:
     """All items of section 5.4."""
     return PegJudgement(
         (
@@ -102,7 +102,7 @@ def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: SeatLimits) -
     )
 
 
-def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: SeatLimits) -> Checks:
+def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLimits) -> Checks:
     depth_m = _known(evidence.depth_m)
     force_n, slope = _known(evidence.seat_force_n), _known(evidence.seat_slope_n_m)
     least_slope = _LEAST_SLOPE * task.cell.stiffness_n_m
@@ -135,7 +135,7 @@ def _slip_check(evidence: InsertionEvidence) -> LimitCheck:
     return LimitCheck(RETOUCH, abs(_known(evidence.retouch_error_m)) / _MM, _RETOUCH_MM, "mm")
 
 
-def _holding_checks(evidence: InsertionEvidence, seat: SeatLimits) -> Checks:
+def _holding_checks(evidence: InsertionEvidence, seat: PegSeatLimits) -> Checks:
     checks: list[LimitCheck] = []
     if seat.keyed:
         checks.append(LimitCheck(KEYED, _known(evidence.keyed_directions), 2, "", "min"))

@@ -12,7 +12,7 @@ from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.background import BackgroundTasks
 from drivers.robot.siasun_rpc.connections.frame_stream import FrameStream
-from drivers.robot.siasun_rpc.features import Features, features
+from drivers.robot.siasun_rpc.features import ControllerFeatures, features
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import StateWatch
 
@@ -41,7 +41,7 @@ class RpcLink:
         self.up = False
         self._wanted = False
         """Between ``open`` and ``close``."""
-        self.features = Features("", streams=False)
+        self.features = ControllerFeatures("", streams=False)
         self._new_session()
         self.watch = StateWatch(robot, config, self._asking, self._frames)
         self._jobs = BackgroundTasks()
@@ -187,7 +187,7 @@ class RpcLink:
         finally:
             first.cancel()
 
-    async def _ask_version(self) -> Features:
+    async def _ask_version(self) -> ControllerFeatures:
         try:
             (version,) = await self.control.exchange(
                 VERSION, timeout_s=self._config.reply_timeout_s

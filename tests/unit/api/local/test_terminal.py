@@ -15,7 +15,7 @@ from cellctl.api.local.messages import (
     Refused,
     Request,
     StartCommand,
-    Status,
+    StatusAnswer,
     StatusRequest,
     Taken,
     parse_answer,
@@ -58,7 +58,7 @@ class Operator:
 
     async def status(self) -> StatusReport:
         answer = await self._terminal.handle(StatusRequest(), UID)
-        assert isinstance(answer, Status)
+        assert isinstance(answer, StatusAnswer)
         assert parse_answer(to_line(answer)) == answer, "survives the wire"
         return answer.report
 

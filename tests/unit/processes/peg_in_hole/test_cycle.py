@@ -10,7 +10,7 @@ from cellctl.processes.peg_in_hole.cycle import CyclePlan, run_cycle
 from cellctl.processes.peg_in_hole.face import FacePlan
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegSlipped, SearchGaveUp
 from cellctl.processes.peg_in_hole.task import SearchTask
-from cellctl.processes.peg_in_hole.verdict.judgement import SeatLimits
+from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
@@ -18,7 +18,7 @@ SOFT_PIN = pin(stiffness_n_m=1e5)
 
 
 def planned(task: SearchTask, grip_force_n: float | None) -> CyclePlan:
-    seat = SeatLimits(5.0, task.limits.insertion_n + 5)
+    seat = PegSeatLimits(5.0, task.limits.insertion_n + 5)
     radius_m = 15e-3 if task.fit.rim_m else 8e-3
     return CyclePlan(task, choose_search(task), seat, FacePlan(radius_m, 3e-3), grip_force_n)
 

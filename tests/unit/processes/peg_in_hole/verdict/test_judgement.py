@@ -4,11 +4,11 @@ import pytest
 
 from cellctl.processes.peg_in_hole.faults import PegNotHeld, PegSlipped
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
-from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, SeatLimits, judge_peg
+from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 from tests.unit.processes.peg_in_hole.tasks import pin
 
-SEAT = SeatLimits(5.0, 30.0, keyed=True, pull_n=5.0)
+SEAT = PegSeatLimits(5.0, 30.0, keyed=True, pull_n=5.0)
 GOOD = InsertionEvidence(
     depth_m=12.1e-3,
     seat_force_n=10.0,
@@ -51,7 +51,7 @@ def test_a_great_force_asks_for_the_touch_on_the_rear() -> None:
 
 def test_a_part_without_keys_needs_no_turn() -> None:
     bare = replace(GOOD, keyed_directions=None, held_pull_n=None)
-    assert judge_peg(bare, pin(), SeatLimits(5.0, 30.0)).inserted
+    assert judge_peg(bare, pin(), PegSeatLimits(5.0, 30.0)).inserted
     assert isinstance(judge_peg(bare, pin(), SEAT).fault, PegNotHeld)
 
 
