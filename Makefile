@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -90,6 +90,11 @@ bench-guard: venv
 
 bench-console: venv
 	$(BIN)/python -m benchmarks.console
+
+# Wants root, who may mount an image. N power cuts for each kind of write: about a second each.
+bench-power-cut: N = 100
+bench-power-cut: venv
+	$(BIN)/python -m benchmarks.power_cut -n $(N)
 
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc

@@ -10,7 +10,7 @@ def write_durably(path: Path, data: bytes) -> None:
 
     Returns when the disk has the bytes and the name. Raises ``OSError``.
     """
-    made = make_folder(path.parent)
+    make_folder_durably(path.parent)
     # In the same folder: a rename is atomic only within one file system.
     draft = path.with_name(f"{path.name}.part")
     with draft.open("wb") as file:
@@ -21,8 +21,6 @@ def write_durably(path: Path, data: bytes) -> None:
         os.fsync(file.fileno())
     draft.replace(path)
     sync_folder(path.parent)
-    if made:
-        sync_folder(path.parent.parent)
 
 
 def remove_durably(path: Path) -> None:
@@ -33,16 +31,19 @@ def remove_durably(path: Path) -> None:
         sync_folder(path.parent)
 
 
-def make_folder(folder: Path) -> bool:
-    """Make a folder with those above it; True when it was not there. Raises ``OSError``."""
-    missing = not folder.exists()
+def make_folder_durably(folder: Path) -> None:
+    """Make a folder with those above it, all of them on the disk; raises ``OSError``."""
+    missing = [path for path in (folder, *folder.parents) if not path.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    return missing
+    # A folder is an entry of the one above it: a file in a folder whose own name is not on the disk
+    # is lost with it.
+    for path in missing:
+        sync_folder(path.parent)
 
 
 def require_writable(folder: Path) -> None:
     """Raise ``OSError`` when no file can be made in a folder, which is made if need be."""
-    make_folder(folder)
+    make_folder_durably(folder)
     with tempfile.TemporaryFile(dir=folder):
         pass  # permissions alone say nothing of a file system that is mounted read-only
 

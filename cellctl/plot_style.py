@@ -42,6 +42,8 @@ _SETTINGS: dict[Any, Any] = {
     "grid.color": GRID,
     "grid.linewidth": 0.6,
     "text.color": INK,
+    # Names of holes, views and devices are anybody's text: a pair of `$` in one is no formula.
+    "text.parse_math": False,
     "xtick.color": MUTED,
     "ytick.color": MUTED,
     "legend.frameon": False,

@@ -10,7 +10,7 @@ import cv2
 import typer
 from rich.progress import Progress
 
-from cellctl.atomic_files import make_folder
+from cellctl.atomic_files import make_folder_durably
 from cellctl.calibration.output_file import write_file
 from cellctl.cli.cameras.opening import (
     CameraName,
@@ -95,7 +95,7 @@ def _png(view: View) -> bytes:
 def _first_free(folder: Path, name: str) -> int:
     """The number after those of an earlier call; raises ``FileInvalid`` for no usable folder."""
     try:
-        make_folder(folder)
+        make_folder_durably(folder)
         stems = [path.stem.removeprefix(f"{name}-")[:6] for path in folder.glob(f"{name}-*")]
     except OSError as error:
         raise FileInvalid(f"cannot write {folder}: {error.strerror or error}") from error

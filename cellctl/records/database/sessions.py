@@ -15,6 +15,7 @@ from sqlalchemy import Engine, create_engine, event
 from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
+from cellctl.atomic_files import make_folder_durably
 from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreUnavailable
 from cellctl.records.database import migration
 from cellctl.records.database.schema import SCHEMA_VERSION
@@ -37,7 +38,7 @@ class Database:
             raise StoreUnavailable(f"there is no {file}")
         self._engine = _engine(file)
         try:
-            file.parent.mkdir(parents=True, exist_ok=True)
+            make_folder_durably(file.parent)
             # A store of today is opened without a write, so without waiting for a writer's lock.
             if not self._is_up_to_date():
                 with self._engine.begin() as connection:

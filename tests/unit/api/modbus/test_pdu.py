@@ -112,6 +112,9 @@ def test_any_request_gets_one_answer_of_its_function(pdu: bytes) -> None:
     registers = RegisterFile(
         on_commit=lambda _client: None, on_heartbeat=lambda _client, _value: None
     )
+    before = registers.holding
     answer = Responder(registers, ("V", "P", "1")).answer(pdu, PLC)
     assert answer[0] in (pdu[0], pdu[0] | 0x80)
     assert len(answer) <= 253
+    if answer[0] != pdu[0]:
+        assert registers.holding == before

@@ -23,7 +23,7 @@ from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.records import RunStore
 from cellctl.records.curve_file import encode_curve
-from cellctl.records.entries import Document
+from cellctl.records.entries import Document, Gauge
 from cellctl.records.mcap_reading import MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.export import export_run
@@ -52,6 +52,11 @@ def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
         drawing = draw()
         assert ET.fromstring(drawing).tag.endswith("svg")
         assert drawing == draw()
+
+
+def test_a_name_of_a_hole_is_no_formula() -> None:
+    gauge = Gauge(datetime(2026, 1, 1, tzinfo=UTC), r"P$\q$", 5.97, "operator")
+    assert ET.fromstring(plug_gauges([gauge])).tag.endswith("svg")
 
 
 def test_curves_without_samples_or_travel_are_drawn() -> None:
