@@ -166,7 +166,7 @@ class KinematicMotions(ContactMotions):
         self._turned(task_rotation_tip_rad, speed_rad_s)
         return self._ended(Ended.TRAVEL, float(hold_force_n[2]))
 
-    async def give_way(self, press_n: float, hold_s: float) -> ContactMotion:
+    async def comply(self, press_n: float, hold_s: float) -> ContactMotion:
         self.time_s += hold_s
         return self._ended(Ended.TIME, press_n)
 

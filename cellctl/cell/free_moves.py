@@ -19,7 +19,7 @@ LEVER_M = 0.5
 
 
 @asynccontextmanager
-async def watched(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterator[None]:
+async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> AsyncIterator[None]:
     """Arm the guard with limits on the wrench at the sensor; disarm it after a good end.
 
     A trip stops the robot at once, and whoever supervises the guard has its fault. Without a
@@ -54,7 +54,7 @@ async def move_joint_free(cell: Cell, arm: GuardedRobot, joints_rad: Array) -> N
     tolerance = free_tolerance(arm)
     motion = arm.robot.move_joint
     with cell.trips_awaited(arm.sensor_name):
-        async with watched(arm, tolerance):
+        async with guarded_section(arm, tolerance):
             # ``free_force_n`` was chosen for this speed: faster, the inertia of the load alone
             # would trip the guard.
             speed_ratio = arm.config.speed_percent / 100

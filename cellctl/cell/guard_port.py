@@ -1,4 +1,4 @@
-"""The part of the guard's client that the mating uses, as an interface."""
+"""The part of the guard's client that motions in contact use, as an interface."""
 
 from typing import Protocol
 
@@ -10,7 +10,7 @@ from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResul
 
 
 class GuardPort(Protocol):
-    """The guard as mating sees it; ``cellctl.guard.client.GuardClient`` in the cell."""
+    """The guard as a contact sees it; ``cellctl.guard.client.GuardClient`` in the cell."""
 
     @property
     def trip(self) -> GuardTrip | None:

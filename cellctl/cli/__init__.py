@@ -1,0 +1,1 @@
+"""The command line `cellctl`; every command loads only what it needs."""

@@ -69,16 +69,16 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
         data_dir = overrides.data_dir or Path(config.data_dir)
-        archive = AsyncRunStore(data_dir)
-        stack.callback(archive.close)
+        store = AsyncRunStore(data_dir)
+        stack.callback(store.close)
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, stop.set)
         stack.callback(cell.workers.close)
-        unit = UnitController(cell, archive)
+        unit = UnitController(cell, store)
         stack.push_async_callback(unit.background.drain)
         await unit.open()
-        arbiter, plc = await _command_path(config.plc, unit, archive)
-        local = local_api(cell, unit, arbiter, archive, data_dir, registers=plc.shown)
+        arbiter, plc = await _command_path(config.plc, unit, store)
+        local = local_api(cell, unit, arbiter, store, data_dir, registers=plc.shown)
         publisher = StatusPublisher(unit, partial(_show, plc, local.feed))
         stack.push_async_callback(plc.stop)
         await plc.start()  # first of all: a second daemon must not take over the robots
@@ -86,9 +86,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         await local.server.start()
         stack.push_async_callback(cell.disconnect)
         stack.push_async_exit(partial(_end, unit))
-        await until_told(
-            stop, _work(cell, unit, supervise(cell, unit, plc, publisher, archive), plc)
-        )
+        await until_told(stop, _work(cell, unit, supervise(cell, unit, plc, publisher, store), plc))
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")
@@ -96,7 +94,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
 
 
 async def _command_path(
-    config: Plc, unit: UnitController, archive: AsyncRunStore
+    config: Plc, unit: UnitController, store: AsyncRunStore
 ) -> tuple[CommandArbiter, PlcInterface]:
     """The arbiter of all commands and the interface to the line PLC, which is not yet listening.
 
@@ -104,13 +102,13 @@ async def _command_path(
     line is in control.
     """
     heartbeat = LineHeartbeat(config.heartbeat_timeout_s, unit.line_lost)
-    arbiter = CommandArbiter(unit, archive, line_alive=lambda: heartbeat.alive)
+    arbiter = CommandArbiter(unit, store, line_alive=lambda: heartbeat.alive)
     plc = PlcInterface(
         config,
         arbiter.submit,
         heartbeat,
-        lambda seq: archive.do(RunStore.note_line_seq, seq),
-        previous_seq=await archive.do(RunStore.line_seq),
+        lambda seq: store.do(RunStore.note_line_seq, seq),
+        previous_seq=await store.do(RunStore.line_seq),
     )
     return arbiter, plc
 

@@ -17,8 +17,8 @@ class DiskWatch:
     """Steps write when they begin and end. Between them an arm may move for a minute, without a
     record when the disk has filled up or hangs meanwhile."""
 
-    def __init__(self, archive: AsyncRunStore, unit: UnitController) -> None:
-        self._archive = archive
+    def __init__(self, store: AsyncRunStore, unit: UnitController) -> None:
+        self._store = store
         self._unit = unit
         self._told: int | None = None
         """The run whose disk was found silent: said once."""
@@ -30,7 +30,7 @@ class DiskWatch:
             return
         try:
             async with asyncio.timeout(timeout_s):
-                await self._archive.do(_require_writable)
+                await self._store.do(_require_writable)
         except TimeoutError:
             await self._fail(run, RecordSilent(f"run {run}: no answer within {timeout_s:g} s"))
         except CellError as fault:

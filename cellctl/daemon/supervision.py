@@ -26,7 +26,7 @@ async def supervise(
     unit: UnitController,
     plc: PlcInterface,
     publisher: StatusPublisher,
-    archive: AsyncRunStore,
+    store: AsyncRunStore,
 ) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
     beat = partial(_beat, plc, Watchdog())
@@ -36,7 +36,7 @@ async def supervise(
         tasks.create_task(_publish(publisher))
         tasks.create_task(_watch_links(cell, unit))
         tasks.create_task(_poll_devices(cell, unit))
-        tasks.create_task(_watch_disk(DiskWatch(archive, unit)))
+        tasks.create_task(_watch_disk(DiskWatch(store, unit)))
 
 
 def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:

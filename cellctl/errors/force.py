@@ -135,11 +135,11 @@ class TareImplausible(ForceError):
     reaction = Reaction.STOP
 
 
-class MatingPlanInvalid(ForceError):
-    """The mating plan contradicts itself, the cell's limits or the robot's position."""
+class ContactPlanInvalid(ForceError):
+    """The plan of a contact contradicts itself, the cell's limits or the robot's position."""
 
     number = 528
-    text = "Mating plan cannot be carried out"
+    text = "Contact cannot be planned as asked"
     cause = "Recipe or commissioning figures that do not fit together, or a wrong start pose."
     remedy = "See the contradiction in the detail; correct recipe or commissioning."
     reaction = Reaction.STOP

@@ -1,4 +1,4 @@
-"""Measures how long a robot takes to stop at the speeds of mating."""
+"""Measures how long a robot takes to stop at the speeds of contact."""
 
 import asyncio
 from collections.abc import Awaitable, Callable

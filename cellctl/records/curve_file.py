@@ -23,13 +23,13 @@ from cellctl.records import motion_file
 from cellctl.records.entries import Artefact
 from cellctl.records.mcap_reading import MEDIA_TYPE, read_mcap
 
-_TOPIC = "/mating/force"
+_TOPIC = "/contact/force"
 _FACTS = "facts"
 _CHUNK_BYTES = 64 * 1024
 _FIELDS = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
 _SCHEMA = {
-    "title": "mating.Force",
-    "description": "deck frame, gravity removed, tared; travel along the approach",
+    "title": "contact.Force",
+    "description": "frame of the moved part, gravity removed, tared; travel along the approach",
     "type": "object",
     "properties": {name: {"type": "number"} for name in ("time_s", "travel_mm", *_FIELDS)},
 }
@@ -55,7 +55,7 @@ class CurveWriter:
         self._writer = Writer(stream, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="cellctl")
         schema = json.dumps(_SCHEMA).encode()
-        schema_id = self._writer.register_schema("mating.Force", "jsonschema", schema)
+        schema_id = self._writer.register_schema("contact.Force", "jsonschema", schema)
         self._channel = self._writer.register_channel(_TOPIC, "json", schema_id)
         self._writer.add_metadata(_FACTS, dict(facts))
 

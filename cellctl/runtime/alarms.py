@@ -28,8 +28,8 @@ class ActiveAlarm:
 class Alarms:
     """The active alarms by number, the oldest first; the store has every single one."""
 
-    def __init__(self, archive: AsyncRunStore, background: Background) -> None:
-        self._archive = archive
+    def __init__(self, store: AsyncRunStore, background: Background) -> None:
+        self._store = store
         self._background = background
         self._active: dict[int, ActiveAlarm] = {}
 
@@ -45,7 +45,7 @@ class Alarms:
 
     async def open(self) -> None:
         """Take over what was active before the restart."""
-        for alarm in await self._archive.do(RunStore.active_alarms):
+        for alarm in await self._store.do(RunStore.active_alarms):
             known = ActiveAlarm(alarm.number, alarm.text, alarm.time, alarm.run)
             self._active.setdefault(alarm.number, known)
         if self._active:
@@ -57,13 +57,13 @@ class Alarms:
         # disk is what has failed.
         text = "; ".join([str(error), *getattr(error, "__notes__", ())])
         self._active.setdefault(error.number, ActiveAlarm(error.number, text, utc_now(), run))
-        self._background.start(self._archive.do(RunStore.add_alarm, run, error.number, text))
+        self._background.start(self._store.do(RunStore.add_alarm, run, error.number, text))
 
     async def acknowledge(self, number: int, who: str) -> bool:
         """Acknowledge every alarm with this number; False when none is active."""
         if number not in self._active:
             return False
         # The disk first, so that an acknowledged alarm does not come back with the next start.
-        await self._archive.do(RunStore.acknowledge_alarms, number, who)
+        await self._store.do(RunStore.acknowledge_alarms, number, who)
         self._active.pop(number, None)
         return True

@@ -14,8 +14,8 @@ The walk of one stereo pair, from the top:
 5. ``registration.part_pose`` registers the points of one or two heads on the drawing: the pose of
    the part with its full covariance.
 
-``paper`` holds the published image steps as a named baseline. Everything here is a pure function
-from arrays to frozen values: no device, no file but the two formats read in ``features`` and
-``camera``, no clock. Sub-packages import only from those before them in this order: ``camera``,
+``paper_baseline`` holds the published image steps as a named baseline. Everything here is a pure
+function from arrays to frozen values: no device, no file but the two formats read in ``features``
+and ``camera``, no clock. Sub-packages import only from those before them in this order: ``camera``,
 ``features``, ``registration``, ``rim``, ``holes``.
 """

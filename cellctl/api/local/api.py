@@ -30,7 +30,7 @@ def local_api(
     cell: Cell,
     unit: UnitController,
     arbiter: CommandArbiter,
-    archive: AsyncRunStore,
+    store: AsyncRunStore,
     data_dir: Path,
     *,
     registers: Callable[[], list[dict[str, Any]]],
@@ -41,7 +41,7 @@ def local_api(
     """
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
-    reporter = Reporter(cell, unit, arbiter, archive)
+    reporter = Reporter(cell, unit, arbiter, store)
     view = LiveView(cell, unit, arbiter)
 
     async def describe() -> dict[str, Any]:

@@ -20,12 +20,12 @@ class Reporter:
     """Reads machine, devices and records; files and store in threads of their own."""
 
     def __init__(
-        self, cell: Cell, unit: UnitController, arbiter: CommandArbiter, archive: AsyncRunStore
+        self, cell: Cell, unit: UnitController, arbiter: CommandArbiter, store: AsyncRunStore
     ) -> None:
         self._cell = cell
         self._unit = unit
         self._arbiter = arbiter
-        self._archive = archive
+        self._store = store
 
     async def report(self) -> StatusReport:
         """Everything at this moment. What cannot be read is reported as such, not raised."""
@@ -77,8 +77,8 @@ class Reporter:
     async def _from_store(self) -> tuple[dict[int, str], RunReport | None, str]:
         """Texts of the alarms, the newest run, and what is wrong with the store."""
         try:
-            alarms = await self._archive.do(RunStore.active_alarms)
-            heads = await self._archive.do(RunStore.runs, 1)
+            alarms = await self._store.do(RunStore.active_alarms)
+            heads = await self._store.do(RunStore.runs, 1)
         except CellError as error:
             # A store that fails must not keep the operator from seeing the state and the faults.
             return {}, None, str(error)
@@ -94,7 +94,7 @@ class Reporter:
             for head in heads
         ]
         texts = {alarm.number: alarm.text for alarm in alarms}
-        return texts, next(iter(runs), None), str(self._archive.fault or "")
+        return texts, next(iter(runs), None), str(self._store.fault or "")
 
     def _links(self) -> dict[str, str]:
         found = {}

@@ -78,7 +78,12 @@ _VALIDITY = tuple(
     for index, (name, what) in enumerate(VALIDITY_REGISTERS.items())
 )
 _POSE_ERROR = tuple(
-    _i32(31 + 2 * index, f"pose_error_{axis}", "µm" if index < 3 else "µdeg", f"deck: {axis}")
+    _i32(
+        31 + 2 * index,
+        f"pose_error_{axis}",
+        "µm" if index < 3 else "µdeg",
+        f"of the moved part: {axis}",
+    )
     for index, axis in enumerate(("x", "y", "z", "rx", "ry", "rz"))
 )
 _PEAKS = tuple(
@@ -133,7 +138,7 @@ INPUT: tuple[Item, ...] = (
     Item(69, "test_f32", "always 123.456", Kind.F32, length=2),
     _text(71, "test_text", 6, "always ABCDEF"),
     Item(74, "iteration", "of the measure-correct loop, from 1; 0 outside it"),
-    _i32(75, "force_z", "mN", "present force on the deck along its z, gravity removed"),
+    _i32(75, "force_z", "mN", "present force on the moved part along its z, gravity removed"),
     _i32(77, "force_limit", "mN", "its limit in the present recipe"),
     Item(79, "run_result", "of run_number: 0 open, else as the results"),
     Item(80, "mode_time", "since the mode changed: PackML ModeTimeCurrent", Kind.U32, "s", 2),

@@ -148,7 +148,7 @@ class StreamedContact(ContactMotions):
         end = _first(_when(until), _arrived(path))
         return await self._run(path, lambda _sample: speed, end, speed, press)
 
-    async def give_way(self, press_n: float, hold_s: float) -> ContactMotion:
+    async def comply(self, press_n: float, hold_s: float) -> ContactMotion:
         """See ``ContactMotions``; raises ``ContactLost``."""
         self._pressed_n = press_n
         push = np.array([0.0, 0.0, press_n, 0.0, 0.0, 0.0])

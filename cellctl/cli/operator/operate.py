@@ -75,7 +75,9 @@ def start(
     ] = "",
     order: Annotated[str, typer.Option(help="Operator or order for the record.")] = "",
     *,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="End before the mating.")] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="End before the first step in contact.")
+    ] = False,
     single_step: Annotated[
         bool, typer.Option("--single-step", help="Hold before each step.")
     ] = False,

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.force import MatingPlanInvalid
+from cellctl.errors.force import ContactPlanInvalid
 from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
 from cellctl.force.contact.cusum import Cusum
 
@@ -104,13 +104,13 @@ def approach_speed(
 ) -> ApproachSpeed:
     """The greatest speed up to ``greatest_m_s`` whose predicted peak is within ``allowed_peak_n``.
 
-    Raises ``MatingPlanInvalid`` when even the slowest approach would exceed it.
+    Raises ``ContactPlanInvalid`` when even the slowest approach would exceed it.
     """
     # At this speed only the terms are left that do not depend on it.
     slowest_m_s = 1e-7
     least_n = peak_at(slowest_m_s, figures).peak_n
     if least_n >= allowed_peak_n:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
             f"tare alone take {least_n:.1f} N"
         )
@@ -128,7 +128,7 @@ def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
 
     A move begins at a force below the detector's drift level, or the detector would have alarmed
     before. It adds no more than the stiffness times its length and the arm's own error of a move.
-    Raises ``MatingPlanInvalid`` when no move can be that short.
+    Raises ``ContactPlanInvalid`` when no move can be that short.
     """
     # This bound uses neither the latency nor the detector, so it also holds when no stop is obeyed
     # at all: a robot link with dead times makes the travel slow anyway, and short moves cost little
@@ -136,7 +136,7 @@ def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
     spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
     length_m = spare_n / figures.stiffness_n_m - 3.0 * figures.step_sigma_m
     if length_m <= figures.step_sigma_m:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"a single move cannot be kept below {limit_n:.1f} N: stiffness "
             f"{figures.stiffness_n_m / 1e3:.0f} N/mm, error of a move "
             f"{figures.step_sigma_m * 1e6:.1f} µm"
@@ -172,13 +172,13 @@ def contact_window(
     ``sigma_m`` joins all sources of error (see ``contact_sigma``). ``tilt_m`` is how much earlier
     the leading edge of a tilted part touches. ``margin_m`` is kept between the fast travel and the
     window. Pins are met ``engaged_m`` before the seat, and the fast travel ends above them. Raises
-    ``MatingPlanInvalid`` when the contact is known too badly, or is too near.
+    ``ContactPlanInvalid`` when the contact is known too badly, or is too near.
     """
     # Not narrower than ``least_half_m``: a covariance that is too small must not turn a good
     # contact into a fault.
     half_m = max(coverage * sigma_m, least_half_m)
     if half_m > greatest_half_m:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"contact is known to ±{half_m * 1e3:.3f} mm only ({coverage:g} sigma), the window "
             f"may be ±{greatest_half_m * 1e3:.3f} mm wide at most"
         )
@@ -187,7 +187,7 @@ def contact_window(
     # Fast travel may not end inside the window, because at its speed a contact goes past the force
     # limit.
     if clear_m <= 0.0:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"expected contact after {expected_m * 1e3:.3f} mm leaves no clear travel before its "
             f"window of ±{half_m * 1e3:.3f} mm"
         )

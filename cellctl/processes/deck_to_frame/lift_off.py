@@ -51,15 +51,15 @@ async def lift_off(cell: DeckCell) -> None:
     # The normal of the frame and not the axis of the flange: a deck on pins must leave along them.
     away = _frame_of(cell, recipe).rotation.apply([0.0, 0.0, 1.0])
     flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
-    watched = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck, tolerance)
+    guarded = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck, tolerance)
     try:
-        async with watched() as move:
+        async with guarded() as move:
             first_m_s = first_lift_speed_m_s(mating, cell.force_config)
             above = _above(base_T_flange, FIRST_LIFT_M * away)
             await move(cell.main.step(above, speed_m_s=first_m_s))
         # From a new zero: the first one was taken while the deck was pressed on the frame, so that
         # what is felt of a free deck is that force, and acceleration would come on top of it.
-        async with watched() as move:
+        async with guarded() as move:
             await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault

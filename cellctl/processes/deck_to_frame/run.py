@@ -10,7 +10,7 @@ from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.settling import settle
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.journal import Journal
+from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, PartMeasurer
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
@@ -37,7 +37,7 @@ class OpenRun:
 
     facts: RunFacts
     board: ProgressBoard
-    journal: Journal
+    recorder: DeckRecorder
     """Numbers iterations and pictures through all beginnings."""
     safe_point: SafePoint
     interruption: Interruption
@@ -45,8 +45,8 @@ class OpenRun:
     @classmethod
     def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
         """A run whose record was opened."""
-        journal = Journal(context.recorder, facts.cell.workers)
-        return cls(facts, services.board, journal, context.safe_point, context.interruption)
+        recorder = DeckRecorder(context.recorder, facts.cell.workers)
+        return cls(facts, services.board, recorder, context.safe_point, context.interruption)
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,9 +67,9 @@ class AssemblyRun:
         return self.opened.board
 
     @property
-    def journal(self) -> Journal:
-        """The journal in which results are written down."""
-        return self.opened.journal
+    def recorder(self) -> DeckRecorder:
+        """The recorder in which results are written down."""
+        return self.opened.recorder
 
     @property
     def cell(self) -> DeckCell:
@@ -162,4 +162,4 @@ class AssemblyRun:
             )
         # Two exposures of a deck that swung differed by 0.13 mm (docs/decisions/0005).
         await settle(self.cell.guard)
-        await self.journal.arrived(base_T_flange, self.cell.main.state().base_T_flange)
+        await self.recorder.arrived(base_T_flange, self.cell.main.state().base_T_flange)

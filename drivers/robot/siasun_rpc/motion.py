@@ -101,7 +101,7 @@ class Motion:
         report, frame = self._link.watch.newest(self._config.silence_s)
         check_ready(self._robot, report, frame, self._config.error_words(frame.error))
 
-    async def judge(self, state: int) -> int:
+    async def unless_bad_end(self, state: int) -> int:
         """The same state, unless it is a bad end, whose fault is raised."""
         self.over = state not in STILL_ALIVE
         if state in GOING_ON or state == TaskState.FINISHED:
@@ -113,4 +113,4 @@ class Motion:
             question, timeout_s=self._config.reply_timeout_s
         )
         self.raise_end()
-        return await self.judge(cast(int, state))
+        return await self.unless_bad_end(cast(int, state))

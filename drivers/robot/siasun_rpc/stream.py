@@ -134,7 +134,7 @@ class ServoStream(PoseStream):
         if followed:
             self._command, self._ineffective = self._sent, 0
         else:
-            await self._motion.judge(cast(int, state))
+            await self._motion.unless_bad_end(cast(int, state))
             self._lost += 1
             self._ineffective += 1
             if self._ineffective * self.period_s > self.limits.loss_s:

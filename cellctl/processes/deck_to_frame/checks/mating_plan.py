@@ -8,7 +8,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors.config import UnknownDriver
-from cellctl.errors.force import MatingPlanInvalid
+from cellctl.errors.force import ContactPlanInvalid
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
@@ -28,7 +28,7 @@ def plan_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
         _plan_at_the_stand_off(sensor, recipe)
     except UnknownDriver:
         return  # reported by itself; without its driver the rate of the sensor is not known
-    except MatingPlanInvalid as error:
+    except ContactPlanInvalid as error:
         value = f"target {recipe.mating.target_force_n:g} N"
         yield ConfigIssue(f"{key}.mating", value, error.detail, error.number)
 

@@ -24,7 +24,7 @@ def contact_plan(corrected: Corrected, commissioned: Commissioned) -> MatingPlan
     """Plan the mating from the pose that was measured, which must still be the present one.
 
     Raises ``HeadMoved`` when it is not, ``SpeedOverridden`` when the robot would not move as
-    planned, ``MatingPlanInvalid`` when no plan is safe.
+    planned, ``ContactPlanInvalid`` when no plan is safe.
     """
     run = corrected.run
     cell, recipe = run.cell, run.recipe

@@ -20,7 +20,7 @@ async def curves_kept(run: AssemblyRun) -> AsyncIterator[Callable[[MatingProgres
 
     def report(progress: MatingProgress) -> None:
         run.board.update(message=progress.phase.value)
-        run.journal.mating_progress(progress)
+        run.recorder.mating_progress(progress)
 
     try:
         yield report
@@ -37,5 +37,5 @@ async def curves_kept(run: AssemblyRun) -> AsyncIterator[Callable[[MatingProgres
 
 
 async def _keep(run: AssemblyRun) -> None:
-    run.board.update(force_peaks=run.journal.force_peaks())
-    await run.journal.force_curves()
+    run.board.update(force_peaks=run.recorder.force_peaks())
+    await run.recorder.force_curves()

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.errors.force import ForceError, MatingPlanInvalid, NotSettled, TareImplausible
+from cellctl.errors.force import ContactPlanInvalid, ForceError, NotSettled, TareImplausible
 from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot
@@ -22,12 +22,12 @@ _COMPONENTS = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")
 
 
 def require_stand_off(robot: Robot, plan: MatingPlan) -> None:
-    """The robot must stand where the plan begins; raises ``MatingPlanInvalid``."""
+    """The robot must stand where the plan begins; raises ``ContactPlanInvalid``."""
     state = robot.state()
     distance_m, angle_rad = state.distance_to(plan.base_T_flange)
     allowed_m, allowed_rad = plan.settings.stand_off_tolerance
     if distance_m > allowed_m or angle_rad > allowed_rad or state.moving:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"robot is {distance_m / MM:.3f} mm and {np.rad2deg(angle_rad):.4f}° away from the "
             f"planned stand-off{' and moving' if state.moving else ''}"
         )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.force import MatingPlanInvalid
+from cellctl.errors.force import ContactPlanInvalid
 from cellctl.force.contact.approach import (
     ApproachFigures,
     ApproachSpeed,
@@ -74,18 +74,18 @@ def plan_mating(
     """Derive window, speed, segment and creep from the measured deck pose at the stand-off.
 
     ``deck_thickness_m`` is D1 (contact when Z_D reaches it), ``over_travel_m`` D3, the hard end.
-    Raises ``MatingPlanInvalid``.
+    Raises ``ContactPlanInvalid``.
     """
     window = _window(M_T_D, deck_thickness_m, settings)
     if settings.abort_force_n >= settings.limit_force_n:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"the guard would stop at {settings.abort_force_n:.0f} N, at or above the limit of "
             f"{settings.limit_force_n:.0f} N"
         )
     # D3 is the hard end of travel in the paper (eq. 17); here it only bounds the recipe, because
     # nobody commands a pose 25 mm past contact (docs/mating.md, "The commanded target").
     if settings.greatest_past_m > over_travel_m:
-        raise MatingPlanInvalid("targets may not lie further past contact than D3")
+        raise ContactPlanInvalid("targets may not lie further past contact than D3")
     figures = ApproachFigures(
         stop_latency_s=settings.stop_latency_s,
         stiffness_n_m=settings.stiffness_n_m,
@@ -150,7 +150,7 @@ def _creep(settings: MatingSettings) -> CreepLaw:
     # ends before it gets there.
     high = settings.abort_force_n - 2.0 * NOISE_BAND_N
     if high - low < NOISE_BAND_N:
-        raise MatingPlanInvalid(
+        raise ContactPlanInvalid(
             f"target {settings.target_force_n:.0f} N and abort {settings.abort_force_n:.0f} N "
             "leave no window for the final force"
         )

@@ -109,7 +109,9 @@ class Judgement:
         return self.within and self.certain
 
 
-def judge(target: RigidTransform, measured: UncertainPose, thresholds: Thresholds) -> Judgement:
+def judge_pose(
+    target: RigidTransform, measured: UncertainPose, thresholds: Thresholds
+) -> Judgement:
     """Compare a measurement with its target and thresholds (eq. 10 and 16)."""
     error = assembly_error(target, measured.pose)
     limits = thresholds.vector
@@ -135,7 +137,7 @@ def check_uncertainty(judgement: Judgement, thresholds: Thresholds, frames: int)
 
 @dataclass(frozen=True, slots=True)
 class CorrectionLimits:
-    """Bounds of the compensation loop."""
+    """Bounds of the loop that corrects the pose."""
 
     max_corrections: int = 8
     translation_m: float = 10.0 * MM

@@ -75,8 +75,8 @@ async def _touch(corrected: Corrected) -> ContactStiffness:
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
     # The bounds of the recipe alone, for the same reason.
     plan = contact_plan(corrected, Commissioned())
-    await run.journal.mating_plan(plan)
+    await run.recorder.mating_plan(plan)
     async with curves_kept(run) as report:
         measured = await measure_contact_stiffness(run.cell.main, run.cell.guard, plan, report)
-    await run.journal.mating_result(measured.contacts[-1])
+    await run.recorder.mating_result(measured.contacts[-1])
     return measured

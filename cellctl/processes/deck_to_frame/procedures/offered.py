@@ -10,7 +10,7 @@ from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.cell.free_moves import free_tolerance, watched
+from cellctl.cell.free_moves import free_tolerance, guarded_section
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM
 from cellctl.procedures.base_frame import AxisTurns, calibrate_base
@@ -124,7 +124,7 @@ class _OnCell:
         # The check of the cell file saw to it that the robot states both lengths.
         arm = ArmGeometry(d1_m=(main.d1_mm or 0.0) * MM, a1_m=(main.a1_mm or 0.0) * MM)
         await clear_the_cell(cell, context.board)
-        async with watched(cell.arm, free_tolerance(cell.arm)):
+        async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             return await calibrate_base(
                 context,
                 cell.main,
@@ -146,7 +146,7 @@ class _OnCell:
         """106: home holds the deck in the mating orientation, high above the frame."""
         cell, settings = self._cell, self._cell.settings
         await clear_the_cell(cell, context.board)
-        async with watched(cell.arm, free_tolerance(cell.arm)):
+        async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             return await identify_payload_on_cell(
                 context,
                 cell.arm,
@@ -162,7 +162,7 @@ class _OnCell:
         await clear_the_cell(cell, context.board)
         # A result must fit every recipe that it will be used for, so the least bound decides.
         bound_ms = min(recipe.mating.stop_latency_ms for recipe in cell.recipes)
-        async with watched(cell.arm, free_tolerance(cell.arm)):
+        async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             return await measure_stop_latency_on_cell(
                 context, cell.main, cell.workers, bound_ms=bound_ms, kind=STOP_LATENCY
             )

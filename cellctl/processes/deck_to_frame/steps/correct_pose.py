@@ -16,7 +16,7 @@ from cellctl.processes.deck_to_frame.poses.pose_correction import (
     check_progress,
     check_uncertainty,
     flange_target,
-    judge,
+    judge_pose,
     next_target,
 )
 from cellctl.processes.deck_to_frame.poses.pose_limits import require_clearance, require_near
@@ -38,12 +38,12 @@ async def correct_pose(stand_off: AtStandOff) -> Corrected:
     while True:
         # Before each measurement, because a Hold makes the earlier ones worthless.
         await run.obey_hold()
-        iteration = run.journal.iterations + 1
+        iteration = run.recorder.iterations + 1
         judgement, measurement, M_T_D = await _measure(stand_off, iteration)
         history.append(judgement)
         correction = None if judgement.converged else judgement.error
         # Written before the checks, so that the pass that fails is in the record too.
-        await run.journal.iteration(iteration, judgement, run.thresholds, measurement, correction)
+        await run.recorder.iteration(iteration, judgement, run.thresholds, measurement, correction)
         if correction is None:
             return _corrected(stand_off, measurement, M_T_D)
         # Uncertainty first: a measurement that knows too little must not be judged for progress,
@@ -70,7 +70,7 @@ async def _measure(
     predicted = run.base_T_c1.inv() * stand_off.base_T_flange * stand_off.flange_T_deck
     measurement = await run.measure(run.facts.deck_features, predicted)
     M_T_D = run.measurer.deck_in_frame(stand_off.frame, measurement.pose).part_1_T_part_2
-    judgement = judge(run.target_M_T_D, M_T_D, run.thresholds)
+    judgement = judge_pose(run.target_M_T_D, M_T_D, run.thresholds)
     run.board.update(
         iteration=iteration,
         error_mm_deg=tuple(in_mm_deg(judgement.error).tolist()),
@@ -92,7 +92,7 @@ async def _correct(stand_off: AtStandOff, M_T_D: UncertainPose) -> AtStandOff:
     base_T_flange = flange_target(
         run.base_T_c1, stand_off.c1_T_M, commanded, stand_off.flange_T_deck
     )
-    await run.journal.commanded(base_T_flange)
+    await run.recorder.commanded(base_T_flange)
     await run.move_flange(base_T_flange, stand_off.flange_T_deck)
     return replace(stand_off, commanded=commanded, base_T_flange=base_T_flange)
 

@@ -11,7 +11,7 @@ from cellctl.processes.deck_to_frame.steps.correct_pose import LABEL, NUMBER, co
 async def mate_deck(corrected: Corrected) -> Seated:
     """Mate, measuring and correcting again before each further try after a false seat."""
     run, latest = corrected.run, corrected
-    phase = run.journal.recorder.phase
+    phase = run.recorder.recorder.phase
     run.board.update(force_limit_n=run.recipe.mating.limit_force_n)
 
     async def measured_plan(attempt: int) -> MatingPlan:
@@ -29,7 +29,7 @@ async def mate_deck(corrected: Corrected) -> Seated:
         # A plan for each attempt: window and speed follow from the uncertainty of the latest
         # measurement.
         plan = contact_plan(latest, run.facts.commissioned)
-        await run.journal.mating_plan(plan)
+        await run.recorder.mating_plan(plan)
         return plan
 
     async with curves_kept(run) as report:
@@ -41,7 +41,7 @@ async def mate_deck(corrected: Corrected) -> Seated:
             max_tries=run.recipe.mating.max_tries,
             interruption=run.opened.interruption,
         )
-    await run.journal.mating_result(result)
+    await run.recorder.mating_result(result)
     return Seated(
         run,
         latest.frame,

@@ -26,6 +26,6 @@ async def measure_deck(frame: FrameMeasured) -> DeckMeasured:
         measurement.pose.pose,
     )
     require_near("deck on flange", run.recipe, nominal, flange_T_deck.pose)
-    await run.journal.measurement("deck", measurement)
-    await run.journal.deck_on_flange(flange_T_deck)
+    await run.recorder.measurement("deck", measurement)
+    await run.recorder.deck_on_flange(flange_T_deck)
     return DeckMeasured(run, frame.frame, flange_T_deck=flange_T_deck.pose)

@@ -16,5 +16,5 @@ async def measure_frame(ready: Ready) -> FrameMeasured:
     # Kept beyond the run: the lift-off of the next Reset leaves along the frame as it really
     # stands.
     run.cell.memory.base_T_frame = measured
-    await run.journal.measurement("frame", measurement)
+    await run.recorder.measurement("frame", measurement)
     return FrameMeasured(run, frame=measurement.pose)

@@ -20,7 +20,7 @@ async def pre_assembly(deck: DeckMeasured) -> AtStandOff:
         flange_target(run.base_T_c1, deck.c1_T_M, M_T_D, deck.flange_T_deck)
         for M_T_D in (higher * commanded, commanded)
     )
-    await run.journal.commanded(base_T_flange)
+    await run.recorder.commanded(base_T_flange)
     await run.move_flange(above, deck.flange_T_deck)
     await run.lower_flange(base_T_flange, deck.flange_T_deck)
     return AtStandOff(

@@ -21,12 +21,12 @@ async def verify(seat: Seated) -> Verified:
     run = seat.run
     measurement, found = await _look(seat)
     if list(_unproven(found, run.recipe)):
-        await run.journal.measurement("seated", measurement)
+        await run.recorder.measurement("seated", measurement)
         measurement, found = await _look(seat, run.recipe.pose_correction.max_frames)
     # Recorded before it is judged: a part beyond its limits needs its figures more than a good one.
-    await run.journal.verification(found, run.recipe, measurement)
+    await run.recorder.verification(found, run.recipe, measurement)
     if pins := pin_holes(run.facts.deck_features.holes):
-        await run.journal.gauge_holes(pins, run.recipe)
+        await run.recorder.gauge_holes(pins, run.recipe)
     if unproven := list(_unproven(found, run.recipe)):
         raise SeatedOffPosition("; ".join(unproven))
     return Verified(

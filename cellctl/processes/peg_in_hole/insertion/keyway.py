@@ -43,7 +43,7 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
             _sweep_speed_rad_s(task, keys),
             _dropped_from(float(motion.last.task_position_tip_m[2]), task),
         )
-        await motions.give_way(_HOLD_N, _SETTLE_S)
+        await motions.comply(_HOLD_N, _SETTLE_S)
         motion = await motions.feed(through_m, task.limits.search_n)
     if motion.ended is Ended.FORCE and _on_keys(motion.last, task, keys):
         raise KeywayNotFound(

@@ -48,7 +48,7 @@ class GiveWay(Recovery):
         standing: Standing,
     ) -> None:
         """One second at 30 % of the force at which it stands."""
-        await motions.give_way(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+        await motions.comply(_LOWERED * standing.axial_n, _GIVE_WAY_S)
 
 
 class Wiggle(Recovery):
@@ -94,7 +94,7 @@ class BackAndAgain(Recovery):
     ) -> None:
         """Back 1 mm."""
         await motions.back_out(_BACK_M - standing.depth_m)
-        await motions.give_way(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+        await motions.comply(_LOWERED * standing.axial_n, _GIVE_WAY_S)
 
 
 IN_ORDER: tuple[Recovery, ...] = (GiveWay(), Wiggle(), Yaw(), BackAndAgain())

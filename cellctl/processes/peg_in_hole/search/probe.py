@@ -119,7 +119,7 @@ class TouchProbe:
         pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
         if pressed.ended is not Ended.CONDITION and _stands_lower(pressed.last):
             # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
-            await self.motions.give_way(self.press_n, _GIVE_WAY_S)
+            await self.motions.comply(self.press_n, _GIVE_WAY_S)
             pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
         entered = pressed.ended is Ended.CONDITION
         stands = Felt.EDGE if _stands_lower(pressed.last) else Felt.FACE

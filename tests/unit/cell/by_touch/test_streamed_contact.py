@@ -139,7 +139,7 @@ def test_a_turn_of_two_degrees_against_a_spring_converges_at_any_attitude() -> N
 
     world = ElasticWorld(felt)
     motions = contact(world)
-    run(motions.give_way(5.0, 6.0))
+    run(motions.comply(5.0, 6.0))
     assert np.degrees(world.sent[-1][3:]) == pytest.approx([2.0, 0.0, 0.0], abs=0.05)
 
 

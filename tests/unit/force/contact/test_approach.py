@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.force import MatingPlanInvalid
+from cellctl.errors.force import ContactPlanInvalid
 from cellctl.force.contact.approach import (
     ApproachFigures,
     advance,
@@ -69,7 +69,7 @@ def test_the_terms_are_those_of_the_formula() -> None:
 
 
 def test_no_room_for_the_touch_is_refused() -> None:
-    with pytest.raises(MatingPlanInvalid, match="no approach speed"):
+    with pytest.raises(ContactPlanInvalid, match="no approach speed"):
         approach_speed(FIGURES, allowed_peak_n=5.0)
 
 
@@ -77,7 +77,7 @@ def test_a_single_move_cannot_exceed_the_limit() -> None:
     length_m = segment_length(FIGURES, limit_n=45.0)
     worst_n = FIGURES.stiffness_n_m * (length_m + 3.0 * FIGURES.step_sigma_m)
     assert worst_n + 4.0 + 1.5 == pytest.approx(45.0)
-    with pytest.raises(MatingPlanInvalid, match="single move"):
+    with pytest.raises(ContactPlanInvalid, match="single move"):
         segment_length(replace(FIGURES, step_sigma_m=2e-5), limit_n=45.0)
 
 
@@ -103,9 +103,9 @@ def test_the_window_follows_the_uncertainty() -> None:
 
 
 def test_contact_known_too_badly_or_too_near_is_refused() -> None:
-    with pytest.raises(MatingPlanInvalid, match="known to"):
+    with pytest.raises(ContactPlanInvalid, match="known to"):
         contact_window(**window(sigma_m=1e-4))
-    with pytest.raises(MatingPlanInvalid, match="no clear travel"):
+    with pytest.raises(ContactPlanInvalid, match="no clear travel"):
         contact_window(**window(expected_m=2e-4))
 
 

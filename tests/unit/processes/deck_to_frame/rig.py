@@ -1,4 +1,4 @@
-"""A run of the assembly in memory: real steps, real journal, a true world instead of pictures."""
+"""A run of the assembly in memory: real steps, real recorder, a true world instead of pictures."""
 
 from pathlib import Path
 from typing import Any, cast
@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
-from cellctl.processes.deck_to_frame.journal import Journal
+from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
@@ -49,7 +49,7 @@ class RunRig:
         bench.cell.workers.answers["draw"] = lambda *_: b"picture"
         self.board = ProgressBoard()
         workers = cast(VisionWorkers, bench.cell.workers)
-        self.journal = Journal(RunRecorder(self.archive, self.number), workers)
+        self.recorder = DeckRecorder(RunRecorder(self.archive, self.number), workers)
         geometry = bench.geometry()
         heads = HeadGeometry.of(geometry, PoseCorrection())
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
@@ -57,7 +57,7 @@ class RunRig:
     def run(self, **changes: Any) -> AssemblyRun:
         """With changes of its facts."""
         opened = OpenRun(
-            self.bench.facts(**changes), self.board, self.journal, self.pauses, Interruption()
+            self.bench.facts(**changes), self.board, self.recorder, self.pauses, Interruption()
         )
         return AssemblyRun(opened, cast(PartMeasurer, self.truth))
 

@@ -19,7 +19,7 @@ from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
-from cellctl.processes.deck_to_frame.journal import Journal
+from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off
 from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
@@ -46,7 +46,7 @@ def cell_of(world: MatingCell) -> DeckCell:
 
 @dataclass
 class Arrivals:
-    """In place of the journal: where moves were sent, and where they ended."""
+    """In place of the recorder: where moves were sent, and where they ended."""
 
     seen: list[tuple[RigidTransform, RigidTransform]] = field(default_factory=list)
 
@@ -59,8 +59,8 @@ def run_on(world: MatingCell, arrivals: Arrivals | None = None) -> AssemblyRun:
     values = dict.fromkeys(RunFacts.__dataclass_fields__, nothing)
     payload = SimpleNamespace(mass_kg=200.0)
     facts = RunFacts(**values | {"cell": cell, "recipe": cell.recipes[0], "payload": payload})
-    journal = cast(Journal, arrivals or Arrivals())
-    return AssemblyRun(OpenRun(facts, nothing, journal, nothing, Interruption()), nothing)
+    recorder = cast(DeckRecorder, arrivals or Arrivals())
+    return AssemblyRun(OpenRun(facts, nothing, recorder, nothing, Interruption()), nothing)
 
 
 def raised(world: MatingCell, height_m: float) -> RigidTransform:

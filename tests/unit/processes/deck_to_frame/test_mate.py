@@ -9,7 +9,7 @@ import pytest
 from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.simulated_loop import run_simulated
 from benchmarks.mating.trial import ARM_STIFFNESS_N_M, nominal_settings, plan_for
-from cellctl.errors.force import MatingPlanInvalid, NotSettled, TareImplausible
+from cellctl.errors.force import ContactPlanInvalid, NotSettled, TareImplausible
 from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.faults import DeckNotSeated
 from cellctl.processes.deck_to_frame.mating.commissioning import measure_contact_stiffness
@@ -164,7 +164,7 @@ def test_a_robot_that_is_not_at_the_stand_off_does_not_move() -> None:
     cell = cell_of()
     plan = plan_for(cell, nominal_settings(LATENCY_S))
     elsewhere = replace(plan, base_T_flange=plan.pose_at(-1e-3))
-    with pytest.raises(MatingPlanInvalid, match=r"1\.000 mm"):
+    with pytest.raises(ContactPlanInvalid, match=r"1\.000 mm"):
         mated(cell, elsewhere)
     assert cell.arm.encoder_pose(cell.world.time_s).translation == pytest.approx(
         plan.base_T_flange.translation

@@ -34,7 +34,7 @@ from cellctl.processes.deck_to_frame.mating.retreat import retreat
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
 from tests.unit.processes.deck_to_frame.rig import curve
-from tests.unit.processes.deck_to_frame.test_mate_plan import plan
+from tests.unit.processes.deck_to_frame.test_plan import plan
 
 TRAVEL_M = 0.009
 

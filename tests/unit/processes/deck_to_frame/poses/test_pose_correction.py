@@ -19,7 +19,7 @@ from cellctl.processes.deck_to_frame.poses.pose_correction import (
     check_progress,
     check_uncertainty,
     flange_target,
-    judge,
+    judge_pose,
     next_target,
     target_M_T_D,
 )
@@ -79,14 +79,14 @@ def test_the_papers_rule_adds_components() -> None:
 def test_convergence_needs_both_a_small_error_and_a_small_uncertainty() -> None:
     near = pose_from_xyzabc([0.03, -0.02, 25.04, 0.004, 0.003, -0.002])
     sure, unsure = np.diag([1e-12] * 6), np.diag([1e-9] * 6)
-    assert judge(TARGET, UncertainPose(near, sure), THRESHOLDS).converged
-    doubtful = judge(TARGET, UncertainPose(near, unsure), THRESHOLDS)
+    assert judge_pose(TARGET, UncertainPose(near, sure), THRESHOLDS).converged
+    doubtful = judge_pose(TARGET, UncertainPose(near, unsure), THRESHOLDS)
     assert doubtful.within
     assert not doubtful.converged
     with pytest.raises(UncertaintyTooLarge, match=r"x is 0\.0316 mm after 5 frames"):
         check_uncertainty(doubtful, THRESHOLDS, 5)
     far = pose_from_xyzabc([0.03, -0.02, 25.04, 0.006, 0.003, -0.002])
-    assert not judge(TARGET, UncertainPose(far, sure), THRESHOLDS).within
+    assert not judge_pose(TARGET, UncertainPose(far, sure), THRESHOLDS).within
 
 
 def test_an_implausible_correction_is_refused() -> None:

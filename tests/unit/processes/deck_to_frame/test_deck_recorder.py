@@ -7,7 +7,7 @@ import pytest
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.journal import draw
+from cellctl.processes.deck_to_frame.deck_recorder import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.record.entries import rms_um
 from cellctl.records.curve_file import read_recording
@@ -27,7 +27,7 @@ def ended(felt: ForceCurve) -> MatingProgress:
 async def test_a_measurement_with_its_pictures(rig: RunRig) -> None:
     found = measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA)
     for _ in range(2):
-        await rig.journal.measurement("frame", found)
+        await rig.recorder.measurement("frame", found)
     record = await rig.record()
     entry = record.measurements[0]
     assert entry.pose_mm_deg == pytest.approx((10, 20, 500, 5, 1, 179))
@@ -58,9 +58,9 @@ async def test_residuals_are_summed_up(rig: RunRig) -> None:
 async def test_the_fit_of_a_measurement_has_its_verdict(rig: RunRig) -> None:
     found = measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA)
     found.pose.residuals_m[0] = (0.0, 0.15e-3, 0.0)
-    await rig.journal.measurement("deck", found)
+    await rig.recorder.measurement("deck", found)
     found.pose.residuals_m[0] = (0.0, 0.25e-3, 0.0)
-    await rig.journal.measurement("seated", found)
+    await rig.recorder.measurement("seated", found)
     record = await rig.record()
     figures = record.newest_figures
     assert figures["worst_residual.deck"].value == pytest.approx(150.0)
@@ -72,18 +72,18 @@ async def test_the_fit_of_a_measurement_has_its_verdict(rig: RunRig) -> None:
 
 
 async def test_the_grip_is_recorded(rig: RunRig) -> None:
-    await rig.journal.deck_on_flange(UncertainPose(PLACE, np.diag(SIGMA**2)))
+    await rig.recorder.deck_on_flange(UncertainPose(PLACE, np.diag(SIGMA**2)))
     assert (await rig.record()).measurements[0].key == "flange_T_deck"
 
 
 async def test_force_curves_are_kept_once_and_can_be_read(rig: RunRig) -> None:
-    rig.journal.mating_progress(ended(curve(50, 20.0)))
-    await rig.journal.force_curves()
-    rig.journal.mating_progress(MatingProgress(MatingPhase.SLOW, 0.009, 0.0))
-    rig.journal.mating_progress(ended(curve(80, 36.0)))
-    rig.journal.mating_progress(ended(ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))))
-    await rig.journal.force_curves()
-    await rig.journal.force_curves()
+    rig.recorder.mating_progress(ended(curve(50, 20.0)))
+    await rig.recorder.force_curves()
+    rig.recorder.mating_progress(MatingProgress(MatingPhase.SLOW, 0.009, 0.0))
+    rig.recorder.mating_progress(ended(curve(80, 36.0)))
+    rig.recorder.mating_progress(ended(ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))))
+    await rig.recorder.force_curves()
+    await rig.recorder.force_curves()
     record = await rig.record()
     assert [a.name for a in record.artefacts] == ["force-1.mcap", "force-2.mcap"]
     data = await rig.archive.do(lambda store: store.artefacts.get(record.artefacts[1].sha256))
@@ -91,11 +91,11 @@ async def test_force_curves_are_kept_once_and_can_be_read(rig: RunRig) -> None:
     assert recording.complete
     assert recording.facts["attempt"] == "2"
     assert len(recording.curve.time_s) == 80
-    assert rig.journal.force_peaks()[2] == pytest.approx(36.0)
+    assert rig.recorder.force_peaks()[2] == pytest.approx(36.0)
 
 
 def test_peaks_are_unknown_before_the_first_contact(rig: RunRig) -> None:
-    assert np.isnan(rig.journal.force_peaks()).all()
+    assert np.isnan(rig.recorder.force_peaks()).all()
 
 
 def test_a_picture_is_a_jpeg() -> None:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.errors.force import MatingPlanInvalid, SensorSilent
+from cellctl.errors.force import ContactPlanInvalid, SensorSilent
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.guard.report import GuardTrip, TripReason
@@ -63,22 +63,22 @@ def test_travel_and_pose_are_inverse_of_each_other() -> None:
 
 
 def test_a_deck_that_is_known_badly_is_not_mated() -> None:
-    with pytest.raises(MatingPlanInvalid, match="known to"):
+    with pytest.raises(ContactPlanInvalid, match="known to"):
         plan(sigma_mm=0.1)
 
 
 def test_targets_may_not_reach_the_hard_end() -> None:
-    with pytest.raises(MatingPlanInvalid, match="D3"):
+    with pytest.raises(ContactPlanInvalid, match="D3"):
         plan(replace(SETTINGS, greatest_past_m=0.02))
 
 
 def test_the_guard_must_stop_below_the_limit() -> None:
-    with pytest.raises(MatingPlanInvalid, match="at or above the limit"):
+    with pytest.raises(ContactPlanInvalid, match="at or above the limit"):
         plan(replace(SETTINGS, limit_force_n=45.0))
 
 
 def test_a_force_window_without_room_is_refused() -> None:
-    with pytest.raises(MatingPlanInvalid, match="no window"):
+    with pytest.raises(ContactPlanInvalid, match="no window"):
         plan(replace(SETTINGS, abort_force_n=42.0))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.cell.free_moves import free_tolerance, watched
+from cellctl.cell.free_moves import free_tolerance, guarded_section
 from cellctl.errors.base import CellError
 from cellctl.guard.report import TareResult
 from cellctl.runtime.steps import HeldMeanwhile
@@ -51,7 +51,7 @@ async def test_a_load_that_nobody_has_identified_may_be_felt_as_far_as_the_arm_t
         return TareResult(np.array([0.0, 30.0, -1990.0, 1.0, 2.0, 3.0]), np.ones(6), 100)
 
     monkeypatch.setattr(guard, "tare", tare)
-    async with watched(deck.arm, free_tolerance(deck.arm)):
+    async with guarded_section(deck.arm, free_tolerance(deck.arm)):
         assert guard.armed
     assert not guard.armed
     assert guard.limits[0].filtered[0] == pytest.approx(

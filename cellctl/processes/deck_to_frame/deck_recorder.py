@@ -62,7 +62,7 @@ JPEG_QUALITY = 85
 
 
 @dataclass(slots=True)
-class Journal:
+class DeckRecorder:
     """Puts what the steps of one run find out into the terms of the record."""
 
     recorder: RunRecorder
