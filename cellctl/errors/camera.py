@@ -12,7 +12,7 @@ class CameraAbsent(CameraError):
 
     number = 221
     text = "Camera is not there"
-    cause = "No power, cable, another subnet than this PC's, or a mistyped serial number."
+    cause = "No power or cable, a mistyped name or number, or a firewall that drops its answers."
     remedy = "The detail names the cameras that are seen; the maker's tool shows other subnets too."
 
 
@@ -59,3 +59,21 @@ class CamerasNotTogether(CameraError):
     text = "Cameras of a head did not expose together"
     cause = "A busy PC or network delayed one trigger, or one camera missed it."
     remedy = "Look at the PC's load and the network; a wire between the cameras triggers both."
+
+
+class CameraOutOfReach(CameraError):
+    """The camera is seen, and its address is in another subnet than this PC's."""
+
+    number = 227
+    text = "Camera is in another subnet"
+    cause = "Camera and network interface have addresses that do not belong together."
+    remedy = "Give the camera an address of the interface's subnet by the maker's tool, or by DHCP."
+
+
+class SeveralCameras(CameraError):
+    """The cell file does not say which one of several cameras is meant."""
+
+    number = 228
+    text = "Several cameras have this name"
+    cause = "A user name or address that two cameras have, or the serial number of two makers."
+    remedy = "The detail names them; choose by another key, or give each a name of its own."

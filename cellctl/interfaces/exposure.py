@@ -16,5 +16,7 @@ class ExposureRecord:
     gain_db: float | None = None
     averaged: int = 1
     """Exposures of which the image is the mean; time stamps are those of the last."""
+    taken_again: int = 0
+    """Exposures that were dropped for this image, because they came damaged or were old ones."""
     device_time_ns: int | None = None
     """By the camera's own clock; its zero is the camera's affair."""

@@ -8,6 +8,7 @@ import mmap
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
+from ipaddress import IPv4Address
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -25,13 +26,15 @@ _TEXT_BYTES = 64
 _WORDS = (
     "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
     "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
-    "pulses", "wired_to", "strobes", "losses",
+    "pulses", "wired_to", "strobes", "losses", "address", "truncated",
 )  # fmt: skip
-_RESERVED_WORDS = 13
+_RESERVED_WORDS = 11
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
 Format = Literal["Mono8", "Mono12", "Mono12Packed", "BayerRG8"]
-Fault = Literal["drop", "lost", "incomplete", "stale", "slow_ms", "hang", "crash", "busy"]
+Fault = Literal[
+    "drop", "lost", "incomplete", "truncated", "stale", "slow_ms", "hang", "crash", "busy"
+]
 _FORMATS = {
     "Mono8": 0x01080001,
     "Mono12": 0x01100005,
@@ -49,6 +52,8 @@ class FakeCamera:
     width: int = 640
     height: int = 480
     pixel_format: Format = "Mono8"
+    address: str = "192.168.10.21"
+    """The interface is 192.168.10.1/24; a camera of another subnet is seen and out of reach."""
 
 
 class FakeCameras:
@@ -67,6 +72,7 @@ class FakeCameras:
             self._put(camera.serial, "width", camera.width)
             self._put(camera.serial, "height", camera.height)
             self._put(camera.serial, "pixel_format", _FORMATS[camera.pixel_format])
+            self._put(camera.serial, "address", int(IPv4Address(camera.address)))
             texts = self._at(camera.serial) + _CAMERA_BYTES - 2 * _TEXT_BYTES
             struct.pack_into(
                 f"{_TEXT_BYTES}s{_TEXT_BYTES}s",

@@ -3,16 +3,14 @@
 import ctypes
 import os
 import signal
-from collections.abc import Sequence
 from contextlib import suppress
 from multiprocessing import reduction
 from multiprocessing.connection import Connection
-from pathlib import Path
-
-from harvesters.core import Harvester
 
 from drivers.camera.gige.config import Acquisition
-from drivers.camera.gige.genicam_camera import GenicamCamera, seen_cameras
+from drivers.camera.gige.genicam_camera import GenicamCamera
+from drivers.camera.gige.producer_files import PRODUCER_PATH, producer_files
+from drivers.camera.gige.producers import Found, Producers
 from drivers.camera.gige.protocol import (
     Answer,
     CamerasSeen,
@@ -26,9 +24,9 @@ from drivers.camera.gige.protocol import (
     SentImage,
     Trouble,
 )
+from drivers.camera.gige.selection import selected
 from drivers.camera.gige.trouble import TroubleError
 
-PRODUCER_PATH = "GENICAM_GENTL64_PATH"
 _PR_SET_PDEATHSIG = 1
 
 
@@ -54,9 +52,8 @@ class _Cameras:
     """The producers and the cameras that are open."""
 
     def __init__(self) -> None:
-        self._harvester: Harvester | None = None
+        self._producers: Producers | None = None
         self._open: list[GenicamCamera] = []
-        self._damaged = 0
         self._tries = 1
         self._clean = False
         self._fired_by_others = False
@@ -66,7 +63,7 @@ class _Cameras:
         try:
             match request:
                 case ListRequest(acquisition):
-                    return CamerasSeen(seen_cameras(self._producers(acquisition))), []
+                    return self._seen(acquisition), []
                 case OpenRequest():
                     return self._opened(request), []
                 case GrabRequest():
@@ -81,23 +78,34 @@ class _Cameras:
             with suppress(TroubleError):
                 camera.close()
         self._open = []
-        if self._harvester is not None:
-            self._harvester.reset()
-            self._harvester = None
+        if self._producers is not None:
+            self._producers.close()
+            self._producers = None
 
-    def _producers(self, acquisition: Acquisition) -> Harvester:
-        if self._harvester is None:
-            self._harvester = Harvester()
-            for path in producer_files(acquisition):
-                _load(self._harvester, path)
-        return self._harvester
+    def _look(self, acquisition: Acquisition) -> tuple[Found, ...]:
+        if self._producers is None:
+            files = producer_files(acquisition)
+            if not files:
+                text = f"no producer: neither the settings nor {PRODUCER_PATH} name one (.cti)"
+                raise TroubleError(Trouble.PRODUCER, text)
+            self._producers = Producers(files)
+        return self._producers.look()
+
+    def _seen(self, acquisition: Acquisition) -> CamerasSeen:
+        found = self._look(acquisition)
+        return CamerasSeen(tuple(one.seen for one in found), self._unusable)
+
+    @property
+    def _unusable(self) -> tuple[str, ...]:
+        return () if self._producers is None else self._producers.unusable
 
     def _opened(self, request: OpenRequest) -> Opened:
         first = request.cameras[0].acquisition
-        harvester = self._producers(first)
-        seen = seen_cameras(harvester)
-        for setup in request.cameras:
-            camera = GenicamCamera(harvester, seen, setup.selection, setup.acquisition)
+        there = self._look(first)
+        # All are found before one is opened: a mistyped name costs nothing then.
+        found = [selected(there, one.selection, self._unusable) for one in request.cameras]
+        for one, setup in zip(found, request.cameras, strict=True):
+            camera = GenicamCamera(one, setup.selection, setup.acquisition)
             self._open.append(camera)
             camera.set_up()
         for camera in self._open:
@@ -108,17 +116,21 @@ class _Cameras:
         return Opened(tuple(camera.stated() for camera in self._open))
 
     def _grabbed(self) -> tuple[Answer, list[int]]:
-        for _ in range(self._tries):
-            images = self._expose()
-            if images is not None:
-                metas = tuple(meta for meta, _ in images)
-                return Grabbed(metas, self._damaged), [block for _, block in images]
-            self._damaged += 1
-        raise TroubleError(
-            Trouble.DAMAGED, f"{self._tries} exposures, and none of them whole and new"
-        )
+        damage = ""
+        for tried in range(self._tries):
+            try:
+                images = self._expose()
+            except TroubleError as error:
+                if error.trouble is not Trouble.DAMAGED:
+                    raise
+                damage = str(error)
+                continue
+            return Grabbed(tuple(meta for meta, _ in images), tried), [block for _, block in images]
+        text = f"{self._tries} exposures, none of them whole and new; of the last: {damage}"
+        raise TroubleError(Trouble.DAMAGED, text)
 
-    def _expose(self) -> Sequence[tuple[SentImage, int]] | None:
+    def _expose(self) -> list[tuple[SentImage, int]]:
+        """One image of every camera; raises ``TroubleError``."""
         if not self._clean or self._fired_by_others:
             # Whatever is still on its way belongs to a request that has failed, or to a pulse from
             # before this one: a wire does not ask whether anybody waits.
@@ -131,37 +143,23 @@ class _Cameras:
         # Nothing between the triggers of a head: both cameras are to expose together.
         for camera in self._open:
             camera.trigger()
-        images = [camera.image() for camera in self._open]
-        whole = [one for one in images if one is not None]
-        if len(whole) == len(images):
-            return whole
-        for _, block in whole:
-            os.close(block)
-        return None
+        return self._images()
 
-
-def producer_files(acquisition: Acquisition) -> tuple[Path, ...]:
-    """The producers to load; raises ``TroubleError`` when there is none."""
-    if acquisition.producers:
-        return acquisition.producers
-    folders = filter(None, os.environ.get(PRODUCER_PATH, "").split(os.pathsep))
-    found = tuple(path for folder in folders for path in sorted(Path(folder).glob("*.cti")))
-    if not found:
-        raise TroubleError(
-            Trouble.PRODUCER,
-            f"no producer: neither the cell file nor {PRODUCER_PATH} names a folder with a .cti",
-        )
-    return found
-
-
-def _load(harvester: Harvester, path: Path) -> None:
-    if not path.is_file():
-        raise TroubleError(Trouble.PRODUCER, f"no producer {path}")
-    try:
-        # Asked of the loader itself: harvesters only logs a file that it cannot load.
-        ctypes.CDLL(str(path))
-    except OSError as error:
-        raise TroubleError(
-            Trouble.PRODUCER, f"producer {path} cannot be loaded: {error}"
-        ) from error
-    harvester.add_file(str(path), check_existence=True, check_validity=True)
+    def _images(self) -> list[tuple[SentImage, int]]:
+        images: list[tuple[SentImage, int]] = []
+        damaged: list[TroubleError] = []
+        try:
+            for camera in self._open:
+                try:
+                    images.append(camera.image())
+                except TroubleError as error:
+                    if error.trouble is not Trouble.DAMAGED:
+                        raise
+                    damaged.append(error)  # the others are fetched all the same: nobody else does
+            if damaged:
+                raise damaged[0]
+        except TroubleError:
+            for _, block in images:
+                os.close(block)
+            raise
+        return images

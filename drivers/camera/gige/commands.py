@@ -7,13 +7,16 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.camera import ProducerUnusable
+from cellctl.errors.link import LinkError, ReplyTimeout
 from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.connection import LibraryProcess
-from drivers.camera.gige.protocol import CamerasSeen, ListRequest, SeenCamera
+from drivers.camera.gige.producer_files import PRODUCER_PATH, producer_files
+from drivers.camera.gige.protocol import CamerasSeen, CameraState, ListRequest, SeenCamera
 
 _PANEL = "Cell"
-_COLUMNS = ("serial_number", "user_name", "id", "vendor", "model", "state")
+_KEYS = ("serial_number", "user_name", "ip_address", "id")
+"""By which a cell file names a camera."""
 
 
 def add(app: typer.Typer) -> None:
@@ -24,42 +27,82 @@ def add(app: typer.Typer) -> None:
 def devices(
     producer: Annotated[
         list[Path] | None,
-        typer.Option(help="Producer of a camera maker (.cti); default: GENICAM_GENTL64_PATH."),
+        typer.Option(help=f"Producer of a camera maker (.cti); default: {PRODUCER_PATH}."),
     ] = None,
-    timeout_s: Annotated[float, typer.Option(help="For loading and looking.", min=1.0)] = 20.0,
+    timeout_s: Annotated[float, typer.Option(help="For each producer.", min=1.0)] = 20.0,
 ) -> None:
     """List the cameras that GenTL producers see; opens none of them."""
-    library = LibraryProcess("devices")
+    files = producer_files(Acquisition(producers=tuple(producer or ())))
+    if not files:
+        raise ProducerUnusable(f"none is named, and no folder of {PRODUCER_PATH} holds a .cti")
+    seen: list[SeenCamera] = []
+    failed: list[LinkError] = []
+    for path in files:
+        try:
+            seen += _seen_by(path, timeout_s)
+        except LinkError as error:
+            failed.append(error)
+    if len(failed) == len(files):
+        raise failed[0]
+    for fault in failed:
+        typer.echo(str(fault), err=True)
+    if not seen:
+        typer.echo("no camera is seen: look at its power, its cable, its subnet and the firewall")
+        return
+    Console().print(_table(seen))
+    typer.echo(_for_cell_file(seen))
+
+
+def _seen_by(producer: Path, timeout_s: float) -> tuple[SeenCamera, ...]:
+    """Asked in a process of its own: a library that crashes or hangs hides no other."""
+    library = LibraryProcess(producer.name)
     library.start()
     try:
-        answer, _ = library.ask(
-            ListRequest(Acquisition(producers=tuple(producer or ()))), timeout_s
-        )
+        answer, _ = library.ask(ListRequest(Acquisition(producers=(producer,))), timeout_s)
     finally:
         library.end()
     if not isinstance(answer, CamerasSeen):
         raise ReplyTimeout(f"{type(answer).__name__} for a list of cameras")
-    if not answer.cameras:
-        typer.echo("no camera is seen: look at its power, its cable and its subnet")
-        return
-    Console().print(_table(answer.cameras))
-    typer.echo(_for_cell_file(answer.cameras, producer or []))
+    return answer.cameras
 
 
-def _table(cameras: tuple[SeenCamera, ...]) -> Table:
-    table = Table(*_COLUMNS, box=None)
+def _table(cameras: list[SeenCamera]) -> Table:
+    table = Table(box=None)
+    for column in (*_KEYS, "camera", "state", "producer"):
+        table.add_column(column, overflow="fold")  # all of it: it is copied from here
     for one in cameras:
-        state = "in use" if one.busy else "free"
-        table.add_row(one.serial_number, one.user_name, one.id, one.vendor, one.model, state)
+        keys = [getattr(one, key) for key in _KEYS]
+        name = f"{one.vendor} {one.model}".strip()
+        table.add_row(*keys, name, one.state.value, Path(one.producer).name)
     return table
 
 
-def _for_cell_file(cameras: tuple[SeenCamera, ...], producers: list[Path]) -> str:
-    one = cameras[0]
-    chosen = ("serial_number", one.serial_number) if one.serial_number else ("id", one.id)
-    files = ", ".join(f'"{path.resolve()}"' for path in producers)
-    lines = ["", "For a cell file:", "", "[cameras.NAME]", 'driver = "gige"']
-    if files:
-        lines.append(f"settings.producers = [{files}]")
-    lines.append(f'settings.camera.{chosen[0]} = "{chosen[1]}"')
+def _for_cell_file(cameras: list[SeenCamera]) -> str:
+    """A piece of a cell file that opens: the first free cameras, as single one and as a head."""
+    usable = sorted(cameras, key=lambda one: one.state is not CameraState.FREE)
+    first = usable[0]
+    left, right = (usable * 2)[:2]
+    lines = ["", "For a cell file (a name is of small letters, digits and _):", "", "[cameras.eye]"]
+    lines += [*_head_of(first), f"settings.camera.{_key(first)}"]
+    if right is not left:
+        lines += ["", "or both as a stereo head:", "", "[stereo_cameras.head_1]"]
+        lines += [
+            *_head_of(left, right),
+            f"settings.left.{_key(left)}",
+            f"settings.right.{_key(right)}",
+        ]
     return "\n".join(lines)
+
+
+def _head_of(*cameras: SeenCamera) -> list[str]:
+    files = dict.fromkeys(str(Path(one.producer).resolve()) for one in cameras)
+    named = ", ".join(f'"{path}"' for path in files)
+    return ['driver = "gige"', f"settings.producers = [{named}]"]
+
+
+def _key(one: SeenCamera) -> str:
+    """What of it names the camera best."""
+    keys = ("serial_number", "user_name", "id")
+    return next(
+        f'{key} = "{getattr(one, key)}"' for key in keys if getattr(one, key) or key == "id"
+    )

@@ -1,9 +1,10 @@
 """The settings of a GenTL camera and of a head of two. Seconds, dB, bytes."""
 
+from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Annotated, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Feature = bool | int | float | str
@@ -18,14 +19,21 @@ class Selection(BaseModel):
     serial_number: str = ""
     user_name: str = ""
     """What the maker's tool calls "user defined name" or "device user ID"."""
+    ip_address: str = ""
+    """Of the camera. It stays the same only where it was set in the camera or by a DHCP server."""
     id: str = ""
-    """As the producer names it; for GigE Vision often the MAC or IP address."""
+    """As the producer names it."""
 
     @model_validator(mode="after")
     def _one_key(self) -> Self:
         if len(self.asked()) != 1:
-            raise ValueError("name a camera by one of serial_number, user_name and id")
+            raise ValueError("name a camera by one of serial_number, user_name, ip_address and id")
         return self
+
+    @field_validator("ip_address")
+    @classmethod
+    def _an_address(cls, text: str) -> str:
+        return str(IPv4Address(text)) if text else text
 
     def asked(self) -> dict[str, str]:
         """The key that is given, with its value."""
@@ -75,6 +83,8 @@ class GigeCameraConfig(Acquisition):
     """One camera."""
 
     camera: Selection
+    grey: bool = False
+    """Hand colour and mosaics on as 8 bit grey."""
 
 
 class GigeHeadConfig(Acquisition):
@@ -90,7 +100,8 @@ class GigeHeadConfig(Acquisition):
     right_features: dict[str, Feature] = Field(default_factory=dict)
     max_difference_s: Seconds = 0.005
     """Between the exposures of both cameras: by the times of their triggers in this PC, and by what
-    their own clocks say from one pair to the next."""
+    their own clocks say from one pair to the next. Of cameras that run freely (``trigger`` "none"):
+    between the request and the last image, unless ``clocks_agree``."""
     clocks_agree: bool = False
     """The clocks of both cameras are set by each other (IEEE 1588): compared as they are."""
 
@@ -108,6 +119,11 @@ class GigeHeadConfig(Acquisition):
     def _two_cameras(self) -> Self:
         if self.left == self.right:
             raise ValueError("left and right are the same camera")
-        if self.trigger == "none":
-            raise ValueError("a head needs a trigger: cameras that run freely do not meet")
+        if self.trigger == "none" and "max_difference_s" not in self.model_fields_set:
+            raise ValueError(
+                "cameras that run freely do not meet: say by max_difference_s for how long nothing "
+                "moves; it takes about four frames of the camera"
+            )
+        if self.trigger == "none" and self.right_trigger:
+            raise ValueError("a right_trigger needs a trigger of the left camera")
         return self

@@ -37,7 +37,8 @@ def delivered(buffer: Any, nodes: Any) -> Delivered | None:
     """The image of a buffer, or None for one without an image.
 
     ``buffer`` is the module of genicam, ``nodes`` the features of the camera for what the producer
-    does not say. Raises ``ValueError`` for a buffer that is smaller than its image.
+    does not say. Raises ``ValueError`` for a buffer that holds less than its image, or was to hold
+    more than it can.
     """
     parts: list[Any] = said(lambda: list(buffer.parts), [])
     image = next((part for part in parts if _is_image(part)), None)
@@ -55,11 +56,25 @@ def delivered(buffer: Any, nodes: Any) -> Delivered | None:
     width = int(_first(lambda: source.width, lambda: nodes.Width.value))
     height = int(_first(lambda: source.height, lambda: nodes.Height.value))
     bits = bits_per_pixel(number)
-    data = np.frombuffer(buffer.raw_buffer, dtype=np.uint8)[place.offset :]
+    data = _written(buffer)[place.offset :]
     lines = _lines(data, (height, width), bits, place.padding)
     if bits == 16 and said(lambda: buffer.pixel_endianness, 0) == _BIG_ENDIAN:
         lines = lines.view(np.uint16).byteswap().view(np.uint8)
-    return Delivered(dict_by_ints.get(number, f"0x{number:08X}"), width, height, lines)
+    return Delivered(format_name(number) or f"0x{number:08X}", width, height, lines)
+
+
+def format_name(number: int) -> str:
+    """The name of a pixel format by PFNC; empty for a number that it does not have."""
+    return str(dict_by_ints.get(number, ""))
+
+
+def _written(buffer: Any) -> NDArray[np.uint8]:
+    """The bytes of a buffer that belong to its last image; a shorter image leaves older ones."""
+    if said(lambda: bool(buffer.has_received_larger_payload()), False):  # noqa: FBT003 - unknown
+        raise ValueError("more bytes came than the buffer holds")
+    data = np.frombuffer(buffer.raw_buffer, dtype=np.uint8)
+    written = said(lambda: int(buffer.size_filled), 0)
+    return data[:written] if 0 < written < len(data) else data
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,13 +1,14 @@
 """A single camera and a stereo head over GenTL."""
 
 import asyncio
+import logging
 import math
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
 import numpy as np
 
-from cellctl.errors.camera import CamerasNotTogether, ImagesDamaged
+from cellctl.errors.camera import CameraFeatureRefused, CamerasNotTogether, ImagesDamaged
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.device import Device
@@ -15,7 +16,7 @@ from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
 from drivers.camera.gige.config import GigeCameraConfig, GigeHeadConfig
 from drivers.camera.gige.connection import Block, LibraryProcess
-from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey
+from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey, require_supported
 from drivers.camera.gige.protocol import (
     Answer,
     CameraSetup,
@@ -34,6 +35,7 @@ _PATIENCE_S = 2.0
 _CLOCK_DRIFT = 200e-6
 """Of two quartz clocks against each other; makers state 50 to 100 ppm for each."""
 T = TypeVar("T")
+_log = logging.getLogger(__name__)
 
 
 class GigeDevice(Device):
@@ -62,8 +64,8 @@ class GigeDevice(Device):
             raise LinkLost(f"{self.name}: not connected")
         return "+".join(camera.serial_number for camera in self._opened)
 
-    async def _exposed(self) -> tuple[tuple[SentImage, ...], list[Block]]:
-        async def grab() -> tuple[tuple[SentImage, ...], list[Block]]:
+    async def _exposed(self) -> tuple[Grabbed, list[Block]]:
+        async def grab() -> tuple[Grabbed, list[Block]]:
             if not self._opened:
                 raise LinkLost(f"{self.name}: not connected")
             if not self._library.running:
@@ -81,7 +83,9 @@ class GigeDevice(Device):
                 raise
             if not isinstance(answer, Grabbed) or len(blocks) != len(self._cameras):
                 raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for images")
-            return answer.images, blocks
+            if answer.taken_again:
+                _log.warning("%s: %d damaged or old images", self.name, answer.taken_again)
+            return answer, blocks
 
         return await self._in_turn(grab)
 
@@ -98,7 +102,7 @@ class GigeDevice(Device):
         except ValueError as error:
             raise ImagesDamaged(f"{self.name}: {error}") from error
 
-    def _record(self, number: int, image: SentImage, bits: int) -> ExposureRecord:
+    def _record(self, number: int, image: SentImage, bits: int, taken_again: int) -> ExposureRecord:
         camera = self._opened[number]
         return ExposureRecord(
             serial_number=camera.serial_number,
@@ -107,6 +111,7 @@ class GigeDevice(Device):
             exposure_s=camera.exposure_s,
             gain_db=camera.gain_db,
             averaged=self._settings.burst,
+            taken_again=taken_again,
             device_time_ns=image.device_time_ns or None,
         )
 
@@ -125,6 +130,18 @@ class GigeDevice(Device):
         if not isinstance(answer, Opened):
             raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for open cameras")
         self._opened = answer.cameras
+        for camera in answer.cameras:
+            await self._require_readable(camera)
+
+    async def _require_readable(self, camera: OpenedCamera) -> None:
+        """Raise ``CameraFeatureRefused`` for images that this driver could not read."""
+        try:
+            if camera.pixel_format:
+                require_supported(camera.pixel_format)
+        except ValueError as error:
+            await self._ended()
+            text = f"{self.name}: {camera.serial_number}: {error}; set pixel_format"
+            raise CameraFeatureRefused(text) from error
 
     async def _ended(self) -> None:
         self._opened = ()
@@ -154,16 +171,23 @@ class GigeCamera(GigeDevice, Camera):
 
     def __init__(self, name: str, config: GigeCameraConfig) -> None:
         super().__init__(name, (CameraSetup(config.camera, config),))
+        self._grey = config.grey
 
     async def grab(self) -> CameraImage:
         """Expose now; damaged images are taken again as often as the settings allow."""
         mean: RunningMean[Any] = RunningMean()
+        taken_again = 0
         for _ in range(self._settings.burst):
-            (image,), (data,) = await self._exposed()
+            grabbed, (data,) = await self._exposed()
+            (image,) = grabbed.images
+            taken_again += grabbed.taken_again
             pixels, pixel_format = self._decoded(image, data)
+            if self._grey and pixel_format is PixelFormat.RGB8:
+                pixels, pixel_format = grey(pixels, pixel_format, 8), PixelFormat.MONO8
             mean.add(pixels)
         deep = pixel_format is PixelFormat.MONO16
-        record = self._record(0, image, bits_of(image.pixel_format) if deep else 8)
+        bits = bits_of(image.pixel_format) if deep else 8
+        record = self._record(0, image, bits, taken_again)
         return CameraImage(mean.pixels(), pixel_format, image.time_s, self._next_frame(), record)
 
 
@@ -187,25 +211,36 @@ class GigeHead(GigeDevice, StereoCamera):
         """Expose both cameras now."""
         left: RunningMean[np.uint8] = RunningMean()
         right: RunningMean[np.uint8] = RunningMean()
+        taken_again = 0
         for _ in range(self._settings.burst):
-            images, blocks = await self._exposed()
+            grabbed, blocks = await self._exposed()
+            images = grabbed.images
+            taken_again += grabbed.taken_again
             self._require_together(images[0], images[1])
             for mean, image, block in zip((left, right), images, blocks, strict=True):
                 pixels, kind = self._decoded(image, block)
                 mean.add(grey(pixels, kind, bits_of(image.pixel_format)))
-        records = tuple(self._record(number, image, 8) for number, image in enumerate(images))
+        records = tuple(
+            self._record(number, image, 8, taken_again) for number, image in enumerate(images)
+        )
         time_s = images[0].time_s
         return StereoPair(left.pixels(), right.pixels(), time_s, self._next_frame(), records)
 
     def _require_together(self, left: SentImage, right: SentImage) -> None:
         """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""
-        by_wire = math.isnan(right.trigger_s)  # whose trigger this PC does not see
-        apart_s = 0.0 if by_wire else right.trigger_s - left.trigger_s
+        apart_s = self._apart_s(left, right)
         ahead_s = (left.device_time_ns - right.device_time_ns) * 1e-9
         before, self._ahead = self._ahead, (left.time_s, ahead_s)
         if self._clocks_agree:
-            apart_s = max(apart_s, abs(ahead_s))
-        elif before is not None and left.device_time_ns and right.device_time_ns:
+            # Of cameras that run freely the clocks know better than this PC.
+            freely = self._settings.trigger == "none"
+            apart_s = abs(ahead_s) if freely else max(apart_s, abs(ahead_s))
+        elif (
+            self._settings.trigger != "none"
+            and before is not None
+            and left.device_time_ns
+            and right.device_time_ns
+        ):
             # Each camera has a clock of its own, and only the change of their difference says
             # something; clocks drift apart by themselves meanwhile.
             change_s = abs(ahead_s - before[1])
@@ -216,3 +251,11 @@ class GigeHead(GigeDevice, StereoCamera):
                 f"{self.name}: {apart_s * 1e3:.1f} ms apart, allowed "
                 f"{self._max_difference_s * 1e3:.1f} ms"
             )
+
+    def _apart_s(self, left: SentImage, right: SentImage) -> float:
+        """What this PC knows of the time between both exposures."""
+        if self._settings.trigger == "none":
+            # Both were exposed at some time between the request and the last image.
+            return max(left.time_s, right.time_s) - min(left.trigger_s, right.trigger_s)
+        by_wire = math.isnan(right.trigger_s)
+        return 0.0 if by_wire else right.trigger_s - left.trigger_s

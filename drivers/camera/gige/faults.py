@@ -4,14 +4,18 @@ from cellctl.errors.camera import (
     CameraAbsent,
     CameraBusy,
     CameraFeatureRefused,
+    CameraOutOfReach,
     ImagesDamaged,
     ProducerUnusable,
+    SeveralCameras,
 )
 from cellctl.errors.link import LinkError, LinkLost, ReplyTimeout
 from drivers.camera.gige.protocol import RequestFailed, Trouble
 
 _FAULTS: dict[Trouble, type[LinkError]] = {
     Trouble.ABSENT: CameraAbsent,
+    Trouble.AMBIGUOUS: SeveralCameras,
+    Trouble.SUBNET: CameraOutOfReach,
     Trouble.BUSY: CameraBusy,
     Trouble.PRODUCER: ProducerUnusable,
     Trouble.FEATURE: CameraFeatureRefused,

@@ -2,19 +2,20 @@
 
 import math
 import os
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from genicam import gentl
-from harvesters.core import Callback, Harvester, ImageAcquirer
+from harvesters.core import Callback, ImageAcquirer
 from numpy.typing import NDArray
 
 from cellctl.clock import now_s
 from drivers.camera.gige.config import Acquisition, Selection
-from drivers.camera.gige.delivered import delivered, time_stamp
+from drivers.camera.gige.delivered import delivered, format_name, said, time_stamp
 from drivers.camera.gige.features import Features
-from drivers.camera.gige.protocol import OpenedCamera, SeenCamera, SentImage, Trouble
+from drivers.camera.gige.producers import Found
+from drivers.camera.gige.protocol import OpenedCamera, SentImage, Trouble
+from drivers.camera.gige.selection import label_of, opened
 from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors
 
 BUFFERS = 4
@@ -27,37 +28,25 @@ exposed before the request and read out after it; the exposure of the second may
 the first was read out. The third one begins after the second has ended."""
 
 
-def seen_cameras(harvester: Harvester) -> tuple[SeenCamera, ...]:
-    """All cameras that the producers see now. Closes those that are open."""
-    with camera_errors("looking for cameras", Trouble.PRODUCER):
-        harvester.update()
-        return tuple(_seen(info) for info in harvester.device_info_list)
-
-
 class GenicamCamera:
     """Open, set up and acquiring from the first call of ``start`` to ``close``."""
 
-    def __init__(
-        self,
-        harvester: Harvester,
-        seen: Sequence[SeenCamera],
-        camera: Selection,
-        settings: Acquisition,
-    ) -> None:
-        """``seen`` are the cameras that there are. Raises ``TroubleError``."""
-        asked = camera.asked()
-        self.label = " ".join(f"{key} {text}" for key, text in asked.items())
+    def __init__(self, found: Found, camera: Selection, settings: Acquisition) -> None:
+        """Raises ``TroubleError``."""
+        self.label = label_of(camera)
         self._settings = settings
-        self._acquirer = _create(harvester, seen, asked, self.label)
+        self._acquirer = opened(found, self.label)
         self._features = Features(self._acquirer.remote_device.node_map, self.label)
         self._acquirer.num_buffers = max(BUFFERS, self._acquirer.min_num_buffers)
         self._acquirer.timeout_period_on_update_event_data_call = POLL_MS
         self._incomplete = _Count()
         self._acquirer.add_callback(ImageAcquirer.Events.INCOMPLETE_BUFFER, self._incomplete)
         self._last_stamp = 0
+        self._last_number = 0
         self._trigger_s = math.nan
-        serial = self._features.text("DeviceSerialNumber") or self._features.text("DeviceID")
-        self.serial_number = serial or self.label
+        stated = [self._features.text(name) for name in ("DeviceSerialNumber", "DeviceID")]
+        seen = found.seen
+        self.serial_number = next(filter(None, (*stated, seen.serial_number, seen.id)), self.label)
 
     def set_up(self) -> None:
         """Write the settings; raises ``TroubleError`` with what the camera allows."""
@@ -68,12 +57,14 @@ class GenicamCamera:
         exposure_us = self._features.fixed("ExposureTime", "ExposureAuto")
         return OpenedCamera(
             serial_number=self.serial_number,
+            pixel_format=self._pixel_format(),
             exposure_s=None if exposure_us is None else exposure_us * 1e-6,
             gain_db=self._features.fixed("Gain", "GainAuto"),
         )
 
     def start(self) -> None:
         """Begin to acquire: with a trigger, nothing is exposed yet."""
+        self._last_number = 0  # they begin anew
         with camera_errors(self.label):
             self._acquirer.start()
 
@@ -84,21 +75,26 @@ class GenicamCamera:
 
     def drop_old(self) -> None:
         """Give back whatever was exposed before this call."""
-        while self._waiting() and (old := self._fetch(_EMPTY_S)) is not None:
-            self._give_back(old)
+        while self._waiting():
+            incomplete = self._incomplete.count
+            old = self._fetch(_EMPTY_S)
+            if old is not None:
+                self._give_back(old)
+            elif self._incomplete.count == incomplete:  # which harvesters gives back by itself
+                return
 
     def trigger(self) -> None:
-        """Expose now; nothing to do for a camera that runs freely."""
+        """Expose now; a camera that runs freely is exposing anyway."""
         if self._settings.trigger == "software":
             self._features.execute("TriggerSoftware")
+        if self._settings.trigger in {"software", "none"}:
             self._trigger_s = now_s()
 
-    def image(self) -> tuple[SentImage, int] | None:
+    def image(self) -> tuple[SentImage, int]:
         """The image of the last trigger, and a descriptor of memory with its bytes.
 
-        None for an image that is damaged or old.
-
-        Raises ``TroubleError`` when none comes in time.
+        Raises ``TroubleError``: ``DAMAGED`` for an image that is not whole, or an old one, and
+        ``SILENT`` when none comes in time.
         """
         skip = FREE_RUNNING_SKIP if self._settings.trigger == "none" else 0
         until_s = now_s() + self._settings.image_timeout_s
@@ -106,7 +102,7 @@ class GenicamCamera:
         while (left_s := until_s - now_s()) > 0:
             buffer = self._fetch(left_s)
             if self._incomplete.count > incomplete:
-                return None
+                raise TroubleError(Trouble.DAMAGED, f"{self.label}: packets are missing")
             if buffer is None:
                 continue
             if skip:
@@ -138,20 +134,16 @@ class GenicamCamera:
             except gentl.TimeoutException:
                 return None
 
-    def _taken(self, buffer: Any) -> tuple[SentImage, int] | None:
+    def _taken(self, buffer: Any) -> tuple[SentImage, int]:
         whole_s = now_s()
         nodes, device = self._acquirer.remote_device.node_map, self._acquirer.device.module
         try:
             with camera_errors(self.label, Trouble.DAMAGED):
                 stamp, time_ns = time_stamp(buffer, device, nodes)
-                # A time stamp that stands still is an old image again. Cameras without a clock say
-                # 0, and clocks that are set by the network may go back.
-                if stamp and stamp == self._last_stamp:
-                    return None
-                self._last_stamp = stamp
+                self._require_new(stamp, said(lambda: int(buffer.frame_id), 0))
                 image = delivered(buffer, nodes)
                 if image is None:
-                    return None
+                    raise TroubleError(Trouble.DAMAGED, f"{self.label}: a buffer without an image")
                 meta = SentImage(
                     pixel_format=image.pixel_format,
                     width=image.width,
@@ -167,6 +159,21 @@ class GenicamCamera:
         finally:
             self._give_back(buffer)
 
+    def _require_new(self, stamp: int, number: int) -> None:
+        """Raise ``TroubleError`` for an old image that comes again; 0 for what is not known.
+
+        The number of a frame counts where there is no clock. Neither is compared by size: a clock
+        that is set by the network may go back, and numbers begin anew after the last of 16 bit.
+        """
+        before, self._last_stamp = self._last_stamp, stamp
+        number_before, self._last_number = self._last_number, number
+        if stamp == before if stamp else number and number == number_before:
+            raise TroubleError(Trouble.DAMAGED, f"{self.label}: the image before came again")
+
+    def _pixel_format(self) -> str:
+        nodes = self._acquirer.remote_device.node_map
+        return format_name(said(lambda: int(nodes.PixelFormat.get_int_value()), 0))
+
     def _give_back(self, buffer: Any) -> None:
         with camera_errors(self.label):
             buffer.parent.queue_buffer(buffer)
@@ -181,40 +188,6 @@ class _Count(Callback):  # type: ignore[misc]  # harvesters has no types
 
     def emit(self, context: object = None) -> None:  # noqa: ARG002 - given by harvesters
         self.count += 1
-
-
-def _create(
-    harvester: Harvester, cameras: Sequence[SeenCamera], asked: dict[str, str], label: str
-) -> ImageAcquirer:
-    key, text = next(iter(asked.items()))
-    found = [n for n, seen in enumerate(cameras) if getattr(seen, key) == text]
-    if not found:
-        there = ", ".join(f"{one.serial_number} ({one.model})" for one in cameras) or "no camera"
-        raise TroubleError(Trouble.ABSENT, f"no camera with {label}; there is {there}")
-    if cameras[found[0]].busy:
-        raise TroubleError(Trouble.BUSY, f"{label} is controlled by another program")
-    with camera_errors(label):
-        return harvester.create(found[0])
-
-
-def _seen(info: Any) -> SeenCamera:
-    def said(name: str) -> str:
-        # Only a few of these are mandatory, and a producer says so by an exception.
-        try:
-            return str(getattr(info, name))
-        except GENICAM_ERRORS:
-            return ""
-
-    busy = said("access_status") in ("3", "4", "5")
-    return SeenCamera(
-        producer=str(info.parent.parent.id_) if hasattr(info.parent, "parent") else "",
-        id=said("id_"),
-        vendor=said("vendor"),
-        model=said("model"),
-        serial_number=said("serial_number"),
-        user_name=said("user_defined_name"),
-        busy=busy,
-    )
 
 
 def _memory(data: NDArray[np.uint8]) -> int:

@@ -33,6 +33,12 @@ def bits_of(name: str) -> int:
     return int(digits)
 
 
+def require_supported(name: str) -> None:
+    """Raise ``ValueError`` for a format that is not read here."""
+    _family_of(name)
+    bits_of(name)
+
+
 def decoded(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, PixelFormat]:
     """An image of ``data`` (bytes as they came) with what its samples are.
 
@@ -40,10 +46,14 @@ def decoded(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, Pi
     colour when it has 8 bit. Raises ``ValueError`` for a format that is not supported, or for too
     few bytes.
     """
+    return _family_of(name)(data, name, width, height)
+
+
+def _family_of(name: str) -> Callable[[Bytes, str, int, int], tuple[Pixels, PixelFormat]]:
     family = next((prefix for prefix in _FAMILIES if name.startswith(prefix)), None)
     if family is None:
         raise ValueError(f"pixel format {name} is not supported; {SUPPORTED}")
-    return _FAMILIES[family](data, name, width, height)
+    return _FAMILIES[family]
 
 
 def grey(pixels: Pixels, pixel_format: PixelFormat, bits: int) -> NDArray[np.uint8]:

@@ -11,6 +11,10 @@ class Trouble(Enum):
 
     ABSENT = "absent"
     """No producer sees such a camera."""
+    AMBIGUOUS = "ambiguous"
+    """Several cameras are what is asked for."""
+    SUBNET = "subnet"
+    """The camera is seen, and its address cannot be reached from this PC."""
     BUSY = "busy"
     """Another program controls the camera."""
     PRODUCER = "producer"
@@ -58,17 +62,29 @@ class ListRequest:
 Request = OpenRequest | GrabRequest | ListRequest
 
 
+class CameraState(Enum):
+    """Whether a camera can be opened, best first."""
+
+    FREE = "free"
+    OUT_OF_REACH = "other subnet"
+    IN_USE = "in use"
+
+
 @dataclass(frozen=True, slots=True)
 class SeenCamera:
-    """A camera that a producer sees."""
+    """A camera that a producer sees; empty texts for what that does not say."""
 
     producer: str
+    """Its file."""
     id: str
     vendor: str
     model: str
     serial_number: str
     user_name: str
-    busy: bool
+    ip_address: str
+    subnets: tuple[str, ...]
+    """Of the interface that it is seen on: the PC's addresses there, with their lengths of mask."""
+    state: CameraState
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +92,8 @@ class OpenedCamera:
     """One camera as it was set up; None for what it does not say or sets by itself."""
 
     serial_number: str
+    pixel_format: str
+    """By PFNC; empty where the camera does not say it, or by a number that PFNC does not have."""
     exposure_s: float | None
     gain_db: float | None
 
@@ -99,7 +117,8 @@ class SentImage:
     device_time_ns: int
     """By the camera's own clock."""
     trigger_s: float
-    """Monotonic, when its trigger had been sent; NaN for a camera that runs freely."""
+    """Monotonic, when its trigger had been sent; of a camera that runs freely, when it was asked
+    for, which is before its exposure; NaN for a wire, whose trigger this PC does not see."""
     time_s: float
     """Monotonic, when it was whole in this PC."""
 
@@ -109,8 +128,8 @@ class Grabbed:
     """One image of every camera."""
 
     images: tuple[SentImage, ...]
-    damaged: int
-    """Images that were taken again since the cameras were opened."""
+    taken_again: int
+    """Exposures before this one, for the same request, of which an image was damaged or old."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +137,8 @@ class CamerasSeen:
     """The answer to ``ListRequest``."""
 
     cameras: tuple[SeenCamera, ...]
+    unusable: tuple[str, ...] = ()
+    """Producers that could not be asked, and why."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,8 @@
 #define REGISTER_BYTES 1024
 #define TEXT_BYTES 64
 #define XML_ADDRESS 0x10000u
+#define INTERFACE_ADDRESS 0xC0A80A01u /* 192.168.10.1 */
+#define INTERFACE_MASK 0xFFFFFF00u
 
 /* What the test shares with the producer: a file that both have mapped, all words little-endian.
  * fakes/gentl/cameras.py has the same layout. */
@@ -31,7 +33,9 @@ typedef struct {
     volatile uint32_t wired_to;   /* Line1 is the exposure output of this camera, counted from 1; 0: none */
     volatile uint32_t strobes;    /* exposures begun, each a pulse on the exposure output */
     volatile uint32_t losses;     /* times that it has been lost: what was open before stays dead */
-    volatile uint32_t reserved[13];
+    volatile uint32_t address;    /* IPv4, as one number; in another subnet than INTERFACE_ADDRESS: out of reach */
+    volatile uint32_t truncated;  /* so many images are shorter than they should be, and called complete */
+    volatile uint32_t reserved[11];
     char serial[TEXT_BYTES], user_id[TEXT_BYTES];
 } camera_state;
 

@@ -14,6 +14,9 @@ extern char device_handles[MAX_CAMERAS], port_handles[MAX_CAMERAS], stream_handl
 shared_state *shared(void);
 camera *of_handle(void *handle, char *handles); /* NULL for a handle of another kind */
 int index_of_id(const char *id);                /* -1 for none */
+int seen_camera(uint32_t number);               /* by its place in the list of the interface; -1 for none */
+GC_ERROR interface_read(uint64_t address, void *data, size_t size);
+GC_ERROR interface_write(uint64_t address, const void *data, size_t size);
 GC_ERROR fail(GC_ERROR error, const char *what);
 
 #endif

@@ -37,7 +37,7 @@ int index_of_id(const char *id) {
     return -1;
 }
 
-static int seen(uint32_t number) {
+int seen_camera(uint32_t number) {
     for (uint32_t i = 0; state && i < state->count; i++) {
         if (!state->cameras[i].present || state->cameras[i].lost) continue;
         if (number-- == 0) return (int)i;
@@ -189,13 +189,13 @@ GC_API IFUpdateDeviceList(IF_HANDLE interface, bool8_t *changed, uint64_t timeou
 
 GC_API IFGetNumDevices(IF_HANDLE interface, uint32_t *count) {
     if (interface != &interface_handle) return fail(GC_ERR_INVALID_HANDLE, "no interface");
-    for (*count = 0; seen(*count) >= 0; ++*count) {}
+    for (*count = 0; seen_camera(*count) >= 0; ++*count) {}
     return GC_ERR_SUCCESS;
 }
 
 GC_API IFGetDeviceID(IF_HANDLE interface, uint32_t index, char *id, size_t *size) {
     if (interface != &interface_handle) return fail(GC_ERR_INVALID_HANDLE, "no interface");
-    int found = seen(index);
+    int found = seen_camera(index);
     if (found < 0) return fail(GC_ERR_INVALID_INDEX, "no such camera");
     return answer_id(state->cameras[found].serial, id, size);
 }
@@ -206,9 +206,14 @@ static bool taken_by_other(const camera_state *one) {
     return kill((pid_t)one->opened, 0) == 0;
 }
 
+static bool in_reach(const camera_state *one) {
+    return (one->address & INTERFACE_MASK) == (INTERFACE_ADDRESS & INTERFACE_MASK);
+}
+
 static GC_ERROR device_info(int index, int32_t what, INFO_DATATYPE *type, void *out, size_t *size) {
     camera_state *one = &state->cameras[index];
-    int32_t access = one->busy || taken_by_other(one) ? DEVICE_ACCESS_STATUS_BUSY
+    int32_t access = !in_reach(one) ? DEVICE_ACCESS_STATUS_NOACCESS
+                     : one->busy || taken_by_other(one) ? DEVICE_ACCESS_STATUS_BUSY
                      : cameras[index].is_open ? DEVICE_ACCESS_STATUS_OPEN_READWRITE
                                               : DEVICE_ACCESS_STATUS_READWRITE;
     switch (what) {
@@ -248,6 +253,7 @@ GC_API IFOpenDevice(IF_HANDLE interface, const char *id, int32_t access, DEV_HAN
     if (index < 0) return fail(GC_ERR_INVALID_ID, "no such camera");
     camera_state *one = &state->cameras[index];
     if (one->lost || !one->present) return fail(GC_ERR_IO, "the camera does not answer");
+    if (!in_reach(one)) return fail(GC_ERR_ACCESS_DENIED, "the camera is in another subnet");
     if (cameras[index].is_open) return fail(GC_ERR_RESOURCE_IN_USE, "the camera is open");
     if (one->busy || taken_by_other(one))
         return fail(GC_ERR_RESOURCE_IN_USE, "the camera is controlled by another program");

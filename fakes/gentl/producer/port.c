@@ -7,9 +7,10 @@
 __asm__(
     ".section .rodata\n"
     "camera_xml: .incbin \"" CAMERA_XML "\"\ncamera_xml_end: .byte 0\n"
+    "interface_xml: .incbin \"" INTERFACE_XML "\"\ninterface_xml_end: .byte 0\n"
     "module_xml: .incbin \"" MODULE_XML "\"\nmodule_xml_end: .byte 0\n"
     ".text\n");
-extern const char camera_xml[], camera_xml_end[], module_xml[], module_xml_end[];
+extern const char camera_xml[], camera_xml_end[], interface_xml[], interface_xml_end[], module_xml[], module_xml_end[];
 
 typedef struct { const char *name, *xml; size_t size; } description;
 
@@ -21,6 +22,8 @@ static bool known(PORT_HANDLE port) {
 static description described(PORT_HANDLE port) {
     if (of_handle(port, port_handles))
         return (description){"fake_gige_camera.xml", camera_xml, (size_t)(camera_xml_end - camera_xml)};
+    if (port == &interface_handle)
+        return (description){"fake_interface.xml", interface_xml, (size_t)(interface_xml_end - interface_xml)};
     return (description){"fake_module.xml", module_xml, (size_t)(module_xml_end - module_xml)};
 }
 
@@ -34,15 +37,16 @@ GC_API GCReadPort(PORT_HANDLE port, uint64_t address, void *data, size_t *size) 
         return GC_ERR_SUCCESS;
     }
     camera *self = of_handle(port, port_handles);
-    if (!self) return fail(GC_ERR_INVALID_ADDRESS, "a module without registers");
-    GC_ERROR error = camera_read(self, address, data, *size);
-    return error ? fail(error, "the camera does not answer") : error;
+    if (!self && port != &interface_handle) return fail(GC_ERR_INVALID_ADDRESS, "a module without registers");
+    GC_ERROR error = self ? camera_read(self, address, data, *size) : interface_read(address, data, *size);
+    return error ? fail(error, "the camera does not answer, or there is no such register") : error;
 }
 
 GC_API GCWritePort(PORT_HANDLE port, uint64_t address, const void *data, size_t *size) {
     camera *self = of_handle(port, port_handles);
-    if (!self) return fail(known(port) ? GC_ERR_INVALID_ADDRESS : GC_ERR_INVALID_HANDLE, "a port without registers");
-    GC_ERROR error = camera_write(self, address, data, *size);
+    if (!self && port != &interface_handle)
+        return fail(known(port) ? GC_ERR_INVALID_ADDRESS : GC_ERR_INVALID_HANDLE, "a port without registers");
+    GC_ERROR error = self ? camera_write(self, address, data, *size) : interface_write(address, data, *size);
     return error ? fail(error, "the camera refuses or does not answer") : error;
 }
 
@@ -127,7 +131,7 @@ GC_API GCGetPortInfo(PORT_HANDLE port, int32_t what, INFO_DATATYPE *type, void *
         case PORT_INFO_MODULE: return answer_text(module_of(port), type, out, size);
         case PORT_INFO_LITTLE_ENDIAN:
         case PORT_INFO_ACCESS_READ: return answer_bool(1, type, out, size);
-        case PORT_INFO_ACCESS_WRITE: return answer_bool(camera_port, type, out, size);
+        case PORT_INFO_ACCESS_WRITE: return answer_bool(camera_port || port == &interface_handle, type, out, size);
         case PORT_INFO_BIG_ENDIAN:
         case PORT_INFO_ACCESS_NA:
         case PORT_INFO_ACCESS_NI: return answer_bool(0, type, out, size);

@@ -91,6 +91,10 @@ static void take(camera *self) {
     if (!buffer || buffer->size < camera_payload(self)) return; /* nobody has given room: it is lost */
     expose(self, buffer, self->frame_id);
     buffer->filled = camera_payload(self);
+    if (self->state->truncated) {
+        self->state->truncated--;
+        buffer->filled /= 2;
+    }
     buffer->incomplete = self->state->incomplete > 0;
     if (buffer->incomplete) {
         self->state->incomplete--;

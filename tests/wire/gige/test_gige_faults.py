@@ -3,8 +3,11 @@
 import asyncio
 import os
 import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cellctl.errors.base import CellError
@@ -12,15 +15,26 @@ from cellctl.errors.camera import (
     CameraAbsent,
     CameraBusy,
     CameraFeatureRefused,
+    CameraOutOfReach,
     CamerasNotTogether,
     ImagesDamaged,
     ProducerUnusable,
+    SeveralCameras,
 )
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from drivers.camera.gige.config import GigeHeadConfig, Region, Selection
 from drivers.camera.gige.driver import GigeHead
-from fakes.gentl.cameras import FakeCameras
+from fakes.gentl.build import SOURCES, build_producer
+from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 from tests.wire.gige.conftest import LEFT, RIGHT, camera
+
+
+@contextmanager
+def network(folder: Path, cameras: list[FakeCamera]) -> Iterator[FakeCameras]:
+    """Other cameras than those of the fixture."""
+    with pytest.MonkeyPatch.context() as environment, FakeCameras(folder / "own", cameras) as fakes:
+        environment.setenv(ENVIRONMENT, str(fakes.path))
+        yield fakes
 
 
 async def refused(producer: Path, fault: type[CellError], **settings: object) -> str:
@@ -45,6 +59,57 @@ async def test_a_camera_is_found_by_its_user_name(producer: Path, fakes: FakeCam
     async with camera(producer, camera=Selection(user_name="right eye")) as eye:
         assert await eye.serial_number() == RIGHT
     assert fakes.opened(RIGHT) == 0
+
+
+async def test_a_camera_is_found_by_its_address(tmp_path: Path, producer: Path) -> None:
+    cameras = [FakeCamera(LEFT, address="192.168.10.7"), FakeCamera(RIGHT, address="192.168.10.8")]
+    with network(tmp_path, cameras):
+        async with camera(producer, camera=Selection(ip_address="192.168.10.8")) as eye:
+            assert await eye.serial_number() == RIGHT
+        said = await refused(producer, CameraAbsent, camera=Selection(ip_address="192.168.10.9"))
+    assert f"{LEFT} (fake GigE camera at 192.168.10.7)" in said
+
+
+async def test_a_name_that_two_cameras_have(tmp_path: Path, producer: Path) -> None:
+    with network(tmp_path, [FakeCamera(LEFT, "eye"), FakeCamera(RIGHT, "eye")]):
+        said = await refused(producer, SeveralCameras, camera=Selection(user_name="eye"))
+    assert LEFT in said
+    assert RIGHT in said
+
+
+async def test_a_camera_of_another_subnet(tmp_path: Path, producer: Path) -> None:
+    with network(tmp_path, [FakeCamera(LEFT, address="10.0.0.5")]):
+        said = await refused(producer, CameraOutOfReach)
+    assert "10.0.0.5" in said
+    assert "192.168.10.1/24" in said
+
+
+async def test_a_camera_out_of_reach_whose_producer_says_no_address(tmp_path: Path) -> None:
+    producer = build_producer(tmp_path, interface_xml=SOURCES / "module.xml")
+    with network(tmp_path, [FakeCamera(LEFT, address="10.0.0.5"), FakeCamera(RIGHT)]):
+        assert "cannot be reached" in await refused(producer, CameraOutOfReach)
+        async with camera(producer, camera=Selection(serial_number=RIGHT)) as eye:
+            await eye.grab()
+
+
+async def test_a_bad_producer_beside_a_good_one(
+    tmp_path: Path, producer: Path, fakes: FakeCameras
+) -> None:
+    bad = tmp_path / "a.cti"
+    bad.write_bytes(b"no library")
+    async with camera(producer, producers=(bad, producer)) as eye:
+        await eye.grab()
+    absent = Selection(serial_number="GL-7")
+    said = await refused(producer, CameraAbsent, producers=(bad, producer), camera=absent)
+    assert "a.cti cannot be loaded" in said
+
+
+async def test_a_producer_that_does_not_start(
+    producer: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It loads, and its own initialisation fails: here, for want of its file of cameras."""
+    monkeypatch.setenv(ENVIRONMENT, "/nowhere")
+    assert "fake_gentl.cti cannot be used" in await refused(producer, ProducerUnusable)
 
 
 async def test_a_camera_that_another_program_has(producer: Path, fakes: FakeCameras) -> None:
@@ -102,20 +167,70 @@ async def test_settings_reach_the_camera(producer: Path, fakes: FakeCameras) -> 
     assert image.pixels[0, 0] == (16 * (8 + 3 * 4 + 37 * first) + 5) & 0x0FFF
 
 
-@pytest.mark.parametrize("fault", ["incomplete", "stale"])
-async def test_a_damaged_image_is_taken_again(
-    producer: Path, fakes: FakeCameras, fault: str
+@pytest.mark.parametrize(
+    ("fault", "words"),
+    [
+        ("incomplete", "packets are missing"),
+        ("truncated", "1536 bytes of buffer, 3072 are needed"),
+        ("stale", "the image before came again"),
+    ],
+)
+async def test_a_damaged_image_is_taken_again_and_counted(
+    producer: Path, fakes: FakeCameras, fault: Fault, words: str
 ) -> None:
     async with camera(producer) as eye:
-        await eye.grab()
-        fakes.inject(LEFT, fault, 2)  # type: ignore[arg-type]
         image = await eye.grab()
-        assert image.pixels[0, 0] == (37 * fakes.exposures(LEFT)) & 0xFF
-        assert image.pixels[-1, -1] != 0
-        fakes.inject(LEFT, fault, 3)  # type: ignore[arg-type]
-        with pytest.raises(ImagesDamaged):
+        assert image.exposure is not None
+        assert image.exposure.taken_again == 0
+        fakes.inject(LEFT, fault, 2)
+        image = await eye.grab()
+        assert np.array_equal(image.pixels, expected_image(fakes.exposures(LEFT), 64, 48, "Mono8"))
+        assert image.exposure is not None
+        assert image.exposure.taken_again == 2
+        fakes.inject(LEFT, fault, 3)
+        with pytest.raises(ImagesDamaged, match=words):
             await eye.grab()
         await eye.grab()
+
+
+async def test_a_camera_without_clock_is_not_believed_twice(
+    tmp_path: Path, fakes: FakeCameras
+) -> None:
+    """Its time stamps are all 0; the numbers of its frames tell an old image."""
+    producer = build_producer(tmp_path, "-DTICKS_PER_S=0")
+    async with camera(producer) as eye:
+        image = await eye.grab()
+        fakes.inject(LEFT, "stale", 1)
+        image = await eye.grab()
+    assert image.exposure is not None
+    assert image.exposure.device_time_ns is None
+    assert image.exposure.taken_again == 1
+    assert np.array_equal(image.pixels, expected_image(2, 64, 48, "Mono8"))
+
+
+@pytest.mark.parametrize("fault", ["incomplete", "drop"])
+async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
+    producer: Path, fakes: FakeCameras, fault: Fault
+) -> None:
+    settings = GigeHeadConfig(
+        left=Selection(serial_number=LEFT),
+        right=Selection(serial_number=RIGHT),
+        producers=(producer,),
+        exposure_s=0.001,
+        image_timeout_s=0.2,
+        tries=1,
+        max_difference_s=1.0,
+    )
+    async with GigeHead("head", settings) as head:
+        await head.grab()
+        folder = f"/proc/{fakes.opened(LEFT)}/fd"
+        before = len(os.listdir(folder))
+        for _ in range(3):
+            fakes.inject(RIGHT, fault, 1)
+            with pytest.raises((ImagesDamaged, ReplyTimeout)):
+                await head.grab()
+        await head.grab()
+        assert len(os.listdir(folder)) == before
 
 
 async def test_an_image_that_comes_late_is_nobodys(producer: Path, fakes: FakeCameras) -> None:

@@ -9,6 +9,7 @@ from genicam import genapi
 
 from cellctl.clock import now_s
 from cellctl.errors.camera import CameraFeatureRefused
+from cellctl.interfaces.camera import PixelFormat
 from drivers.camera.gige.config import GigeCameraConfig, Region, Selection
 from drivers.camera.gige.features import Features
 from fakes.gentl.build import SOURCES, build_producer
@@ -69,7 +70,7 @@ async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCame
         text = without(name, text)
     async with camera(producer_of(tmp_path, text)) as eye:
         image = await eye.grab()
-        assert LEFT in await eye.serial_number()
+        assert await eye.serial_number() == LEFT  # which its producer knows
     assert image.exposure is not None
     assert image.exposure.gain_db is None
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
@@ -165,6 +166,31 @@ async def test_padded_lines_and_packed_samples(
     async with camera(producer, pixel_format=pixel_format) as eye:
         image = await eye.grab()
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, pixel_format))
+
+
+async def test_a_mosaic_as_colour_and_as_grey(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer, pixel_format="BayerRG8") as eye:
+        colour = await eye.grab()
+    async with camera(producer, pixel_format="BayerRG8", grey=True) as eye:
+        grey = await eye.grab()
+    assert colour.pixel_format is PixelFormat.RGB8
+    assert grey.pixel_format is PixelFormat.MONO8
+    expected = np.rint(colour.pixels @ np.array([0.299, 0.587, 0.114]))
+    assert np.array_equal(grey.pixels, expected)
+
+
+async def test_a_format_that_is_not_read_is_refused_before_the_first_image(
+    tmp_path: Path, fakes: FakeCameras
+) -> None:
+    """A colour camera that was left at YUV422_8, by the number that PFNC gives it."""
+    listed = '<EnumEntry Name="Mono8" NameSpace="Standard"><Value>0x01080001<'
+    text = description()
+    assert listed in text
+    text = text.replace(listed, listed.replace("Mono8", "YUV422_8").replace("01080001", "02100032"))
+    eye = camera(producer_of(tmp_path, text), pixel_format="YUV422_8")
+    with pytest.raises(CameraFeatureRefused, match=r"YUV422_8 is not supported.*set pixel_format"):
+        await eye.connect()
+    assert fakes.opened(LEFT) == 0
 
 
 async def test_a_clock_of_ticks(tmp_path: Path, fakes: FakeCameras) -> None:
