@@ -2,6 +2,7 @@
 
 import ast
 import statistics
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,10 @@ BLOCKS = {
 OUTSIDE_ITS_BLOCK = {564}
 """Numbers that were given before their fault came to the file where it belongs; they stay."""
 DRIVER_FILES = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
+
+
+FOR_DRIVERS = {"interfaces", "geometry", "errors", "clock"}
+"""What of cellctl a driver may import."""
 
 
 def lines(path: Path) -> int:
@@ -103,3 +108,17 @@ def test_driver_protocols_do_no_io(folder: Path) -> None:
         if isinstance(node, ast.ImportFrom)
     }
     assert not imported & {"asyncio", "socket", "serial", "can", "select", "threading"}
+
+
+def test_import_contracts_name_every_package_of_the_core() -> None:
+    core = {path.stem for path in (ROOT / "cellctl").iterdir() if path.suffix in {"", ".py"}}
+    core -= {"__init__", "__pycache__"}
+    document = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    contracts = {one["name"]: one for one in document["tool"]["importlinter"]["contracts"]}
+    knows_no_process = contracts["the core knows no process"]["source_modules"]
+    assert set(knows_no_process) == {f"cellctl.{name}" for name in core - {"processes"}}
+    hidden = contracts["drivers see only interfaces, geometry, errors and the clock"]
+    assert set(hidden["forbidden_modules"]) == {
+        "fakes",
+        *(f"cellctl.{name}" for name in core - FOR_DRIVERS),
+    }

@@ -4,8 +4,7 @@ from typing import Any, cast
 
 from cellctl import plugins
 from cellctl.config.devices import RobotConfig
-from cellctl.geometry.box import Box
-from cellctl.interfaces import Robot
+from cellctl.interfaces import MotionBounds, Robot
 
 
 def robot_driver(robot: RobotConfig) -> tuple[type[Robot], Any]:
@@ -14,12 +13,7 @@ def robot_driver(robot: RobotConfig) -> tuple[type[Robot], Any]:
     return cast(type[Robot], driver), driver.Config.model_validate(robot.settings)
 
 
-def flange_box(robot: RobotConfig) -> Box | None:
-    """The box in its base that the flange must stay in; None where the settings give none.
-
-    A driver that bounds its targets has ``workspace_min_mm`` and ``workspace_max_mm``.
-    """
-    _, settings = robot_driver(robot)
-    lower = getattr(settings, "workspace_min_mm", None)
-    upper = getattr(settings, "workspace_max_mm", None)
-    return None if lower is None or upper is None else Box.from_mm(lower, upper)
+def motion_bounds(robot: RobotConfig) -> MotionBounds:
+    """What the driver refuses with these settings; raises like ``robot_driver``."""
+    driver, settings = robot_driver(robot)
+    return driver.bounds(settings)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
     from cellctl.interfaces.gripper import Gripper, GripperState
+    from cellctl.interfaces.motion_bounds import MotionBounds
     from cellctl.interfaces.robot import Robot, RobotMode, RobotState
     from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
     from cellctl.interfaces.stop_channel import FlangeState, StopChannel
@@ -34,6 +35,7 @@ __all__ = [
     "FtSensor",
     "Gripper",
     "GripperState",
+    "MotionBounds",
     "PixelFormat",
     "PoseStream",
     "Robot",
@@ -56,6 +58,7 @@ _MODULES = {
     "digital_io": ("DigitalIo", "DigitalIoState"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
     "gripper": ("Gripper", "GripperState"),
+    "motion_bounds": ("MotionBounds",),
     "robot": ("Robot", "RobotMode", "RobotState"),
     "stereo_camera": ("StereoCamera", "StereoPair"),
     "stop_channel": ("FlangeState", "StopChannel"),

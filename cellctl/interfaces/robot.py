@@ -12,6 +12,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.device import Device
+from cellctl.interfaces.motion_bounds import MotionBounds
 
 ForwardKinematics = Callable[[Array], RigidTransform]
 """``base_T_flange`` at joints, shape (6,), in rad."""
@@ -91,6 +92,15 @@ class Robot(Device):
         ``joints_rad`` has shape (6,). `cellctl check` asks for every taught pose; a driver that
         does not know says nothing, and refuses the move itself.
         """
+
+    @classmethod
+    def bounds(cls, config: Any) -> MotionBounds:  # noqa: ARG003
+        """What the driver refuses with these settings.
+
+        `cellctl check` holds the speeds of the cell file and the places of recipes against it, so
+        that a mistake is found before the first move.
+        """
+        return MotionBounds()
 
     @classmethod
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:  # noqa: ARG003

@@ -1,23 +1,16 @@
-"""Figures of a robot that its section and the settings of its driver both hold.
-
-A driver that bounds speeds has ``max_speed_mm_s``, ``max_acceleration_mm_s2`` and
-``max_joint_speed_percent``; one that knows its kinematics has ``dh``, rows of angle (deg), d (mm),
-a (mm) and twist (deg).
-"""
+"""Figures of a robot that its section and its driver both know."""
 
 from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import RobotConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import robot_driver
+from cellctl.config.robot_drivers import motion_bounds, robot_driver
+from cellctl.geometry.pose import MM
 
-_BOUNDED = {
-    "speed_percent": "max_joint_speed_percent",
-    "linear_speed_mm_s": "max_speed_mm_s",
-    "linear_acceleration_mm_s2": "max_acceleration_mm_s2",
-}
 _SAME_MM = 0.01
+_SAME_RATIO = 1e-9
+"""Bounds went through SI and back."""
 
 
 def robot_issues(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
@@ -33,12 +26,18 @@ def robot_issues(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
 
 
 def _speeds(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
-    _, settings = robot_driver(robot)
-    for key, bound in _BOUNDED.items():
-        most, value = getattr(settings, bound, None), getattr(robot, key)
-        if most is not None and value > most:
+    bounds = motion_bounds(robot)
+    most_by_key = {
+        "speed_percent": (bounds.joint_speed_ratio, 100.0),
+        "linear_speed_mm_s": (bounds.speed_m_s, 1 / MM),
+        "linear_acceleration_mm_s2": (bounds.acceleration_m_s2, 1 / MM),
+    }
+    for key, (bound, units) in most_by_key.items():
+        value = getattr(robot, key)
+        if bound is not None and value > bound * units * (1 + _SAME_RATIO):
             # The driver would refuse the first move; that is too late to hear of it.
-            yield ConfigIssue(f"{path}.{key}", f"{value:g}", f"at most {bound} = {most:g}")
+            allowed = f"at most {bound * units:g}, by the bounds in {path}.settings"
+            yield ConfigIssue(f"{path}.{key}", f"{value:g}", allowed)
 
 
 def _maintenance(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
@@ -53,12 +52,13 @@ def _maintenance(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
 
 
 def _lengths(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
-    _, settings = robot_driver(robot)
-    table = getattr(settings, "dh", None)
-    if table is None:
+    driver, settings = robot_driver(robot)
+    chain = driver.chain(settings)
+    if chain is None:
         return
-    for key, length in (("d1_mm", table[0][1]), ("a1_mm", table[0][2])):
+    _, d1_m, a1_m, _ = chain.dh[0]
+    for key, length in (("d1_mm", d1_m / MM), ("a1_mm", a1_m / MM)):
         value = getattr(robot, key)
         if value is not None and abs(value - length) > _SAME_MM:
-            allowed = f"{length:g}, as the first row of {path}.settings.dh has it"
+            allowed = f"{length:g}, as the first link of the arm in {path}.settings has it"
             yield ConfigIssue(f"{path}.{key}", f"{value:g}", allowed)

@@ -3,17 +3,30 @@
 from typing import Any
 
 from cellctl.geometry.arm.chain import ArmChain
+from cellctl.geometry.box import Box
+from cellctl.geometry.pose import MM
+from cellctl.interfaces.motion_bounds import MotionBounds
 from cellctl.interfaces.robot import ForwardKinematics, Robot
 from drivers.robot.siasun.kinematics import arm_chain
 
 
 class DescribedArm(Robot):
-    """Answers by the dh table of the settings, which are ``MotionLimits``."""
+    """Answers by the settings, which are ``MotionLimits``."""
 
     @classmethod
     def checks_joint_ways(cls, config: Any) -> bool:
         """Only with a dh table in the configuration."""
         return config.dh is not None
+
+    @classmethod
+    def bounds(cls, config: Any) -> MotionBounds:
+        """As the configuration has them."""
+        return MotionBounds(
+            flange_box=Box.from_mm(config.workspace_min_mm, config.workspace_max_mm),
+            joint_speed_ratio=config.max_joint_speed_percent / 100,
+            speed_m_s=config.max_speed_mm_s * MM,
+            acceleration_m_s2=config.max_acceleration_mm_s2 * MM,
+        )
 
     @classmethod
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:

@@ -6,7 +6,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import flange_box
+from cellctl.config.robot_drivers import motion_bounds
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
@@ -15,7 +15,7 @@ def reach_issues(
     cell: CellConfig, main: str, recipe: DeckRecipe, key: str
 ) -> Iterator[ConfigIssue]:
     """The nominal flange poses at the stand-off and at the seat, against the driver's bounds."""
-    box = flange_box(cell.robots[main])
+    box = motion_bounds(cell.robots[main]).flange_box
     if box is None:
         return
     base_T_frame = pose_from_xyzabc(recipe.base_T_frame)
@@ -28,7 +28,7 @@ def reach_issues(
             x, y, z = place_m / MM
             allowed = (
                 f"with the deck {what} the flange is at x {x:.0f}, y {y:.0f}, z {z:.0f} mm, "
-                f"outside workspace_min_mm to workspace_max_mm of robots.{main}.settings"
+                f"outside the box that robots.{main}.settings give it"
             )
             yield ConfigIssue(f"{key}.base_T_frame", str(list(recipe.base_T_frame)), allowed)
             return
