@@ -36,7 +36,7 @@ from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun.state_channel import StateChannel
 from drivers.robot.siasun.stream import SiasunStream
-from drivers.robot.siasun.targets import Target, Targets
+from drivers.robot.siasun.targets import MotionTarget, Targets
 
 
 class SiasunRobot(DescribedArm, StreamingRobot):
@@ -230,7 +230,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._latch = None
         self._state.forget_pauses()
 
-    async def _move(self, build: Callable[[int, int], bytes], target: Target) -> RobotState:
+    async def _move(self, build: Callable[[int, int], bytes], target: MotionTarget) -> RobotState:
         """Run one motion to standstill; leave it early only after stopping the robot."""
         self._check_ready()
         target.check_way(self.state(self._config.stale_s))

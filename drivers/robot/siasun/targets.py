@@ -13,7 +13,7 @@ from drivers.robot.siasun.config import MotionLimits
 
 
 @dataclass(frozen=True, slots=True)
-class Target:
+class MotionTarget:
     """One target of a move."""
 
     check_way: Callable[[RobotState], None]
@@ -29,16 +29,16 @@ class Targets:
         self._bounds = bounds
         self._arrival = Arrival(config)
 
-    def joints(self, joints_rad: Array) -> Target:
+    def joints(self, joints_rad: Array) -> MotionTarget:
         """Of a joint move to joints of shape (6,)."""
-        return Target(
+        return MotionTarget(
             lambda state: self._bounds.joint_way(state, joints_rad),
             lambda state: self._arrival.off_joints(state, joints_rad),
         )
 
-    def flange(self, base_T_flange: RigidTransform) -> Target:
+    def flange(self, base_T_flange: RigidTransform) -> MotionTarget:
         """Of a straight move of the flange, of any length."""
-        return Target(
+        return MotionTarget(
             lambda state: self._bounds.linear_way(state, base_T_flange),
             lambda state: self._arrival.off_pose(state, base_T_flange),
         )

@@ -31,7 +31,7 @@ from cellctl.interfaces.streaming_robot import (
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.described_arm import DescribedArm
-from drivers.robot.siasun.targets import Target, Targets
+from drivers.robot.siasun.targets import MotionTarget, Targets
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.codec.messages import Request
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
@@ -220,7 +220,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         )
         return await self._move(call, self._targets.flange(base_T_flange))
 
-    async def _move(self, call: Request, target: Target) -> RobotState:
+    async def _move(self, call: Request, target: MotionTarget) -> RobotState:
         """Run one motion to standstill; leave it early only after stopping the robot."""
         self._check_ready()
         target.check_way(self.state(self._config.stale_s))
