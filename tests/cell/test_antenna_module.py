@@ -8,6 +8,9 @@ from typing import Any
 
 import pytest
 
+from cellctl.processes.antenna_module.record import keys
+from cellctl.records import RunStore
+from cellctl.records.entries import RunResult
 from tests.cell.rigs.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
@@ -49,7 +52,7 @@ def test_a_module_is_plugged(antenna: OwnCell) -> None:
     [
         ("world:empty_tray", "F580", "absent"),
         ("world:turned", "F581", "tray"),
-        ("world:bent_pin", "F473", "gripper"),
+        ("world:bent_pin", "F473", "tray"),
         ("world:grip_off", "F586", "gripper"),
     ],
 )
@@ -92,3 +95,29 @@ def test_a_module_that_was_gripped_badly_is_gripped_again_and_plugged(antenna: O
     with antenna.control() as control:
         assert control.request("truth")["truth"]["module"] == "socket"
     assert [entry for entry in daemon.log if entry.get("event") == "fault"] == []
+
+
+def test_a_seat_that_comes_early_ends_with_the_module_out_of_its_socket(antenna: OwnCell) -> None:
+    antenna.fake(seed=2).ready()
+    daemon = antenna.daemon()
+    daemon.ready()
+    with antenna.control() as control:
+        control.request("inject", device="world", name="foreign_body", early_mm=0.3)
+        control.request("load")
+    plc = antenna.plc("--recipe", "1", "--serial", "MOD-0002")
+    assert plc.end(300) != 0, plc.stdout
+    assert [entry["number"] for entry in daemon.log if entry.get("event") == "fault"] == [572]
+    with antenna.control() as control:
+        truth = control.request("truth")["truth"]
+    # Backed out with sound pins, still in the gripper, which is the operator's to open.
+    assert truth["module"] == "gripper"
+    assert set(truth["pins"].values()) == {"outside"}
+    assert truth["seated_depth_mm"] < 0.0
+    store = RunStore(antenna.data, create=False)
+    try:
+        record = store.run(1)
+    finally:
+        store.close()
+    assert record.head.result is RunResult.BAD
+    assert [phase.number for phase in record.phases].count(80) == 1
+    assert [one.name for one in record.artefacts].count(keys.CURVE) == 1

@@ -19,6 +19,7 @@ from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
 from cellctl.processes.antenna_module.recipe import Place
+from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
 from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.camera.single_camera import SingleCamera
@@ -102,6 +103,12 @@ def combined(poses: tuple[UncertainPose, ...]) -> UncertainPose:
     if apart_m > _MOST_APART_M:
         raise LooksDisagree(f"{len(poses)} images, one is {apart_m * 1e6:.1f} µm off their mean")
     return UncertainPose(mean.pose, poses[0].covariance)
+
+
+def height_by_size(base_T_camera: RigidTransform, frames: tuple[MeasuredMarks, ...]) -> float:
+    """Height of marks along z of the base, by how large they look: the mean of the frames, m."""
+    heights_m = [(base_T_camera * one.camera_T_marks_by_size).translation[2] for one in frames]
+    return float(np.mean(heights_m))
 
 
 def plane_by(

@@ -9,10 +9,11 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.processes.antenna_module.connector.connector import Connector
 
-_HALF_TURN = RigidTransform.from_rotation(Rotation.from_euler("y", 180, degrees=True))
+MATED_TURN = RigidTransform.from_rotation(Rotation.from_euler("y", 180, degrees=True))
+"""The drawing of a plug in that of its socket where both origins meet."""
 
 
 def connector_T_plug(socket: Connector) -> RigidTransform:
     """From the drawing of the plug to the chain's frame ``plug``."""
-    socket_T_connector = RigidTransform.from_translation([0, 0, -socket.seat_depth_m]) * _HALF_TURN
+    socket_T_connector = RigidTransform.from_translation([0, 0, -socket.seat_depth_m]) * MATED_TURN
     return socket_T_connector.inv()

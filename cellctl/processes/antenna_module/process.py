@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
+from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
     GrippedOffTwice,
     MovedOnRelease,
@@ -55,6 +56,9 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
             PlugNotHeld,
             MovedOnRelease,
             GrippedOffTwice,
+            # Of the plug alone: what is wrong with a socket is told as SocketUnsound.
+            ContactMissing,
+            ContactBent,
         }
     )
 

@@ -81,7 +81,14 @@ class AntennaRecipe(Recipe):
     max_age_s: Annotated[float, Field(gt=0, le=600)] = 60.0
     """Of a look when the plug goes in."""
     seated_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.1
-    """How far the module may stand from its plan after release."""
+    """How far the module may stand from its place after release, sideways."""
+    seated_limit_deg: Annotated[float, Field(gt=0, le=5)] = 0.5
+    """How far it may be turned there about the axis of the socket."""
+    gap_limit_mm: Annotated[float, Field(gt=0, le=1)] = 0.1
+    """How far it may have come up from where it was felt to sit."""
+    gap_zero_mm: Annotated[float, Field(ge=-0.5, le=0.5)] = 0.0
+    """What the gap reads for a module that sits: errors of the arm between tray and socket, alike
+    for every module. From the records of good ones."""
     insertion: Insertion = Insertion()
 
     def files(self) -> Mapping[str, str]:

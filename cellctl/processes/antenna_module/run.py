@@ -1,6 +1,6 @@
 """What every step of one plugging works with: devices, facts, looking, moving, recording."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Self
 
 from cellctl.processes.antenna_module.drawings import Drawings
@@ -29,6 +29,8 @@ class PluggingRun:
     eyes: Eyes
     mover: Mover
     last_check: LastCheck
+    second_looks: list[str] = field(default_factory=list)
+    """Names of the looks that were taken a second time."""
     prefix: str = ""
     """Before the names of files and entries, where one run plugs several times."""
 
@@ -59,7 +61,7 @@ class PluggingRun:
             ),
             Mover(cell),
             LastCheck() if last_check is None else last_check,
-            prefix,
+            prefix=prefix,
         )
 
     @property

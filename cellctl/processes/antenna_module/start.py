@@ -5,8 +5,9 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.looking import nominal
+from cellctl.processes.antenna_module.mated import MATED_TURN
 from cellctl.processes.antenna_module.moving import Mover, raised
-from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import GripperEmpty
@@ -46,16 +47,19 @@ def _height_to_leave_m(cell: AntennaCell) -> float:
     here = cell.arm.robot.state().base_T_flange
     return max(
         (
-            _missing_m(here, recipe, place)
+            _missing_m(here, recipe, base_T_plug)
             for recipe in antenna_recipes(cell.cell.config)
-            for place in (recipe.base_T_tray_plug, recipe.base_T_socket)
+            for base_T_plug in (
+                nominal(recipe.base_T_tray_plug),
+                nominal(recipe.base_T_socket) * MATED_TURN,
+            )
         ),
         default=0.0,
     )
 
 
-def _missing_m(here: RigidTransform, recipe: AntennaRecipe, place: Place) -> float:
-    at_place = nominal(place) * pose_from_xyzabc(recipe.flange_T_plug).inv()
+def _missing_m(here: RigidTransform, recipe: AntennaRecipe, base_T_plug: RigidTransform) -> float:
+    at_place = base_T_plug * pose_from_xyzabc(recipe.flange_T_plug).inv()
     x_m, y_m, height_m = (here.translation - at_place.translation).tolist()
     if max(abs(x_m), abs(y_m)) > _BESIDE_M:
         return 0.0

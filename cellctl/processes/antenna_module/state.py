@@ -24,15 +24,26 @@ class ModuleFound(GripperEmpty):
 
     base_T_connector: RigidTransform
     """Where its plug is, as far as the top shows it."""
+    top_height_m: float
+    """Of the marks on its top along z of the base, by how large they look."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HeldModule:
+    """What was found out about the module while it was picked."""
+
+    mass_kg: float
+    hanging_n: Array
+    """Raw force of the sensor with the module hanging free, shape (3,)."""
+    top_over_flange_m: float
+    """Height of its top over that of the flange, negative; the flange points down."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ModuleHeld(GripperEmpty):
     """The module hangs in the gripper, clear of everything."""
 
-    module_kg: float
-    hanging_n: Array
-    """Raw force of the sensor with the module hanging free, shape (3,)."""
+    module: HeldModule
 
 
 @dataclass(frozen=True, slots=True, eq=False)

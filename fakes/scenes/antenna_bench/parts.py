@@ -21,6 +21,7 @@ FAULTS: Mapping[str, str] = {
     "bent_pin": "pin `contact` of the next modules is bent by `x_mm`, `y_mm`",
     "missing_pin": "pin `contact` of the next modules is missing",
     "blocked_hole": "hole `contact` of the next sockets is blocked",
+    "foreign_body": "something lies in the next sockets: plugs seat `early_mm` too early",
     "dirt": "the next connectors carry `specks` specks",
     "upside_down": "the next modules lie on their tops",
     "turned": "the next modules lie half a turn round",
@@ -89,7 +90,7 @@ def draw_parts(scenario: BenchScenario, seed: int, number: int, faults: FaultBoa
         socket,
         lies,
         from_written(panel.cell_T_socket_mm_deg) * drawn_spread(rng, panel.placement),
-        mating_pair(plug, socket, rng),
+        _with_foreign_body(mating_pair(plug, socket, rng), faults.active("foreign_body")),
     )
 
 
@@ -107,6 +108,13 @@ def mating_pair(
         np.array([float(pin.present) for pin in plug.contacts]),
         np.array([float(hole.blocked) for hole in socket.contacts]),
     )
+
+
+def _with_foreign_body(pair: MatingPair, fault: Fault | None) -> MatingPair:
+    if fault is None:
+        return pair
+    early_m = fault.number("early_mm", 0.3) * MM
+    return replace(pair, sizes=replace(pair.sizes, seat_m=pair.sizes.seat_m - early_m))
 
 
 def plug_T_top(scenario: BenchScenario) -> RigidTransform:

@@ -1,4 +1,4 @@
-"""56x–57x: planning where a plug goes, and judging how it went in.
+"""56x–58x, 596: planning where a plug goes, and judging how it went in.
 
 PluggingError
 ├── StaleLook, PlugUncertain, OutOfTaughtRange, CalibrationsDoNotBelongTogether,
@@ -8,7 +8,8 @@ PluggingError
 │   PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
 ├── ModuleMissing, ModuleMisplaced, WrongModuleMass, ModuleInGripper     580–583  the module
 ├── PlugNotHeld, MovedOnRelease                                          584–585  after the seat
-└── GrippedOffTwice                                                      586      the grip
+├── GrippedOffTwice                                                      586      the grip
+└── SocketUnsound                                                        596      the socket
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -213,3 +214,12 @@ class GrippedOffTwice(PluggingError):
     text = "Module was gripped off its place twice"
     cause = "A connector off on its housing, worn or dirty jaws, or a moved camera I."
     remedy = "Take the module out by hand and put it into quarantine; check jaws and tray."
+
+
+class SocketUnsound(PluggingError):
+    """A hole of the socket is blocked, missing, bent or hidden; the module has met nothing."""
+
+    number = 596
+    text = "A hole of the socket is not as it should be"
+    cause = "Something in the hole, a damaged insulator, or dirt on the face."
+    remedy = "Look at the picture; clean or exchange the socket, and take the module out by hand."

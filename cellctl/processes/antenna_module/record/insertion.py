@@ -1,5 +1,7 @@
 """The insertion in the record: figures with limits, the curve as a file."""
 
+import asyncio
+
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, curve_text
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
@@ -11,7 +13,10 @@ from cellctl.records.figures import Limit, figure
 
 async def record_curve(run: PluggingRun, curve: InsertionCurve) -> None:
     """The curve as CSV, which `cellctl judge-insertion` reads."""
-    await run.recorder.artefact(keys.CURVE, curve_text(curve).encode(), "text/csv")
+    # In a thread: tens of thousands of samples take a quarter of a second, and the robot has to
+    # hear from the loop all the time.
+    text = await asyncio.to_thread(curve_text, curve)
+    await run.recorder.artefact(keys.CURVE, text.encode(), "text/csv")
 
 
 async def record_judgement(

@@ -10,6 +10,8 @@ _GROUPS = (
         "after release",
         {
             keys.PLACED: "lateral offset of the module from its place, by camera I",
+            keys.PLACED_TURN: "rotation of the module about the axis of the socket, by camera I",
+            keys.GAP: "height of the module over its seat, by camera I",
             keys.SEAT_DEPTH: "depth at which the seat was felt, by travel of the arm",
             keys.PULL: "pull test: force that the plug withstood",
             keys.PULL_TRAVEL: "pull test: travel",
@@ -37,6 +39,7 @@ _GROUPS = (
 )
 WORDS = {
     keys.REGRIPS: "times that the module was put back and gripped again",
+    keys.SECOND_LOOKS: "looks that were taken a second time",
     keys.PEAK: "greatest force of the contact springs along the axis",
     keys.REFERENCE_MOVED: "greatest movement of the reference marks since the teaching",
 }

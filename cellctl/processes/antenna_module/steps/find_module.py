@@ -1,5 +1,6 @@
 """Step 20: camera I finds the module on its tray by the marks on its top."""
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -14,7 +15,7 @@ from cellctl.processes.antenna_module.faults.connector import (
     MarksMissing,
 )
 from cellctl.processes.antenna_module.faults.plugging import ModuleMisplaced, ModuleMissing
-from cellctl.processes.antenna_module.looking import combined, nominal, plane_by
+from cellctl.processes.antenna_module.looking import combined, height_by_size, nominal, plane_by
 from cellctl.processes.antenna_module.moving import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.roles import TRAY_LOOK
@@ -37,16 +38,22 @@ async def find_on_tray(run: PluggingRun, images: str) -> ModuleFound:
     first = await _look(run, f"{images}-1")
     drawn = nominal(run.recipe.base_T_tray_plug)
     # Seen in the middle of the image, errors of lens and height count least.
-    x_m, y_m, _ = (first.translation - drawn.translation).tolist()
+    x_m, y_m, _ = (first.base_T_connector.translation - drawn.translation).tolist()
     here = run.cell.arm.robot.state().base_T_flange
     await run.mover.to(shifted(here, x_m, y_m))
-    base_T_connector = await _look(run, f"{images}-2")
-    await run.recorder.pose(keys.TRAY, keys.MEASURED, "base", "plug", base_T_connector)
-    return ModuleFound(run, base_T_connector)
+    found = await _look(run, f"{images}-2")
+    await run.recorder.pose(keys.TRAY, keys.MEASURED, "base", "plug", found.base_T_connector)
+    return ModuleFound(run, found.base_T_connector, found.top_height_m)
 
 
-async def _look(run: PluggingRun, name: str) -> RigidTransform:
-    """base_T_connector of the module on the tray, as high and level as the drawing has it."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _OnTray:
+    base_T_connector: RigidTransform
+    """As high and level as the drawing has it."""
+    top_height_m: float
+
+
+async def _look(run: PluggingRun, name: str) -> _OnTray:
     place = run.recipe.base_T_tray_plug
     connector_T_top = pose_from_xyzabc(run.recipe.plug_T_top)
     base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
@@ -65,9 +72,10 @@ async def _look(run: PluggingRun, name: str) -> RigidTransform:
         raise ModuleMisplaced(fault.detail) from fault
     top = combined(tuple(marks.camera_T_marks for marks in seen.frames)).pose
     # From the place where the images were taken, not from where the arm was told to go.
-    found = seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose * top * connector_T_top.inv()
+    base_T_cam1 = seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    found = base_T_cam1 * top * connector_T_top.inv()
     _require_near(nominal(place), found, place.within_mm * MM, np.radians(place.within_deg))
-    return found
+    return _OnTray(found, height_by_size(base_T_cam1, seen.frames))
 
 
 def _require_near(

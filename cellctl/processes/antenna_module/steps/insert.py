@@ -34,8 +34,7 @@ async def insert(over: OverSocket) -> Inserted:
         judgement = await _pushed(run, attempt)
     return Inserted(
         run,
-        over.module_kg,
-        over.hanging_n,
+        over.module,
         plug=over.plug,
         flange_T_connector=over.flange_T_connector,
         looks=over.looks,

@@ -1,5 +1,6 @@
 """Step 40: camera II sees the plug and the marks on the gripper in one picture."""
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -19,8 +20,11 @@ from cellctl.processes.antenna_module.roles import INSPECT_PLUG
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Picked, PlugInspected
 from cellctl.processes.antenna_module.steps.grip_again import grip_again
+from cellctl.processes.antenna_module.steps.look_again import SecondLook
+from cellctl.processes.antenna_module.steps.putting_back import put_back_bad
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
+    BAD_CONTACTS,
     ConnectorMeasurement,
     require_sound,
 )
@@ -28,24 +32,33 @@ from cellctl.processes.antenna_module.vision.result_file import result_to_json
 from cellctl.records.figures import Limit
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sight:
+    """A plug with all of its contacts, and the marks beside it."""
+
+    seen: Seen[ConnectorMeasurement]
+    plug: UncertainPose
+    """``camera_T_connector``, combined from all frames."""
+    marks: UncertainPose
+    """``camera_T_marks``."""
+
+
 async def inspect_plug(picked: Picked) -> PlugInspected:
     """Show the plug to camera II and measure it; what is gripped off its place is gripped again.
 
-    Raises ``GrippedOffTwice``, ``ContactMissing``, ``ContactBent``, ``ContactHidden``, and the
-    other faults of ``measure_connector``.
+    A module with a bad contact goes back onto its tray. Raises ``GrippedOffTwice``,
+    ``ContactMissing``, ``ContactBent``, ``ContactHidden``, and the other faults of
+    ``measure_connector``.
     """
     run = picked.run
     try:
-        seen, regrips = await _look(run, "plug"), 0
+        sight, regrips = await _sound(picked, "plug"), 0
     except ConnectorMisplaced as first:
         # Nothing else asks for a second grip: a force fault says that the module has met something.
         picked = await grip_again(picked, first)
-        seen, regrips = await _look_again(run, first), 1
+        sight, regrips = await _sound_again(picked, first), 1
     await run.recorder.figure(keys.REGRIPS, regrips, "")
-    for frame in seen.frames:
-        require_sound(frame)
-    plug = combined(tuple(frame.camera_T_connector for frame in seen.frames))
-    marks = combined(tuple(frame.marks.camera_T_marks for frame in seen.frames if frame.marks))
+    seen, plug, marks = sight.seen, sight.plug, sight.marks
     look = PlugLook(
         base_T_flange=seen.base_T_flange,
         joints_rad=seen.joints_rad,
@@ -57,20 +70,28 @@ async def inspect_plug(picked: Picked) -> PlugInspected:
     )
     on_gripper = pose_from_xyzabc(run.recipe.flange_T_marks) * marks.pose.inv() * plug.pose
     await _record(run, seen, plug, marks, on_gripper)
-    return PlugInspected(
-        run, picked.module_kg, picked.hanging_n, plug=look, flange_T_connector=on_gripper
-    )
+    return PlugInspected(run, picked.module, plug=look, flange_T_connector=on_gripper)
 
 
-async def _look_again(run: PluggingRun, first: ConnectorMisplaced) -> Seen[ConnectorMeasurement]:
+async def _sound_again(picked: Picked, first: ConnectorMisplaced) -> _Sight:
     try:
-        return await _look(run, "plug-again")
+        return await _sound(picked, "plug-again")
     except ConnectorMisplaced as second:
         raise GrippedOffTwice(f"first {first.detail}; then {second.detail}") from second
 
 
-async def _look(run: PluggingRun, images: str) -> Seen[ConnectorMeasurement]:
+async def _sound(picked: Picked, images: str) -> _Sight:
+    run = picked.run
     await run.mover.to_taught(INSPECT_PLUG)
+    try:
+        return await SecondLook(run).look(images, partial(_look, run))
+    except BAD_CONTACTS:
+        # It has met nothing, so the way back is free.
+        await put_back_bad(picked)
+        raise
+
+
+async def _look(run: PluggingRun, images: str) -> _Sight:
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     place = Place(
         pose=run.recipe.flange_T_plug,
@@ -88,8 +109,13 @@ async def _look(run: PluggingRun, images: str) -> Seen[ConnectorMeasurement]:
         marks=run.drawings.gripper,
     )
     seen = await run.eyes.look(images, run.cell.camera_2, measure)
+    # Before the judgement: a bad contact is what somebody wants to see.
     await record_picture(run, keys.PLUG_PICTURE, seen)
-    return seen
+    for frame in seen.frames:
+        require_sound(frame)
+    plug = combined(tuple(frame.camera_T_connector for frame in seen.frames))
+    marks = combined(tuple(frame.marks.camera_T_marks for frame in seen.frames if frame.marks))
+    return _Sight(seen, plug, marks)
 
 
 def _mated(run: PluggingRun, camera_T_connector: UncertainPose) -> UncertainPose:

@@ -1,11 +1,14 @@
 """Step 50: camera I sees the socket, from several approaches."""
 
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Looks, SocketLook
+from cellctl.processes.antenna_module.faults.plugging import SocketUnsound
 from cellctl.processes.antenna_module.looking import Seen, combined, nominal, plane_by
 from cellctl.processes.antenna_module.moving import shifted
 from cellctl.processes.antenna_module.record import keys
@@ -13,8 +16,10 @@ from cellctl.processes.antenna_module.record.pictures import record_picture
 from cellctl.processes.antenna_module.roles import SOCKET_LOOK
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import PlugInspected, SocketLocated
+from cellctl.processes.antenna_module.steps.look_again import SecondLook
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
+    BAD_CONTACTS,
     ConnectorMeasurement,
     require_sound,
 )
@@ -24,11 +29,20 @@ _AWAY_M = 5e-3
 """Between two looks: far enough that the arm approaches its place anew."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Sight:
+    """A socket with all of its holes."""
+
+    seen: Seen[ConnectorMeasurement]
+    socket: UncertainPose
+    """``camera_T_socket``, combined from all frames."""
+
+
 async def locate_socket(inspected: PlugInspected) -> SocketLocated:
     """Look once to find it, then bring the camera over it and look as often as the recipe says.
 
-    Raises ``ContactMissing``, ``ContactHidden`` for a blocked hole, ``ConnectorMisplaced`` for a
-    socket out of its place, and the other faults of ``measure_connector``.
+    Raises ``SocketUnsound`` for a blocked or missing hole, ``ConnectorMisplaced`` for a socket out
+    of its place, and the other faults of ``measure_connector``.
     """
     run = inspected.run
     await run.mover.to_taught(SOCKET_LOOK)
@@ -36,7 +50,7 @@ async def locate_socket(inspected: PlugInspected) -> SocketLocated:
     drawn = nominal(run.recipe.base_T_socket).translation
     x_m, y_m, _ = (_base_T_socket(run, found).translation - drawn).tolist()
     over = shifted(run.cell.arm.robot.state().base_T_flange, x_m, y_m)
-    looks, seen = [], found
+    looks, sight = [], found
     for number in range(1, run.recipe.socket_looks + 1):
         run.say(f"look {number} of {run.recipe.socket_looks}")
         # Each look from an approach of its own: the mean of looks from one place would have the
@@ -44,20 +58,28 @@ async def locate_socket(inspected: PlugInspected) -> SocketLocated:
         away_m = _AWAY_M if number % 2 else -_AWAY_M
         await run.mover.to(shifted(over, away_m, 0.0))
         await run.mover.to(over)
-        seen = await _look(run, f"socket-{number}")
-        looks.append(await _socket_look(run, number, seen))
-    await record_picture(run, keys.SOCKET_PICTURE, seen)
+        sight = await _look(run, f"socket-{number}")
+        looks.append(await _socket_look(run, number, sight))
+    await record_picture(run, keys.SOCKET_PICTURE, sight.seen)
+    await run.recorder.figure(keys.SECOND_LOOKS, len(run.second_looks), "")
     return SocketLocated(
         run,
-        inspected.module_kg,
-        inspected.hanging_n,
+        inspected.module,
         plug=inspected.plug,
         flange_T_connector=inspected.flange_T_connector,
         looks=Looks(inspected.plug, tuple(looks)),
     )
 
 
-async def _look(run: PluggingRun, name: str) -> Seen[ConnectorMeasurement]:
+async def _look(run: PluggingRun, name: str) -> _Sight:
+    """Measured and sound; where chance has spoilt the picture, from a second one."""
+    try:
+        return await SecondLook(run).look(name, partial(_measured, run))
+    except BAD_CONTACTS as fault:
+        raise SocketUnsound(fault.detail) from fault
+
+
+async def _measured(run: PluggingRun, name: str) -> _Sight:
     base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
     place = run.recipe.base_T_socket
     measure = partial(
@@ -67,23 +89,24 @@ async def _look(run: PluggingRun, name: str) -> Seen[ConnectorMeasurement]:
         connector=run.drawings.socket,
     )
     seen = await run.eyes.look(name, run.cell.camera_1, measure)
-    for frame in seen.frames:
-        require_sound(frame)
-    return seen
+    try:
+        for frame in seen.frames:
+            require_sound(frame)
+    except BAD_CONTACTS:
+        await record_picture(run, keys.SOCKET_PICTURE, seen)
+        raise
+    return _Sight(seen, combined(tuple(frame.camera_T_connector for frame in seen.frames)))
 
 
-def _base_T_socket(run: PluggingRun, seen: Seen[ConnectorMeasurement]) -> RigidTransform:
-    camera_T_socket = combined(tuple(frame.camera_T_connector for frame in seen.frames)).pose
-    return seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose * camera_T_socket
+def _base_T_socket(run: PluggingRun, sight: _Sight) -> RigidTransform:
+    base_T_cam1 = sight.seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    return base_T_cam1 * sight.socket.pose
 
 
-async def _socket_look(
-    run: PluggingRun, number: int, seen: Seen[ConnectorMeasurement]
-) -> SocketLook:
-    camera_T_socket = combined(tuple(frame.camera_T_connector for frame in seen.frames))
-    key = f"{keys.SOCKET}.{number}"
+async def _socket_look(run: PluggingRun, number: int, sight: _Sight) -> SocketLook:
+    key, seen = f"{keys.SOCKET}.{number}", sight.seen
     recorder = run.recorder
-    await recorder.measurement(key, "cam1", "socket", camera_T_socket, frames=len(seen.frames))
+    await recorder.measurement(key, "cam1", "socket", sight.socket, frames=len(seen.frames))
     await recorder.document(
         f"{keys.SOCKET_DETAIL}.{number}",
         {"images": [result_to_json(frame) for frame in seen.frames]},
@@ -93,6 +116,6 @@ async def _socket_look(
         joints_rad=np.asarray(seen.joints_rad),
         time_s=seen.time_s,
         camera_id=run.facts.camera_1.id,
-        camera_T_socket=camera_T_socket,
+        camera_T_socket=sight.socket,
         connector=run.drawings.socket.name,
     )

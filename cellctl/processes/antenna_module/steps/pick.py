@@ -11,7 +11,7 @@ from cellctl.processes.antenna_module.faults.plugging import WrongModuleMass
 from cellctl.processes.antenna_module.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.state import ModuleFound, Picked
+from cellctl.processes.antenna_module.state import HeldModule, ModuleFound, Picked
 from cellctl.records.figures import Limit
 
 _G_M_S2 = 9.80665
@@ -30,13 +30,18 @@ async def pick(found: ModuleFound) -> Picked:
     empty_n = await _force_n(run)
     await run.mover.slowly_to(grip)
     await run.cell.gripper.close()
+    gripped = run.cell.arm.robot.state().base_T_flange
     await run.mover.slowly_to(above)
     await run.cell.gripper.confirm_part()
     # The arm is in the same orientation, so what the sensor itself is off drops out.
     hanging_n = await _force_n(run)
     module_kg = float(np.linalg.norm(hanging_n - empty_n)) / _G_M_S2
     await _require_mass(run, module_kg)
-    return Picked(run, module_kg, hanging_n, base_T_grip=grip)
+    # By the same camera as the look after the release, from as far away, and of the same marks:
+    # what camera and drawing are wrong by drops out of the difference.
+    top_over_flange_m = found.top_height_m - float(gripped.translation[2])
+    module = HeldModule(module_kg, hanging_n, top_over_flange_m)
+    return Picked(run, module, base_T_grip=grip)
 
 
 async def _force_n(run: PluggingRun) -> Array:

@@ -40,8 +40,7 @@ async def plan(located: SocketLocated) -> Planned:
     _require_near_drawing(run, found)
     return Planned(
         run,
-        located.module_kg,
-        located.hanging_n,
+        located.module,
         plug=located.plug,
         flange_T_connector=located.flange_T_connector,
         looks=located.looks,

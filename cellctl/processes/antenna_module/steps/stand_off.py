@@ -39,8 +39,7 @@ async def stand_off(planned: Planned) -> OverSocket:
     await _tare(planned)
     return OverSocket(
         run,
-        planned.module_kg,
-        planned.hanging_n,
+        planned.module,
         plug=planned.plug,
         flange_T_connector=planned.flange_T_connector,
         looks=planned.looks,
@@ -68,7 +67,7 @@ async def _tare(planned: Planned) -> None:
     # What is taken as zero is not seen any more: a plug that touches already would begin with a
     # hidden force. Hanging free it makes the force that it made over the tray.
     felt_n = arm.guard.samples(now_s() - _TARE_S).raw[:, :3].mean(axis=0)
-    changed_n = float(np.linalg.norm(felt_n - planned.hanging_n))
+    changed_n = float(np.linalg.norm(felt_n - planned.module.hanging_n))
     if not changed_n <= _TOUCH_N:
         raise TareImplausible(
             f"{changed_n:.1f} N more or less than over the tray, allowed {_TOUCH_N:g} N"

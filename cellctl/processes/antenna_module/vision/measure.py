@@ -170,7 +170,8 @@ def _marks_in(
     circles = [feature.circle for feature in found.features if feature.circle is not None]
     px = raised.to_px(np.array([circle.centre_m for circle in circles]))
     radius_px = marks.diameter_m / 2.0 / raised.m_per_px(found.fit.shift_m)
-    return MeasuredMarks(uncertain_pose(raised, calibration, found.fit), px, radius_px)
+    pose = uncertain_pose(raised, calibration, found.fit)
+    return MeasuredMarks(pose, px, radius_px, found.fit.scale)
 
 
 def _expectation(

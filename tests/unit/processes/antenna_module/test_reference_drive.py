@@ -81,7 +81,7 @@ class World:
         assert np.abs(off.translation).max() < 1.0 * MM
         assert off.rotation.as_matrix()[2, 2] > 0.99
         assert lies.rotation.as_matrix()[2, 2] < 0
-        found = MeasuredMarks(UncertainPose(lies, SEEN), np.zeros((5, 2)), 10.0)
+        found = MeasuredMarks(UncertainPose(lies, SEEN), np.zeros((5, 2)), 10.0, 1.0)
         return Seen((found,), (), self.base_T_flange, np.zeros(6), 0.0)
 
     def base_T_camera(self, camera: str) -> RigidTransform:

@@ -188,8 +188,11 @@ def test_injected_flaws_are_those_of_the_next_parts(scenario: BenchScenario) -> 
     world.faults.inject("bent_pin", contact="4", x_mm=0.3)
     world.faults.inject("missing_pin", contact="9")
     world.faults.inject("blocked_hole", contact="2")
+    seat_mm = world.truth_report()["seat_depth_mm"]
+    world.faults.inject("foreign_body", early_mm=0.4)
     world.load()
     report = world.truth_report()
+    assert report["seat_depth_mm"] == pytest.approx(seat_mm - 0.4)
     assert (report["bent"], report["missing"], report["blocked"]) == (["4"], ["9"], ["2"])
 
 
