@@ -38,6 +38,7 @@ class AntennaModuleDemo(Demo):
         30: "pick",
         40: "inspect plug",
         45: "grip again",
+        46: "put back",
         50: "locate socket",
         60: "plan",
         70: "stand-off",
