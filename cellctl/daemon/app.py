@@ -167,5 +167,9 @@ def _tell(cell: Cell, plc: PlcInterface, **how: bool | str) -> None:
     status = "ready" if how["ready"] else f"waits for Clear: {how['error']}"
     _log.info(status, cell=name, modbus_port=plc.port)
     notify(f"STATUS={status}, Modbus TCP on port {plc.port}")
-    json.dump({**how, "cell": name, "modbus_port": plc.port}, sys.stdout)
-    print(flush=True)
+    # A program that has started the daemon reads one line of JSON; a person reads words.
+    if sys.stdout.isatty():
+        print(f"{name}: {status}. Modbus TCP on port {plc.port}; Ctrl-C ends the daemon.")
+    else:
+        json.dump({**how, "cell": name, "modbus_port": plc.port}, sys.stdout)
+        print(flush=True)

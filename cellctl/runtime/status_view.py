@@ -95,7 +95,12 @@ class StatusView:
         return False
 
     def _force_z_n(self) -> float:
-        """Fz of the first force sensor in the cell file: the register has room for one sensor."""
+        """Fz of the first force sensor in the cell file: the register has room for one sensor.
+
+        The register says that gravity is removed: without a payload to remove there is no value.
+        """
         guard = next(iter(self._cell.guards.values()), None)
         sample = None if guard is None else guard.newest()
-        return NO_VALUE if sample is None else float(sample.wrench[2])
+        if guard is None or sample is None or not guard.gravity_compensated:
+            return NO_VALUE
+        return float(sample.wrench[2])

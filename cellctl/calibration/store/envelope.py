@@ -5,7 +5,6 @@ The envelope has ``format``, ``kind``, ``id``, ``made``, ``valid_until``, ``soft
 was changed by hand, a date too, no longer fits its id and is refused.
 """
 
-import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -21,6 +20,7 @@ from cellctl.errors.calibration import (
     CalibrationRecordInvalid,
     ClockNotTrusted,
 )
+from cellctl.sealed_json import content_id, fits_its_id
 
 FORMAT = 2
 """Files of format 1 have no such field; their id is that of the record alone (``old_form``)."""
@@ -57,14 +57,6 @@ def require_clock_after(newest: datetime, now: datetime, what: str) -> None:
     # With the clock set back, a calibration that has expired would count as valid again.
     if now + CLOCK_STEP < newest:
         raise ClockNotTrusted(f"it says {now:%Y-%m-%d %H:%M:%S}, {what} {newest:%Y-%m-%d %H:%M:%S}")
-
-
-def content_id(content: Mapping[str, Any]) -> str:
-    """SHA-256 of plain data in canonical JSON."""
-    # One text for one content, whatever the order of its keys. NaN is refused, because JSON of
-    # other programs could not read it.
-    text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def envelope_of(stored: StoredCalibration) -> dict[str, Any]:
@@ -108,10 +100,8 @@ def read_stored(folder: Path, kind: str) -> StoredCalibration:
     # it anew.
     if isinstance(content, dict) and "id" in content and "format" not in content:
         raise CalibrationOfOldForm(f"{path}")
-    stored, expected = parse_content(path, content)
-    # As it stands in the file, so that a field which nobody reads cannot be changed either.
-    matches = content_id({key: content[key] for key in content if key != "id"}) == expected
-    if not matches or stored.kind != kind or content["format"] != FORMAT:
+    stored, _ = parse_content(path, content)
+    if not fits_its_id(content) or stored.kind != kind or content["format"] != FORMAT:
         raise CalibrationRecordInvalid(f"{path}: content does not match its id; it was changed")
     return stored
 

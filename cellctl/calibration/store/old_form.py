@@ -4,13 +4,13 @@ from pathlib import Path
 
 from cellctl.calibration.store.envelope import (
     StoredCalibration,
-    content_id,
     parse_content,
     read_content,
     write_stored,
 )
 from cellctl.calibration.store.marker import SUFFIX
 from cellctl.errors.calibration import CalibrationRecordInvalid
+from cellctl.sealed_json import content_id
 
 
 def seal_old_files(folder: Path) -> list[StoredCalibration]:

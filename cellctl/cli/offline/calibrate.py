@@ -104,8 +104,10 @@ def tool(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
 def _show(name: str, pose: UncertainPose) -> None:
     x, y, z, a, b, c = pose_to_xyzabc(pose.pose)
     sigma = pose.sigma
+    # Nothing that was measured is exact: no uncertainty means that the input has not said it.
+    turn = f"{np.degrees(sigma[3:].max()):.5f}°" if sigma[3:].any() else "angles not measured"
     console_of_figures().print(
         f"{name}: X {x:.4f}, Y {y:.4f}, Z {z:.4f} mm, A {a:.5f}, B {b:.5f}, C {c:.5f}°; "
-        f"sigma {sigma[:3].max() / MM:.4f} mm, {np.degrees(sigma[3:].max()):.5f}°",
+        f"sigma {sigma[:3].max() / MM:.4f} mm, {turn}",
         markup=False,
     )

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from cellctl.errors.vision import CameraFileInvalid
+from cellctl.sealed_json import record_within
 from cellctl.vision.camera.stereo_head import CameraModel, camera_from_json, camera_to_json
 
 
@@ -32,7 +33,7 @@ class SingleCamera:
 
 
 def read_single_camera(path: Path) -> SingleCamera:
-    """Read a calibration file; raises ``CameraFileInvalid`` with the reason."""
+    """Read a calibration, of a command or stored; ``CameraFileInvalid`` says why not."""
     try:
         data = json.loads(path.read_bytes())
     except OSError as error:
@@ -40,7 +41,7 @@ def read_single_camera(path: Path) -> SingleCamera:
     except (ValueError, RecursionError) as error:
         raise CameraFileInvalid(f"{path} is not JSON: {error}") from error
     try:
-        return single_camera_from_json(data)
+        return single_camera_from_json(record_within(data))
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
         raise CameraFileInvalid(f"{path}: {reason}") from error

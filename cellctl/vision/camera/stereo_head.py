@@ -15,6 +15,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.vision import CalibrationFileInvalid
 from cellctl.geometry.pose import MM, Array
+from cellctl.sealed_json import record_within
 
 CAMERA_PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
 PARAMETER_ORDER = (
@@ -65,7 +66,7 @@ class StereoHead:
 
 
 def read_stereo_head(path: Path) -> StereoHead:
-    """Read a calibration file; raises ``CalibrationFileInvalid`` with the reason.
+    """Read a calibration, of a command or stored; ``CalibrationFileInvalid`` says why not.
 
     Warns when the file says that the calibration did not pass its checks.
     """
@@ -76,6 +77,7 @@ def read_stereo_head(path: Path) -> StereoHead:
     except ValueError as error:
         raise CalibrationFileInvalid(f"{path} is not JSON: {error}") from error
     try:
+        data = record_within(data)
         head = stereo_head_from_json(data)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         reason = f"missing {error}" if isinstance(error, KeyError) else str(error)

@@ -68,6 +68,13 @@ async def test_silent_devices_do_not_silence_the_status(rig: DaemonRig) -> None:
     assert not status.calibration_ok
 
 
+async def test_a_force_with_the_payload_s_weight_in_it_is_no_force_on_the_part(
+    rig: DaemonRig,
+) -> None:
+    rig.bench.cell.guard.gravity_compensated = False
+    assert math.isnan(rig.shown().force_z_n)
+
+
 async def test_a_trip_is_shown(rig: DaemonRig) -> None:
     rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
     assert rig.shown().force_guard_tripped

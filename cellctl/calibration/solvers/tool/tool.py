@@ -101,20 +101,19 @@ def calibrate_tool(
     if orienting:
         rotation, rotation_covariance = _orientation(orienting, position, touch_sigma_m)
         method += ", three-point method for the orientation"
+    else:
+        method += "; the axes are the flange's, not measured"
     both = np.zeros((6, 6))
     both[:3, :3], both[3:, 3:] = covariance, rotation_covariance
     tool = UncertainPose(RigidTransform.from_components(position, rotation), both)
-    degrees = np.degrees
-    checks = (
+    checks: Checks = (
         LimitCheck("largest residual", residuals.max() / MM, limits.residual_m / MM, "mm"),
         LimitCheck("position sigma", tool.sigma[:3].max() / MM, limits.position_sigma_m / MM, "mm"),
-        LimitCheck(
-            "rotation sigma",
-            degrees(tool.sigma[3:].max()),
-            float(degrees(limits.rotation_sigma_rad)),
-            "°",
-        ),
     )
+    # What was not measured has no sigma that could pass or fail.
+    if orienting:
+        sigma_deg, limit_deg = np.degrees((tool.sigma[3:].max(), limits.rotation_sigma_rad))
+        checks += (LimitCheck("rotation sigma", float(sigma_deg), float(limit_deg), "°"),)
     return ToolResult(tool, tuple(residuals.tolist()), conditioning, checks, method)
 
 

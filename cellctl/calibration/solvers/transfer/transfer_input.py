@@ -17,6 +17,7 @@ from cellctl.calibration.input_file import (
 from cellctl.calibration.solvers.transfer.board_transfer import BoardPlacement
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.sealed_json import record_within
 
 
 def _covariance_m2(values: Any) -> Array:
@@ -57,7 +58,7 @@ class TransferFile(InputFile):
     """The whole file."""
 
     c_T_base: InputPose
-    """Or the object of that name in the result of a base-frame calibration."""
+    """Or the object of that name in the result of a base-frame calibration, or a stored one."""
     c_T_base_covariance_mm_deg: InputPoseCovariance | None = None
     drawing_mm: Mapping[str, InputPosition] | None = None
     """Discs of the board; without it those of the board in the documentation."""
@@ -67,9 +68,10 @@ class TransferFile(InputFile):
     @model_validator(mode="before")
     @classmethod
     def _take_result_of_base_frame(cls, data: Any) -> Any:
-        base = data.get("c_T_base") if isinstance(data, dict) else None
+        base = record_within(data.get("c_T_base")) if isinstance(data, dict) else None
         if not isinstance(base, dict):
             return data
+        base = base.get("c_T_base", base)
         missing = {"matrix_mm", "covariance_mm_deg"} - base.keys()
         if missing:
             raise ValueError(f"c_T_base: missing {min(missing)!r}")

@@ -9,7 +9,6 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.input_file import InputFile, InputPose, numbers, read_input
 from cellctl.calibration.pose_record import covariance_from_written
-from cellctl.calibration.store.envelope import content_id
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import (
@@ -21,6 +20,7 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
 )
 from cellctl.processes.antenna_module.commands.measurement_file import Identity
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
+from cellctl.sealed_json import content_id
 
 
 def _joints_rad(values: Any) -> Array:

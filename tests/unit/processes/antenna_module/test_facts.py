@@ -10,7 +10,6 @@ from typing import Any, cast
 
 import pytest
 
-from cellctl.calibration.store.envelope import content_id
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.config.load import load_cell
 from cellctl.errors import CellError
@@ -20,6 +19,7 @@ from cellctl.processes.antenna_module.calibrations import CALIBRATIONS
 from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
+from cellctl.sealed_json import content_id
 from cellctl.vision.camera.single_camera import single_camera_from_json
 
 CONFIG = Path(__file__).parents[4] / "config"

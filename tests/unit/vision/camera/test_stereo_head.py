@@ -38,6 +38,23 @@ def test_a_head_survives_its_file(tmp_path: Path) -> None:
     assert np.linalg.norm(data["translation_mm"]) == pytest.approx(179.0, abs=1e-9)
 
 
+STORED = Path(__file__).parents[4] / "config" / "demo-calibration" / "head_1.json"
+
+
+def test_a_head_is_read_as_a_cell_stores_it() -> None:
+    record = json.loads(STORED.read_text())["record"]
+    assert list(read_stereo_head(STORED).image_size) == record["image_size"]
+
+
+def test_a_stored_head_that_was_changed_is_refused(tmp_path: Path) -> None:
+    content = json.loads(STORED.read_text())
+    content["record"]["left"]["camera_matrix"][0][0] += 1.0
+    path = tmp_path / "head_1.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(CalibrationFileInvalid, match="it was changed"):
+        read_stereo_head(path)
+
+
 def test_the_pose_between_the_cameras_is_that_of_the_file() -> None:
     head = table_1_head()
     point = np.array([0.01, -0.02, 0.5])
