@@ -14,6 +14,7 @@ from benchmarks.guard import loads
 from cellctl import log
 from cellctl.clock import now_s
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import CusumTouch, GuardLimits, GuardSettings
 from cellctl.guard.watch.monitor import WrenchMonitor
@@ -136,7 +137,7 @@ async def _reports(reader: asyncio.StreamReader, monitor: WrenchMonitor) -> None
     while line := await reader.readline():
         record = decoder.decode(line.rstrip(b"\n"))
         if isinstance(record, Status):
-            monitor.flange(flange_state(record, now_s()))
+            monitor.flange(flange_state(record, EulerOrder.FIXED_XYZ, now_s()))
 
 
 async def _sense(port: int, monitor: WrenchMonitor, robot: asyncio.StreamWriter) -> None:

@@ -26,9 +26,9 @@ def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
 
 def pose_to_xyzabc(pose: RigidTransform) -> Array:
     """Written form of a pose, shape (6,): X, Y, Z in mm, A, B, C in degrees."""
-    abc_deg = pose.rotation.as_euler("ZYX", degrees=True)
     # At B = ±90° only the sum or difference of A and C is determined. The rotation is still the
-    # same, which is all that a written pose promises.
+    # same, which is all that a written pose promises, so that no warning is needed.
+    abc_deg = pose.rotation.as_euler("ZYX", degrees=True, suppress_warnings=True)
     return np.concatenate([pose.translation / MM, abc_deg])
 
 

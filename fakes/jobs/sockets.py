@@ -12,7 +12,8 @@ from fakes.wire.sjl.sender import Sender
 _CONNECT_S = 2.0
 _WRONG_HELLOS = {
     "wrong_version": ("SJL,2", "SJL,9"),
-    "wrong_euler": ("EUL=ZYX", "EUL=XYZ"),
+    "wrong_euler": ("EUL=ZYX", "EUL=ZYZ"),
+    "other_euler": ("EUL=ZYX", "EUL=XYZ"),
     "wrong_unit": ("UNIT=MMDEG", "UNIT=MRAD"),
     "wrong_name": (r"(CMD|STA|GRD),[^,]*", r"\1,NOBODY"),
 }

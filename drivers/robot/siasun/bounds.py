@@ -140,14 +140,13 @@ class Bounds:
                 f"{list(upper)}"
             )
 
-    def pose(self, base_T_flange: RigidTransform) -> Array:
-        """The pose in its written form, mm and degrees."""
+    def pose(self, base_T_flange: RigidTransform) -> None:
+        """Refuse a pose that is none, or outside of the workspace."""
         xyzabc = pose_to_xyzabc(base_T_flange)
         lower, upper = self._config.workspace_min_mm, self._config.workspace_max_mm
         inside = bool(np.all((xyzabc[:3] >= lower) & (xyzabc[:3] <= upper)))
         if not (inside and np.isfinite(xyzabc).all()):
             self._refuse(f"flange at {np.round(xyzabc, 3).tolist()} mm/deg leaves the workspace")
-        return xyzabc
 
     def speed_mm_s(self, speed_m_s: float) -> float:
         """Path speed in mm/s."""
@@ -208,12 +207,12 @@ class Bounds:
         last: RigidTransform,
         start: RigidTransform,
         limits: StreamLimits,
-    ) -> Array:
-        """A streamed setpoint in its written form, if it lies close enough to the last one and to
-        the start of the stream."""
+    ) -> None:
+        """Refuse a streamed setpoint out of the workspace, or too far from the last one or from the
+        start of the stream."""
         self._near("step", base_T_flange, last, (limits.step_m, limits.step_rad))
         self._near("travel", base_T_flange, start, (limits.travel_m, limits.travel_rad))
-        return self.pose(base_T_flange)
+        self.pose(base_T_flange)
 
     def _near(
         self, what: str, pose: RigidTransform, other: RigidTransform, allowed: tuple[float, float]

@@ -3,10 +3,13 @@
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
+from scipy.spatial.transform import RigidTransform
+
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, ProtocolViolation
 from cellctl.errors.robot import MotionRejected
-from drivers.robot.siasun.codec.records import Answer, Record, Six, Tick
+from drivers.robot.siasun.codec.poses import read_pose, write_pose
+from drivers.robot.siasun.codec.records import Answer, Record, Tick
 from drivers.robot.siasun.codec.words import Words
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
@@ -38,19 +41,24 @@ class CommandChannel:
         """What the job program understands."""
         return self.channel.words
 
+    def written(self, base_T_flange: RigidTransform) -> list[float]:
+        """A pose as the controller of this session reads it."""
+        return write_pose(base_T_flange, self.channel.hello.euler_order)
+
     @property
     def running(self) -> bool:
         """A command waits for its end."""
         return self._running is not None
 
-    async def run(self, build: Callable[[int, int], bytes], timeout_s: float) -> Six:
+    async def run(self, build: Callable[[int, int], bytes], timeout_s: float) -> RigidTransform:
         """Send ``build(session, seq)``; the flange pose at its end.
 
         Raises what the controller answered, what ``fail`` was given, or ``ReplyTimeout``. The
         channel is dropped when the controller is silent or its answer makes no sense.
         """
         async with self.command(build) as command:
-            return await command.done(timeout_s)
+            xyzabc = await command.done(timeout_s)
+        return read_pose(xyzabc, self.channel.hello.euler_order)
 
     @asynccontextmanager
     async def command(self, build: Callable[[int, int], bytes]) -> AsyncIterator[RunningCommand]:

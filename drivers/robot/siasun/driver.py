@@ -19,7 +19,7 @@ from cellctl.errors.robot import (
     StreamNotOffered,
     TargetOutOfBounds,
 )
-from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.geometry.pose import Array
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
@@ -117,8 +117,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report. ``stop_latched`` includes this driver's own latch."""
         state = self._state.newest(max_age_s)
-        # The latch of this driver counts like that of the controller: whoever asks for readiness
-        # must see that a move would be refused.
+        # Whoever asks for readiness must see that this driver would refuse a move.
         return replace(state, stop_latched=True) if self._latch else state
 
     def link_facts(self) -> dict[str, str]:
@@ -128,9 +127,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
-        words = self._command.words
         return await self._move(
-            lambda session, seq: words.move_joint(session, seq, joints_deg.tolist(), percent),
+            lambda *ids: self._command.words.move_joint(*ids, joints_deg.tolist(), percent),
             self._targets.joints(joints_rad),
         )
 
@@ -139,23 +137,24 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     ) -> RobotState:
         """MOVL: straight move of the flange, ends at standstill. With a dh table, refused when the
         arm cannot follow it."""
-        xyzabc = self._bounds.pose(base_T_flange).tolist()
+        self._bounds.pose(base_T_flange)
         speed = self._bounds.speed_mm_s(speed_m_s)
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
-        words = self._command.words
+        words, written = self._command.words, self._command.written
         return await self._move(
-            lambda session, seq: words.move_linear(session, seq, xyzabc, speed, acceleration),
+            lambda *ids: words.move_linear(*ids, written(base_T_flange), speed, acceleration),
             self._targets.flange(base_T_flange),
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
         """STEP, at most as long as both the configuration and the job program allow."""
-        xyzabc = self._bounds.pose(base_T_flange).tolist()
+        self._bounds.pose(base_T_flange)
         speed = self._bounds.speed_mm_s(speed_m_s)
         state = self.state(self._config.stale_s)
         self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
+        words, written = self._command.words, self._command.written
         return await self._move(
-            lambda session, seq: self._command.words.step(session, seq, xyzabc, speed),
+            lambda *ids: words.step(*ids, written(base_T_flange), speed),
             self._targets.flange(base_T_flange),
         )
 
@@ -235,7 +234,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._check_ready()
         target.check_way(self.state(self._config.stale_s))
         try:
-            end_xyzabc = await self._command.run(build, self._config.move_timeout_s)
+            base_T_flange = await self._command.run(build, self._config.move_timeout_s)
         # Nobody knows whether the arm still moves, and nobody waits for its end any more.
         except (asyncio.CancelledError, ReplyTimeout):
             await self._stop_before_leaving()
@@ -247,7 +246,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
         state = self.state(self._config.stale_s)
         # The pose of DONE is the encoder pose at standstill, and newer than the last report.
-        end = replace(state, base_T_flange=pose_from_xyzabc(end_xyzabc))
+        end = replace(state, base_T_flange=base_T_flange)
         # A controller that says DONE elsewhere has another idea of the target, such as another
         # Euler order; the next move would be wrong as well.
         if off := target.off(end):

@@ -9,8 +9,9 @@ import numpy as np
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleData
 from cellctl.errors.robot import ControllerFault, StopFailed
-from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.robot import RobotMode, RobotState
+from drivers.robot.siasun.codec.poses import read_pose
 from drivers.robot.siasun.codec.records import Record, Status, StopDone
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
@@ -66,7 +67,8 @@ class StateChannel:
             facts = "none yet" if self._status is None else f"{age_s:.3f} s old"
             raise StaleData(f"state of {self._robot}: {facts}, allowed {max_age_s:g} s")
         words = self._error_words(self._status.error_code)
-        return _to_state(self._status, self._time_s, words)
+        order = self.channel.hello.euler_order
+        return _to_state(self._status, self._time_s, words, order)
 
     async def wait(self, condition: Callable[[Status], bool], timeout_s: float) -> None:
         """Wait until a report that arrives from now on meets a condition; else ``StaleData``."""
@@ -229,10 +231,10 @@ class StateChannel:
             self._timer.cancel()
 
 
-def _to_state(status: Status, time_s: float, error_words: str) -> RobotState:
+def _to_state(status: Status, time_s: float, error_words: str, order: EulerOrder) -> RobotState:
     return RobotState(
         time_s=time_s,
-        base_T_flange=pose_from_xyzabc(status.flange_xyzabc),
+        base_T_flange=read_pose(status.flange_xyzabc, order),
         joints_rad=np.radians(status.joints_deg),
         mode=_MODES[status.mode],
         emergency_stop=status.emergency_stop,

@@ -1,7 +1,6 @@
 """The guard's GRD channel to a SIASUN robot: blocking sockets, no event loop, no arrays."""
 
 import contextlib
-import math
 import random
 import socket
 from typing import TypeGuard
@@ -17,6 +16,7 @@ from cellctl.errors.link import (
 from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from drivers.robot.siasun import faults
+from drivers.robot.siasun.codec.angles import rotation_rows
 from drivers.robot.siasun.codec.decoder import RecordReader
 from drivers.robot.siasun.codec.handshake import HELLO_TIMEOUT_S, SESSIONS, is_robot, refusal
 from drivers.robot.siasun.codec.records import Hello, Record, Status, StopDone
@@ -46,6 +46,7 @@ class SiasunStopChannel(StopChannel):
         self._stops = 0
         self._beats = 0
         self._words = words_of(Hello(""))
+        self._order = EulerOrder.FIXED_XYZ
         self._compact = self._beat_due = False
         self._stop_record = b""
         self._asked_s: float | None = None
@@ -127,7 +128,7 @@ class SiasunStopChannel(StopChannel):
                 raise self._lost("closed by the robot")
             self._reader.feed(data)
             newest = self._read() or newest
-        return None if newest is None else flange_state(newest, now_s())
+        return None if newest is None else flange_state(newest, self._order, now_s())
 
     def _read(self) -> Status | None:
         """The newest report among the complete records; repeated ones are not news."""
@@ -184,6 +185,7 @@ class SiasunStopChannel(StopChannel):
             raise VersionMismatch(f"{config.robot_name} GRD: {facts}")
         self._session = self._session % SESSIONS + 1
         self._words, self._compact, self._beat_due = words_of(hello), hello.compact, False
+        self._order = hello.euler_order
         client.sendall(self._words.accept_hello(self._session))
         # From here on the guard's loop owns it, and nothing may block there.
         client.settimeout(0.0)
@@ -230,19 +232,13 @@ def _is_news(record: Record, last: Status | None) -> TypeGuard[Status]:
     return last is None or record.follows(last)
 
 
-def flange_state(status: Status, time_s: float) -> FlangeState:
-    """A report of the controller that came at ``time_s``, in SI."""
+def flange_state(status: Status, order: EulerOrder, time_s: float) -> FlangeState:
+    """A report that came at ``time_s``, of a controller with this order of angles, in SI."""
     x_mm, y_mm, z_mm, a_deg, b_deg, c_deg = status.flange_xyzabc
     return FlangeState(
         time_s,
         (x_mm / 1000.0, y_mm / 1000.0, z_mm / 1000.0),
-        rotation_from_abc(a_deg, b_deg, c_deg),
+        rotation_rows(order, a_deg, b_deg, c_deg),
         status.moving,
         status.latched,
     )
-
-
-def rotation_from_abc(a_deg: float, b_deg: float, c_deg: float) -> tuple[float, ...]:
-    """R = Rz(a) Ry(b) Rx(c), row by row."""
-    a, b, c = math.radians(a_deg), math.radians(b_deg), math.radians(c_deg)
-    return EulerOrder.FIXED_XYZ.rows(c, b, a)

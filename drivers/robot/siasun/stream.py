@@ -6,10 +6,10 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.link import ProtocolViolation
 from cellctl.errors.robot import StreamSilent
-from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
 from drivers.robot.siasun import protocol
 from drivers.robot.siasun.bounds import Bounds
+from drivers.robot.siasun.codec.poses import read_pose, write_pose
 from drivers.robot.siasun.codec.records import Six, Tick
 from drivers.robot.siasun.connection import SjlChannel
 from drivers.robot.siasun.running_command import RunningCommand
@@ -48,12 +48,13 @@ class SiasunStream(PoseStream):
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
         """SET for the tick after the newest one, and the TICK that answers it."""
         self._command.raise_end()
-        xyzabc = self._bounds.set_point(base_T_flange, self._last, self._start, self.limits)
+        self._bounds.set_point(base_T_flange, self._last, self._start, self.limits)
         # A caller that gave up waiting may be back before the tick of its last setpoint has come.
         await self._after(self._set_number - 1)
         # The newest tick may have come after the report that the caller has seen.
         number = self.report.tick + 1
-        self._channel.send(protocol.set_point(self._command.session, number, xyzabc.tolist()))
+        xyzabc = write_pose(base_T_flange, self._channel.hello.euler_order)
+        self._channel.send(protocol.set_point(self._command.session, number, xyzabc))
         self._last, self._set_number = base_T_flange, number
         return await self._after(number - 1)
 
@@ -88,7 +89,7 @@ class SiasunStream(PoseStream):
         return StreamReport(
             time_s=self._command.tick_time_s,
             tick=tick.number,
-            base_T_flange=pose_from_xyzabc(tick.flange_xyzabc),
+            base_T_flange=read_pose(tick.flange_xyzabc, self._channel.hello.euler_order),
             late=tick.late,
             lost=tick.lost,
         )

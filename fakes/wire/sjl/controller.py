@@ -132,7 +132,9 @@ class SjlController:
             channel,
             "NOBODY" if wrong("wrong_name") else settings.name,
             JOB_VERSION,
-            "EUL=XYZ" if wrong("wrong_euler") else "EUL=ZYX",
+            "EUL=ZYZ"
+            if wrong("wrong_euler")
+            else f"EUL={'XYZ' if wrong('other_euler') else 'ZYX'}",
             "UNIT=MRAD" if wrong("wrong_unit") else "UNIT=MMDEG",
             f"STEPMAX={fixed(settings.step_max_mm, 4)}",
             f"DEADMAN={settings.deadman_ms}",

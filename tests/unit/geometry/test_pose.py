@@ -75,3 +75,12 @@ def test_covariances_of_products_and_inverses_match_the_scatter() -> None:
 def test_skew_is_the_cross_product() -> None:
     a, b = np.array([1.0, -2.0, 3.0]), np.array([0.5, 4.0, -1.0])
     assert skew(a) @ b == pytest.approx(np.cross(a, b))
+
+
+@pytest.mark.parametrize("middle_deg", [90.0, -90.0])
+def test_at_the_poles_the_rotation_is_kept_and_nobody_is_warned(middle_deg: float) -> None:
+    pose = pose_from_xyzabc([1.0, 2.0, 3.0, 40.0, middle_deg, -15.0])
+    written = pose_to_xyzabc(pose)
+    assert written[4] == pytest.approx(middle_deg)
+    _, turned_rad = pose_error(pose, pose_from_xyzabc(written))
+    assert turned_rad == pytest.approx(np.zeros(3), abs=1e-7)

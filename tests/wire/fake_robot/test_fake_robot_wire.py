@@ -186,7 +186,8 @@ async def test_frozen_state_repeats_its_last_record() -> None:
     ("fault", "index", "text"),
     [
         ("wrong_version", 2, "9"),
-        ("wrong_euler", 6, "EUL=XYZ"),
+        ("wrong_euler", 6, "EUL=ZYZ"),
+        ("other_euler", 6, "EUL=XYZ"),
         ("wrong_unit", 7, "UNIT=MRAD"),
         ("wrong_name", 4, "NOBODY"),
     ],

@@ -74,14 +74,17 @@ class Cell:
 
 
 @asynccontextmanager
-async def running(*, option: str = "", **changes: object) -> AsyncIterator[Cell]:
-    """``option`` is one that the controller's CMD channel offers in its hello."""
+async def running(
+    *, option: str = "", euler: str = "ZYX", pose: str = POSE, **changes: object
+) -> AsyncIterator[Cell]:
+    """``option`` is one that the controller's CMD channel offers in its hello, ``euler`` the order
+    of angles that both name; ``pose`` is the first one that is reported."""
     settings = config(**changes)
     robot = SiasunRobot("main", settings)
     connecting = asyncio.create_task(robot.connect())
-    cmd = await Peer.greeted(settings.command_port, "CMD", option)
-    sta = await Peer.greeted(settings.state_port, "STA")
-    sta.stat()
+    cmd = await Peer.greeted(settings.command_port, "CMD", option, eul=euler)
+    sta = await Peer.greeted(settings.state_port, "STA", eul=euler)
+    sta.stat(pose=pose)
     await connecting
     cell = Cell(robot, cmd, sta)
     try:

@@ -33,11 +33,16 @@ class Peer:
 
     @classmethod
     async def greeted(
-        cls, port: int, channel: str, option: str = "", address: str = "127.0.0.1"
+        cls,
+        port: int,
+        channel: str,
+        option: str = "",
+        address: str = "127.0.0.1",
+        **changes: str,
     ) -> Self:
         """Connected and accepted."""
         peer = await cls.connect(port, address)
-        await peer.hello(channel, option=option)
+        await peer.hello(channel, option=option, **changes)
         return peer
 
     async def hello(

@@ -65,7 +65,7 @@ async def test_port_in_use() -> None:
 
 @pytest.mark.parametrize(
     ("changes", "reason"),
-    [({"version": "9"}, "VERSION"), ({"eul": "XYZ"}, "CONVENTION"),
+    [({"version": "9"}, "VERSION"), ({"eul": "ZYZ"}, "CONVENTION"),
      ({"unit": "MRAD"}, "CONVENTION"), ({"robot": "T90A"}, "NAME"),
      ({"deadman": "900"}, "DEADMAN")],
 )  # fmt: skip

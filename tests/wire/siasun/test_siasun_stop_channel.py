@@ -8,7 +8,6 @@ from contextlib import AbstractAsyncContextManager
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
 
 from cellctl.errors.link import (
     ConnectTimeout,
@@ -21,9 +20,10 @@ from cellctl.errors.robot import MotionAborted
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.stop_channel import FlangeState
 from drivers.robot.siasun.config import SiasunStopChannelConfig
-from drivers.robot.siasun.stop_channel import SiasunStopChannel, rotation_from_abc
+from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from tests.ports import free_ports
 from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.wire.siasun.siasun_angles import rotation_by_hand
 from tests.wire.siasun.siasun_peer import POSE, Peer
 from tests.wire.siasun.sjl_rig import Rig, sjl_rig
 
@@ -196,10 +196,33 @@ async def test_a_stranger_does_not_block_the_robot() -> None:
     await peer.close()
 
 
-@pytest.mark.parametrize("abc", [(90.0, 0.0, 180.0), (10.0, -20.0, 30.0), (-170.0, 89.0, 5.0)])
-def test_rotation(abc: tuple[float, float, float]) -> None:
-    expected = Rotation.from_euler("ZYX", abc, degrees=True).as_matrix()
-    assert np.reshape(rotation_from_abc(*abc), (3, 3)) == pytest.approx(expected)
+@pytest.mark.parametrize("euler", ["ZYX", "XYZ", "ROTVEC"])
+@pytest.mark.parametrize(
+    "abc",
+    [
+        (90.0, 0.0, 180.0),
+        (10.0, -20.0, 30.0),
+        (-170.0, 89.0, 5.0),
+        # At the poles of both Euler orders.
+        (40.0, 90.0, -15.0),
+        (40.0, -90.0, 15.0),
+    ],
+)
+async def test_angles_are_read_in_the_order_that_the_hello_names(
+    euler: str, abc: tuple[float, float, float]
+) -> None:
+    settings = config()
+    channel = SiasunStopChannel(settings)
+    opening = asyncio.create_task(asyncio.to_thread(channel.open))
+    peer = await Peer.connect(settings.guard_port)
+    await peer.hello("GRD", eul=euler)
+    await opening
+    peer.stat(pose="1900.0000,0.0000,900.0000," + ",".join(f"{angle:.4f}" for angle in abc))
+    state = await polled(channel)
+    expected = rotation_by_hand(euler, abc).as_matrix()
+    assert np.reshape(state.rotation, (3, 3)) == pytest.approx(expected)
+    channel.close()
+    await peer.close()
 
 
 @pytest.mark.parametrize("make", [sjl_rig, job_rig], ids=["records", "jobs"])

@@ -2,6 +2,7 @@
 
 from ipaddress import IPv6Address, ip_address, ip_network
 
+from drivers.robot.siasun.codec.angles import EULER_ORDERS
 from drivers.robot.siasun.codec.records import COMPACT_VERSION, Hello
 from drivers.robot.siasun.protocol import VERSION
 
@@ -22,6 +23,7 @@ def is_robot(caller: str, robot_address: str) -> bool:
 def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tuple[str, str] | None:
     """Why a hello cannot be accepted: the word for the robot and the facts; None when it can."""
     deadman_ok = 0 < hello.deadman_ms <= max_deadman_s * 1000.0
+    orders = ", ".join(EULER_ORDERS)
     version_ok = hello.version in (VERSION, COMPACT_VERSION)
     # In the order in which they make sense: of another version the other fields mean nothing, and
     # on a wrong port the name may be right.
@@ -29,7 +31,11 @@ def refusal(hello: Hello, channel: str, robot: str, max_deadman_s: float) -> tup
         (version_ok, "VERSION", f"job program speaks SJL/{hello.version}"),
         (hello.channel == channel, "CHANNEL", f"channel {hello.channel} on the port of {channel}"),
         (hello.robot == robot, "NAME", f"robot {hello.robot} on the port of {robot}"),
-        (hello.euler == "ZYX", "CONVENTION", f"angles are EUL={hello.euler}, not ZYX"),
+        (
+            hello.euler in EULER_ORDERS,
+            "CONVENTION",
+            f"angles are EUL={hello.euler}, known are {orders}",
+        ),
         (hello.unit == "MMDEG", "CONVENTION", f"units are {hello.unit}, not MMDEG"),
         (deadman_ok, "DEADMAN", f"dead man {hello.deadman_ms} ms, limit {max_deadman_s:g} s"),
         (hello.step_max_mm > 0.0, "STEPMAX", "job program allows no step"),

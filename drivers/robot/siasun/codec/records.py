@@ -1,9 +1,13 @@
 """The records that an SJL/1 controller sends, as values.
 
-Poses stay in their written form here: X, Y, Z in mm, A, B, C in degrees, plain floats.
+Poses stay as they are sent here, plain floats: x, y, z in mm, a, b, c in degrees in the order that
+the hello names.
 """
 
 from dataclasses import dataclass
+
+from cellctl.geometry.euler_order import EulerOrder
+from drivers.robot.siasun.codec.angles import EULER_ORDERS
 
 COMPACT_VERSION = "2"
 """Of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
@@ -48,6 +52,11 @@ class Hello:
     """None when the job program cannot stream."""
     acceleration_max_mm_s2: float = 0.0
     """What 100 percent of acceleration mean, of a job program that takes percents."""
+
+    @property
+    def euler_order(self) -> EulerOrder:
+        """How its poses hold angles; a hello that was accepted names an order that is known."""
+        return EULER_ORDERS[self.euler]
 
     @property
     def compact(self) -> bool:
