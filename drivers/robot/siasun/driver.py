@@ -127,8 +127,9 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
+        words = self._command.words
         return await self._move(
-            lambda *ids: self._command.words.move_joint(*ids, joints_deg.tolist(), percent),
+            lambda session, seq: words.move_joint(session, seq, joints_deg.tolist(), percent),
             self._targets.joints(joints_rad),
         )
 
@@ -142,7 +143,9 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
         words, written = self._command.words, self._command.written
         return await self._move(
-            lambda *ids: words.move_linear(*ids, written(base_T_flange), speed, acceleration),
+            lambda session, seq: words.move_linear(
+                session, seq, written(base_T_flange), speed, acceleration
+            ),
             self._targets.flange(base_T_flange),
         )
 
@@ -154,18 +157,17 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._bounds.step(state, base_T_flange, self._command.channel.hello.step_max_mm)
         words, written = self._command.words, self._command.written
         return await self._move(
-            lambda *ids: words.step(*ids, written(base_T_flange), speed),
+            lambda session, seq: words.step(session, seq, written(base_T_flange), speed),
             self._targets.flange(base_T_flange),
         )
 
     def stream_offer(self) -> StreamOffer:
         """What the job program has offered in its hello, as far as the configuration allows it."""
         self._check_link()
-        option = self._command.channel.hello.stream
-        if option is None:
-            version = self._command.channel.hello.job_version
-            raise StreamNotOffered(f"{self.name}: job program {version}")
-        return self._bounds.stream_offer(option)
+        hello = self._command.channel.hello
+        if hello.stream is None:
+            raise StreamNotOffered(f"{self.name}: job program {hello.job_version}")
+        return self._bounds.stream_offer(hello.stream)
 
     @asynccontextmanager
     async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
@@ -178,8 +180,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
             async with self._command.command(
                 lambda session, seq: protocol.begin_stream(session, seq, figures)
             ) as command:
-                channel = self._command.channel
-                stream = SiasunStream(channel, command, self._bounds, limits, offer)
+                stream = SiasunStream(self._command.channel, command, self._bounds, limits, offer)
                 await stream.begin()
                 yield stream
                 await stream.finish(self._config.stop_timeout_s)
@@ -265,8 +266,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._bounds.table_fits(state)
 
     async def _stop_before_leaving(self) -> None:
-        """Stop even if this task is cancelled again meanwhile. Without a link there is nobody to
-        tell; the controller's dead man and its loss of the channel stop it then."""
+        """Stop even if cancelled again; without a link the controller's dead man does it."""
         self._latch = NotRearmed(f"{self.name}: a motion was given up")
         if self._state.channel.connected:
             await asyncio.shield(asyncio.ensure_future(self.stop()))

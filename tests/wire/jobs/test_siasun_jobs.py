@@ -106,7 +106,7 @@ async def test_an_error_of_the_controller_ends_a_motion(rig: JobRig) -> None:
 async def test_the_job_refuses_a_long_step_by_itself(rig: JobRig) -> None:
     here = rig.robot.state().base_T_flange
     target = RigidTransform.from_translation([0.0, 0.0, 0.0006]) * here
-    xyzabc = rig.robot._bounds.pose(target).tolist()
+    xyzabc = rig.robot._command.written(target)
     with pytest.raises(MotionRejected, match="STEP"):
         await rig.robot._command.run(
             lambda session, seq: rig.robot._command.words.step(session, seq, xyzabc, 5.0), 1.0
