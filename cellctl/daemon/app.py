@@ -18,6 +18,7 @@ from cellctl.api.local.live_feed import LiveFeed
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
+from cellctl.api.modbus.status import require_registers
 from cellctl.cell.devices import Cell
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
@@ -101,6 +102,7 @@ async def _command_path(
     They share the line's heartbeat: the interface feeds it, and the arbiter asks it whether the
     line is in control.
     """
+    require_registers(unit.calibrations.kinds)
     heartbeat = LineHeartbeat(config.heartbeat_timeout_s, unit.line_lost)
     arbiter = CommandArbiter(unit, store, line_alive=lambda: heartbeat.alive)
     plc = PlcInterface(

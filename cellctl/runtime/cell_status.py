@@ -1,5 +1,6 @@
 """A snapshot of the cell for whoever watches it: line, terminal, page."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -53,6 +54,9 @@ class CellStatus:
     run_result: Result = Result.NONE
     validity_h: Mapping[str, float] = field(default_factory=dict)
     """By name of the register; one that no calibration of the cell belongs to reads 0."""
+    validity_least_h: float = math.inf
+    """Of the calibrations that the cell requires, the first to end; infinite where it requires
+    none."""
     error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
     """x, y, z in mm, rx, ry, rz in degrees."""
     force_peaks: tuple[float, ...] = (NO_VALUE,) * 6

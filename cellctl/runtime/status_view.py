@@ -67,6 +67,7 @@ class StatusView:
             run_number=job.run_number if job else 0,
             run_result=result,
             validity_h=self._calibrations.validity_h(self._calibrations.kinds),
+            validity_least_h=self._calibrations.least_h(self._calibrations.kinds),
             error_mm_deg=progress.error_mm_deg,
             force_peaks=progress.force_peaks,
             force_z_n=self._force_z_n(),

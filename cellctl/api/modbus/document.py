@@ -21,6 +21,7 @@ _HISTORY = (
     (3, "status bit 12, stop_not_confirmed"),
     (4, "mode_time, state_time and the last eight refusals added at 80-115"),
     (5, "mate_serial added at holding 28-39"),
+    (6, "validity_least added at 116"),
 )
 _RESULTS = {
     Result.NONE: "not ended",

@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 5
+MAP_VERSION = 6
 
 
 class Kind(StrEnum):
@@ -67,15 +67,21 @@ _ALARMS = tuple(
     for index in range(8)
 )
 VALIDITY_REGISTERS = {
-    "stereo": "the two stereo heads",
-    "base_frame": "the base frame",
-    "board_transfer": "head I to head II",
-    "payload": "force sensor and payload",
+    "stereo": (27, "the two stereo heads"),
+    "base_frame": (28, "the base frame"),
+    "board_transfer": (29, "head I to head II"),
+    "payload": (30, "force sensor and payload"),
 }
-"""Groups of calibrations whose remaining hours the line sees, with their text."""
+"""Groups of calibrations whose remaining hours the line sees: address and text of each. A further
+one takes a free address."""
 _VALIDITY = tuple(
-    Item(27 + index, f"validity_{name}", f"calibration of {what}; 0 is invalid", unit="h")
-    for index, (name, what) in enumerate(VALIDITY_REGISTERS.items())
+    Item(
+        address,
+        f"validity_{name}",
+        f"calibration of {what}; 0 is invalid, or nothing in this cell needs it",
+        unit="h",
+    )
+    for name, (address, what) in VALIDITY_REGISTERS.items()
 )
 _POSE_ERROR = tuple(
     _i32(
@@ -144,6 +150,13 @@ INPUT: tuple[Item, ...] = (
     Item(80, "mode_time", "since the mode changed: PackML ModeTimeCurrent", Kind.U32, "s", 2),
     Item(82, "state_time", "since the state changed: PackML StateTimeCurrent", Kind.U32, "s", 2),
     *_REFUSALS,
+    Item(
+        116,
+        "validity_least",
+        "of the calibrations that this cell requires, the first to end; 0 is invalid, 65535 where "
+        "none is required",
+        unit="h",
+    ),
     Item(124, "seq_tail", "equal to seq_head; will stay at 124"),
 )
 

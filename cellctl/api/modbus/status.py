@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 from cellctl.api.modbus.register_map import MAP_VERSION, REFUSALS, STATUS_BITS, VALIDITY_REGISTERS
 from cellctl.api.modbus.register_values import Value, millionths, thousandths
+from cellctl.calibration.store.kind import Kinds
+from cellctl.errors.internal import Unexpected
 from cellctl.runtime.cell_status import CellStatus
 
 _BIT = {name: 1 << number for number, (name, _) in enumerate(STATUS_BITS)}
@@ -50,9 +52,10 @@ def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Valu
         "run_number": status.run_number,
         "run_result": status.run_result,
         **{
-            f"validity_{name}": max(0, min(_U16_MAX, int(status.validity_h.get(name, 0.0))))
+            f"validity_{name}": _hours(status.validity_h.get(name, 0.0))
             for name in VALIDITY_REGISTERS
         },
+        "validity_least": _hours(status.validity_least_h),
         **{
             f"pose_error_{axis}": (thousandths if index < 3 else millionths)(value)
             for index, (axis, value) in enumerate(zip(_AXES, status.error_mm_deg, strict=True))
@@ -71,6 +74,24 @@ def values(status: CellStatus, handshake: Handshake, seq: int) -> dict[str, Valu
         "test_f32": 123.456,
         "test_text": "ABCDEF",
     }
+
+
+def require_registers(kinds: Kinds) -> None:
+    """Raise ``Unexpected`` for a kind whose register the map does not have.
+
+    The line would read 0 there for ever, and a validity that nobody shows is noticed by nobody.
+    """
+    for kind in kinds:
+        if kind.register is not None and kind.register not in VALIDITY_REGISTERS:
+            known = ", ".join(VALIDITY_REGISTERS)
+            raise Unexpected(
+                f"{kind.name}: no register validity_{kind.register}; there are {known}"
+            )
+
+
+def _hours(left_h: float) -> int:
+    # Whole hours, rounded down: the line must not be told of one that is not left.
+    return int(max(0.0, min(_U16_MAX, left_h)))
 
 
 def _refusals(status: CellStatus) -> dict[str, Value]:

@@ -1,6 +1,7 @@
 """The folder of calibrations: procedures store into it, production reads from it."""
 
 import json
+import math
 from collections.abc import Callable, Iterable, Mapping
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -172,17 +173,17 @@ class CalibrationStore:
                 hours[kind.register] = min(left_h, hours.get(kind.register, left_h))
         return hours
 
-    def all_valid(self, kinds: Kinds, planned: timedelta = timedelta(0)) -> bool:
-        """True when every required kind stays valid for longer than ``planned``; cheap.
+    def least_h(self, kinds: Kinds) -> float:
+        """Hours until the first required kind ends; infinite where none is required; cheap.
 
         Kinds of each recipe do not count: nobody has chosen a recipe yet.
         """
-        planned_h = planned.total_seconds() / 3600
-        return all(
-            self._validity.hours(kind) > planned_h
-            for kind in kinds
-            if kind.required and not kind.per_recipe
-        )
+        required = (kind for kind in kinds if kind.required and not kind.per_recipe)
+        return min((self._validity.hours(kind) for kind in required), default=math.inf)
+
+    def all_valid(self, kinds: Kinds, planned: timedelta = timedelta(0)) -> bool:
+        """True when every required kind stays valid for longer than ``planned``; as ``least_h``."""
+        return self.least_h(kinds) > planned.total_seconds() / 3600
 
     def names(self) -> list[str]:
         """Names of all calibrations in the folder, sorted; also of those that are invalid."""

@@ -26,7 +26,9 @@ from cellctl.api.modbus.register_values import (
     millionths,
     thousandths,
 )
-from cellctl.api.modbus.status import Handshake, values
+from cellctl.api.modbus.status import Handshake, require_registers, values
+from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.errors.internal import Unexpected
 from cellctl.packml import Mode, RejectCode, State
 from cellctl.runtime.cell_status import CellStatus, ShownRefusal
 
@@ -42,7 +44,8 @@ AGREED = {
     "test_u32": 67, "test_f32": 69, "test_text": 71,
     "iteration": 74, "force_z": 75, "force_limit": 77, "run_result": 79, "seq_tail": 124,
     "mode_time": 80, "state_time": 82, "refusal_1_age": 84, "refusal_1_code": 87,
-    "refusal_8_age": 112, "refusal_8_code": 115,
+    "refusal_8_age": 112, "refusal_8_code": 115, "validity_base_frame": 28,
+    "validity_board_transfer": 29, "validity_least": 116,
 }  # fmt: skip
 
 
@@ -148,3 +151,20 @@ def test_the_documented_map_is_current() -> None:
 
     page = Path(__file__).parents[4] / "docs/register-map.md"
     assert page.read_text(encoding="utf-8") == register_map_document()
+
+
+@pytest.mark.parametrize(
+    ("left_h", "shown"), [(23.9, 23), (0.0, 0), (-1.0, 0), (1e6, 65535), (math.inf, 65535)]
+)
+def test_hours_are_whole_and_within_their_register(left_h: float, shown: int) -> None:
+    status = CellStatus(validity_h={"stereo": left_h}, validity_least_h=left_h)
+    found = values(status, Handshake(), 1)
+    assert (found["validity_stereo"], found["validity_least"]) == (shown, shown)
+    assert found["validity_payload"] == 0
+
+
+def test_a_calibration_may_not_name_a_register_that_there_is_not() -> None:
+    known = CalibrationKind(name="head", parse=dict, register="stereo")
+    require_registers([known, CalibrationKind(name="tool", parse=dict)])
+    with pytest.raises(Unexpected, match="no register validity_tool"):
+        require_registers([known, CalibrationKind(name="tool", parse=dict, register="tool")])

@@ -1,6 +1,7 @@
 """The folder of calibrations: what production gets, and what the line is told."""
 
 import json
+import math
 import os
 import stat
 from dataclasses import replace
@@ -70,6 +71,13 @@ def test_all_of_them_are_read_with_their_identities(store: CalibrationStore) -> 
     assert store.all_valid(CALIBRATIONS, HOUR)
     assert all(23 < left_h < 24.01 for left_h in hours(store).values())
     assert set(hours(store)) == {"stereo", "base_frame", "board_transfer", "payload"}
+
+
+def test_the_first_to_end_is_the_least_of_the_required(store: CalibrationStore) -> None:
+    assert 23 < store.least_h(CALIBRATIONS) < 24.01
+    (store.path / f"{REQUIRED[0].name}.json").unlink()
+    assert store.least_h(CALIBRATIONS) == 0.0
+    assert store.least_h([]) == math.inf
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in REQUIRED])
