@@ -110,7 +110,7 @@ class Features:
             self._write_if_there("TriggerMode", "Off")
             return
         if settings.trigger == "software" and not self.has("TriggerSoftware"):
-            text = f"{self._label} has no software trigger; a wire (Line1) or none is left"
+            text = f'{self._label} has no software trigger; set trigger = "none", or "Line1"'
             raise TroubleError(Trouble.FEATURE, text)
         self.write("TriggerMode", "On")
         wired = settings.trigger.startswith("Line")
