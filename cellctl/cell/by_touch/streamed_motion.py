@@ -73,7 +73,9 @@ class StreamedMotion:
 
     def _pose(self, pace: Pace) -> Array:
         nominal = self._nominal(pace)
-        return nominal if self.press is None else displaced(nominal, self._displacement(pace))
+        if self.press is None:
+            return nominal
+        return displaced(nominal, self._displacement(self.press, pace))
 
     def _nominal(self, pace: Pace) -> Array:
         if pace is Pace.HOLD:
@@ -82,13 +84,12 @@ class StreamedMotion:
             return self.path.brake()
         return self.path.step(self.speed(self.loop.sample))
 
-    def _displacement(self, pace: Pace) -> Array:
-        assert self.press is not None  # asked for a press only
+    def _displacement(self, press: Press, pace: Pace) -> Array:
         if pace is Pace.HOLD:
-            return self.press.admittance.hold()
+            return press.admittance.hold()
         if pace is Pace.BRAKE:
-            return self.press.admittance.brake()
-        return self.press.admittance.step(self.press.ramp.step(), self.loop.felt)
+            return press.admittance.brake()
+        return press.admittance.step(press.ramp.step(), self.loop.felt)
 
     def _stands(self) -> bool:
         moving = abs(self.path.speed)

@@ -35,7 +35,10 @@ from cellctl.processes.antenna_module.chain.taught_reference import (
     TaughtReference,
 )
 from cellctl.processes.antenna_module.drawings import Drawings, Plate, read_drawings, read_plate
-from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    LooksIncomplete,
+)
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.processes.antenna_module.stations import AntennaCell
@@ -62,6 +65,13 @@ class PluggingFacts:
     """None in a cell without one."""
     reference: TaughtReference | None
     """None in a cell without a plate, and while it is being taught."""
+
+    @property
+    def required_plate(self) -> Plate:
+        """The plate, for those who look at it; raises ``LooksIncomplete`` in a cell without one."""
+        if self.plate is None:
+            raise LooksIncomplete("this cell has no reference plate")
+        return self.plate
 
 
 async def read_facts(

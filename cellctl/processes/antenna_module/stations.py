@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.cell import CellConfig
+from cellctl.errors.config import ConfigInvalid
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces import Camera, Gripper
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -34,9 +35,9 @@ class AntennaCell:
     def of(cls, cell: Cell, recipe: AntennaRecipe) -> "AntennaCell":
         """Roles as the recipe binds them; the check of the cell file saw to it that all exist."""
         camera_1 = recipe.device(CAMERA_1)
-        # The check of the cell file saw to it that a camera on a robot has its place there.
         on_flange = cell.config.cameras[camera_1].flange_T_camera
-        assert on_flange is not None
+        if on_flange is None:
+            raise ConfigInvalid(f"cameras.{camera_1}.flange_T_camera is missing")
         return cls(
             cell,
             cell.guarded_robot(recipe.device(FORCE)),

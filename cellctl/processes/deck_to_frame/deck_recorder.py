@@ -184,11 +184,12 @@ class DeckRecorder:
         """A kind that comes again, after a Hold, gets a number: no picture hides another."""
         self._names[kind] += 1
         name = kind if self._names[kind] == 1 else f"{kind}-again-{self._names[kind]}"
-        if measured.predicted is not None:
+        predicted = measured.predicted
+        if predicted is not None:
             images = raw_images(name, measured.shots)
             # The document names the images before they are written: an image that is late or lost
             # shows as missing in a replay.
-            source = measured_from(kind, measured, list(images))
+            source = measured_from(kind, measured, predicted, list(images))
             await self.recorder.document(MEASURED_FROM, {name: source})
             for file, image in images.items():
                 self.recorder.raw_image(file, image)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from cellctl import log
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
+from cellctl.errors.internal import Unexpected
 from cellctl.errors.records import RecordSilent
 from cellctl.packml.result import Result
 from cellctl.records.entries import RunHead, RunResult
@@ -99,10 +100,12 @@ class JobRunner:
             await job.start()
 
     async def execute(self) -> None:
-        """Do what the job does in Execute."""
-        assert self._job is not None
+        """Do what the job does in Execute; ``Unexpected`` when none was started."""
+        job = self._job
+        if job is None:
+            raise Unexpected("Execute without a job")
         with self._at_work():
-            await self._job.execute()
+            await job.execute()
             self._finished = True
 
     async def left(self) -> None:

@@ -42,9 +42,7 @@ async def teach_reference_on_cell(
     async def tell(number: int, total: int) -> None:
         await context.progress(number, total, "look")
 
-    plate = facts.plate
-    # It is offered in a cell with a plate only.
-    assert plate is not None
+    plate = facts.required_plate
     eyes = Eyes(cell.arm, cell.workers, recorder=None, frames=1)
     looks = await ReferenceDrive(facts, plate, eyes, tell).looks(section.taught_looks)
     await Mover(cell).to_taught(HOME)

@@ -61,9 +61,7 @@ async def _looks(run: PluggingRun, count: int, *, first: int) -> ReferenceLooks:
     async def tell(number: int, total: int) -> None:
         run.say(f"look {number} of {total}")
 
-    plate = run.facts.plate
-    # A reference is read only together with the drawings of its plate.
-    assert plate is not None
+    plate = run.facts.required_plate
     # One image a look: the arm repeats ten times worse than an image shows.
     eyes = replace(run.eyes, frames=1)
     return await ReferenceDrive(run.facts, plate, eyes, tell).looks(count, first=first)

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import cast
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.errors.config import ConfigInvalid
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.procedures.base_frame import AxisTurns, turn_angles
 from cellctl.procedures.payload import identification_poses
@@ -19,8 +21,7 @@ from cellctl.processes.deck_to_frame.stated_moves import ArmsInRoles
 
 def procedure_moves(arms: ArmsInRoles) -> Iterator[StatedMove]:
     """Each begins with the main arm at home and the heads retracted, but the one that measures."""
-    settings = arms.cell.processes[arms.recipe.process]
-    assert isinstance(settings, DeckSettings), "they are of the process's own model"
+    settings = cast(DeckSettings, arms.cell.processes[arms.recipe.process])
     yield from _head_views(arms, settings.stereo_views)
     yield from _axis_turns(arms, settings)
     yield from _tilts(arms, settings)
@@ -38,7 +39,8 @@ def _head_views(arms: ArmsInRoles, count: int) -> Iterator[StatedMove]:
         }
         measuring = arms.taught(robot, MEASURING)
         written = arms.cell.stereo_cameras[name].flange_T_camera
-        assert written is not None, "the check of the cell file asks for it where a head is carried"
+        if written is None:
+            raise ConfigInvalid(f"stereo_cameras.{name}.flange_T_camera is missing")
         flange_T_head = pose_from_xyzabc(written)
         poses = flange_poses(arms.flange_at(robot, measuring), flange_T_head, count)
         views = [

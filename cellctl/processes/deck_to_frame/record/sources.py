@@ -25,16 +25,18 @@ def raw_images(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dic
     }
 
 
-def measured_from(kind: str, measured: PartMeasurement, images: list[str]) -> dict[str, Any]:
+def measured_from(
+    kind: str, measured: PartMeasurement, predicted: RigidTransform, images: list[str]
+) -> dict[str, Any]:
     """Key of the recorded result, part, prediction and images of one measurement.
 
-    The prediction is a matrix in metres with all digits: angles would round it.
+    ``predicted`` is ``c1_T_part`` near which the holes were looked for. It is a matrix in metres
+    with all digits: angles would round it.
     """
-    assert measured.predicted is not None
     return {
         "key": kind,
         "part": FRAME if kind == FRAME else "deck",
-        "c1_T_part_predicted": measured.predicted.as_matrix().tolist(),
+        "c1_T_part_predicted": predicted.as_matrix().tolist(),
         "result": measured.c1_T_part.as_matrix().tolist(),
         "covariance": np.asarray(measured.pose.pose.covariance).tolist(),
         "images": images,

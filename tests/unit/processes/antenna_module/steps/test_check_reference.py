@@ -68,7 +68,7 @@ class Rig:
         made = utc_now() - timedelta(hours=taught_h)
         facts = SimpleNamespace(
             reference=taught if plate else None,
-            plate=SimpleNamespace() if plate else None,
+            required_plate=SimpleNamespace(),
             plug_cell=plug_cell,
             calibrations=SimpleNamespace(stored={"reference": SimpleNamespace(made=made)}),
         )
