@@ -85,7 +85,9 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
             f"{robot}: {', '.join(taught_in_zone(cell.robots[robot], share)) or 'no taught pose'}"
             for robot, share in zone.robots.items()
         ]
+        order = ", then ".join(zone.retreat) or "nobody while another one is in it"
         console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}", markup=False)
+        console.print(f"  {'':32} leaves first: {order}", markup=False)
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:

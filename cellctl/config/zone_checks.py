@@ -1,6 +1,7 @@
 """Checks of the zones of a cell file against its robots."""
 
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 import numpy as np
 
@@ -13,7 +14,9 @@ from cellctl.geometry.box import Box
 
 
 def zone_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:
-    """Robots and poses that do not exist; ``found`` is what is wrong with the drivers."""
+    """Robots and poses that do not exist, orders that contradict each other; ``found`` is what is
+    wrong with the drivers."""
+    yield from _retreat_issues(cell)
     robots = ", ".join(cell.robots) or "none"
     for zone, config in cell.zones.items():
         for robot, share in config.robots.items():
@@ -25,6 +28,25 @@ def zone_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[Conf
                 # Settings that are wrong themselves do not say what the driver knows.
                 if not any(issue.key.startswith(f"robots.{robot}.") for issue in found):
                     yield from _needless_clear_poses(cell, robot, share, key)
+
+
+def _retreat_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Robots of another zone, and two that would wait for each other, because two zones have
+    them leave in two orders."""
+    first: dict[tuple[str, str], str] = {}
+    for zone, config in cell.zones.items():
+        for robot in config.retreat:
+            if robot not in config.robots:
+                allowed = "a robot of this zone: " + ", ".join(config.robots)
+                yield ConfigIssue(f"zones.{zone}.retreat", repr(robot), allowed)
+            elif config.robots[robot].way_out is None:
+                allowed = "a face of the box, as '+y', because the robot is in retreat"
+                yield ConfigIssue(f"zones.{zone}.robots.{robot}.way_out", "missing", allowed)
+        for earlier, later in combinations(config.retreat, 2):
+            first[earlier, later] = zone
+            if (other := first.get((later, earlier))) is not None:
+                allowed = f"{later} before {earlier}, as in zones.{other}.retreat"
+                yield ConfigIssue(f"zones.{zone}.retreat", str(list(config.retreat)), allowed)
 
 
 def _clear_pose_issues(

@@ -1,6 +1,6 @@
 """Zones: parts of the cell's space that two arms may not share."""
 
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -23,6 +23,10 @@ class ZoneShare(Section):
     """Taught poses between which the arm moves by joints without coming into the zone. Only for a
     robot whose driver does not know its kinematics: all its other joint moves need the zone."""
 
+    way_out: Literal["-x", "+x", "-y", "+y", "-z", "+z"] | None = None
+    """The face of the box through which the arm leaves while another one stands in the zone: the
+    side away from where the others come in. Needed of a robot in ``retreat``."""
+
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         if not all(low < high for low, high in zip(self.min_mm, self.max_mm, strict=True)):
@@ -34,5 +38,14 @@ class ZoneConfig(Section):
     """A space that belongs to one of these robots at a time."""
 
     robots: Annotated[dict[DeviceName, ZoneShare], Field(min_length=2)]
+    retreat: tuple[DeviceName, ...] = ()
+    """In this order they leave when more than one of them is in the zone: each by moves all the
+    time towards its ``way_out``, while the others stand. Who is not named waits until alone."""
     wait_s: Annotated[float, Field(ge=0.0, le=600.0)] = 30.0
     """How long a robot waits for another one that is on its way out."""
+
+    @model_validator(mode="after")
+    def _nobody_leaves_twice(self) -> Self:
+        if len(set(self.retreat)) != len(self.retreat):
+            raise ValueError("retreat names a robot twice")
+        return self

@@ -30,6 +30,13 @@ class Box:
             return True
         return bool(np.all((point_m >= self.lower_m) & (point_m <= self.upper_m)))
 
+    def to_face_m(self, points_m: Array, axis: int, *, upper: bool) -> Array:
+        """How far each point, shape (n, 3), lies before the lower or upper face across an axis:
+        shape (n,), negative beyond it."""
+        if upper:
+            return np.asarray(self.upper_m[axis] - points_m[:, axis])
+        return np.asarray(points_m[:, axis] - self.lower_m[axis])
+
     def meets(self, points_m: Array) -> bool:
         """Whether the straight lines through the points, shape (n, 3), meet the box anywhere.
 

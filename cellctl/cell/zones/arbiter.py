@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from cellctl import log
 from cellctl.cell.zones.ways import Way
@@ -41,6 +41,8 @@ class _Claim:
     """How long it is worth waiting: 0 for an arm that stays."""
     detail: str = field(default="", compare=False)
     """Differs from look to look, such as the age of a report; it is the same claim all the same."""
+    rests: bool = False
+    """The arm stands in the zone, and reports it."""
 
     def __str__(self) -> str:
         return f"{self.zone}: {self.robot} {self.reason}" + (self.detail and f" ({self.detail})")
@@ -110,8 +112,20 @@ class ZoneArbiter:
             for zone in self._zones
             if robot in zone.shares and way.needs(zone.shares[robot])
             for other in zone.shares
-            if other != robot and (claim := self._claim(zone, other)) is not None
+            if other != robot and (claim := self._claim_on(zone, other, robot, way)) is not None
         ]
+
+    def _claim_on(self, zone: Zone, other: str, robot: str, way: Way) -> _Claim | None:
+        """What forbids a robot its way because of another one."""
+        claim = self._claim(zone, other)
+        # Two in one zone, as after an abort: they leave one after the other in the stated order.
+        if claim is None or not claim.rests or not way.leads_out(zone.shares[robot]):
+            return claim
+        if zone.leaves_before(robot, other):
+            return None
+        if zone.leaves_before(other, robot):
+            return replace(claim, reason="stands in it and leaves first", patience_s=zone.wait_s)
+        return claim
 
     def _claim(self, zone: Zone, robot: str) -> _Claim | None:
         share = zone.shares[robot]
@@ -130,14 +144,20 @@ class ZoneArbiter:
             reason = "may be in it: its place is not known"
             return _Claim(zone.name, robot, reason, REPORT_WAIT_S, str(fault))
         if zone.shares[robot].box.holds(state.base_T_flange.translation):
-            return _Claim(zone.name, robot, "stands in it", 0.0)
+            still = (
+                not under_way and not state.moving and self._reported_since_its_move(robot, state)
+            )
+            return _Claim(zone.name, robot, "stands in it", 0.0, rests=still)
         if under_way:
             return None
-        # The end of a move is known earlier than the report of where it ended.
-        if state.time_s <= self._ended_s.get(robot, -float("inf")):
+        if not self._reported_since_its_move(robot, state):
             reason = "may be in it: it has not reported its place since its last move"
             return _Claim(zone.name, robot, reason, REPORT_WAIT_S)
         # Jogged from its panel, or still braking after a stop.
         if state.moving:
             return _Claim(zone.name, robot, "moves without a command of this PC", REPORT_WAIT_S)
         return None
+
+    def _reported_since_its_move(self, robot: str, state: RobotState) -> bool:
+        """The end of a move is known earlier than the report of where it ended."""
+        return state.time_s > self._ended_s.get(robot, -float("inf"))

@@ -14,6 +14,8 @@ from cellctl.interfaces.robot import ForwardKinematics
 
 GREATEST_RAD = 4.0 * np.pi
 """No joint of an arm turns further from its zero."""
+WAVER_M = 0.001
+"""From point to point of its way out an arm may come back by so much, as by its rounded joints."""
 
 
 class Way(Protocol):
@@ -25,6 +27,11 @@ class Way(Protocol):
 
     def ends_in(self, share: Share) -> bool:
         """Whether the arm may stand in it at the end."""
+        ...
+
+    def leads_out(self, share: Share) -> bool:
+        """Whether it begins in the share and leads out through the face that is the way out, all
+        the time towards that face."""
         ...
 
 
@@ -45,6 +52,15 @@ class FlangeWay:
         """Whether the last point lies that near to the box."""
         return share.box.grown(self.reach_m).holds(self.points_m[-1])
 
+    def leads_out(self, share: Share) -> bool:
+        """By the points, between which the way is straight; never one that may leave its lines."""
+        if share.way_out is None or self.reach_m > 0.0 or not share.box.holds(self.points_m[0]):
+            return False
+        axis, upper = share.way_out
+        before_face_m = share.box.to_face_m(self.points_m, axis, upper=upper)
+        # What is not a number fails both comparisons, as it must.
+        return bool(before_face_m[-1] < 0.0 and np.all(np.diff(before_face_m) <= WAVER_M))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class UnknownWay:
@@ -63,6 +79,10 @@ class UnknownWay:
     def ends_in(self, share: Share) -> bool:
         """Whether the target is anything but a clear pose."""
         return not share.is_clear(self.target_rad)
+
+    def leads_out(self, share: Share) -> bool:  # noqa: ARG002
+        """Nobody knows."""
+        return False
 
 
 def linear_way(state: RobotState, base_T_flange: RigidTransform) -> FlangeWay:

@@ -13,6 +13,11 @@ AT_POSE_RAD = float(np.radians(0.1))
 """Joints this near a taught pose count as there: a move may end so far from its target."""
 
 
+_FACES = {
+    f"{sign}{axis}": (index, sign == "+") for index, axis in enumerate("xyz") for sign in "-+"
+}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Share:
     """Where one robot is in a zone."""
@@ -21,6 +26,8 @@ class Share:
     """For the flange, in the base of the robot."""
     clear_poses_rad: tuple[Array, ...]
     """Joints, each of shape (6,), between which joint moves stay out of the zone."""
+    way_out: tuple[int, bool] | None = None
+    """Axis across the face of the box through which the arm leaves, and whether it is the upper."""
 
     def is_clear(self, joints_rad: Array) -> bool:
         """Whether the joints, shape (6,), are those of a clear pose."""
@@ -36,6 +43,15 @@ class Zone:
     shares: Mapping[str, Share]
     """By the name of the robot."""
     wait_s: float
+    retreat: tuple[str, ...] = ()
+    """Robots in the order in which they leave when more than one of them is inside."""
+
+    def leaves_before(self, robot: str, other: str) -> bool:
+        """Whether a robot may lead its arm out while the other one stands inside."""
+        if robot not in self.retreat:
+            return False
+        later = self.retreat[self.retreat.index(robot) + 1 :]
+        return other in later or other not in self.retreat
 
 
 def zones_of(config: CellConfig) -> tuple[Zone, ...]:
@@ -50,10 +66,12 @@ def zones_of(config: CellConfig) -> tuple[Zone, ...]:
                         np.radians(config.robots[robot].poses_deg[pose])
                         for pose in share.clear_poses
                     ),
+                    None if share.way_out is None else _FACES[share.way_out],
                 )
                 for robot, share in zone.robots.items()
             },
             zone.wait_s,
+            zone.retreat,
         )
         for name, zone in config.zones.items()
     )

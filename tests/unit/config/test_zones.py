@@ -13,9 +13,11 @@ AUX = "aux_1 = { min_mm = [1450.0"
 
 
 def test_a_zone_names_robots_of_the_cell(tmp_path: Path) -> None:
-    (problem,) = problems(devices_only(tmp_path, AUX, AUX.replace("aux_1", "aux_3")))
-    assert problem.key == "zones.beside_head_1.robots.aux_3"
-    assert problem.allowed == "a robot of this cell: main, aux_1, aux_2"
+    order, robot = problems(devices_only(tmp_path, AUX, AUX.replace("aux_1", "aux_3")))
+    assert robot.key == "zones.beside_head_1.robots.aux_3"
+    assert robot.allowed == "a robot of this cell: main, aux_1, aux_2"
+    assert order.key == "zones.beside_head_1.retreat"
+    assert order.allowed == "a robot of this zone: main, aux_3"
 
 
 def test_a_zone_has_its_lower_corner_below_its_upper_one(tmp_path: Path) -> None:
@@ -49,3 +51,36 @@ def test_check_says_which_taught_poses_a_zone_holds(tmp_path: Path, name: str) -
     path.write_text(path.read_text().replace("FILL IN", "found"))
     output = CliRunner().invoke(whole_app(), ["check", str(path)]).output
     assert "holds of main: no taught pose; of aux_2: measuring" in output
+    assert "leaves first: main, then aux_2" in output
+
+
+@pytest.mark.parametrize(
+    ("order", "key", "allowed"),
+    [
+        ('["main", "main"]', "zones.beside_head_1", "twice"),
+        ('["main", "aux_2"]', "zones.beside_head_1.retreat", "main, aux_1"),
+    ],
+)
+def test_an_order_of_retreat_is_one_of_the_robots_of_its_zone(
+    tmp_path: Path, order: str, key: str, allowed: str
+) -> None:
+    (problem,) = problems(devices_only(tmp_path, '["main", "aux_1"]', order))
+    assert problem.key == key
+    assert allowed in problem.allowed
+
+
+def test_two_zones_may_not_have_two_robots_leave_in_two_orders(tmp_path: Path) -> None:
+    shares = (
+        "main = { min_mm = [0.0, 0.0, 0.0], max_mm = [100.0, 100.0, 100.0], way_out = '-x' }\n"
+        "aux_1 = { min_mm = [0.0, 0.0, 0.0], max_mm = [100.0, 100.0, 100.0], way_out = '+x' }\n"
+    )
+    other = f'[zones.other]\nretreat = ["aux_1", "main"]\n[zones.other.robots]\n{shares}\n'
+    heading = "[zones.beside_head_2]"
+    (problem,) = problems(devices_only(tmp_path, heading, other + heading))
+    assert problem.key == "zones.other.retreat"
+    assert problem.allowed == "main before aux_1, as in zones.beside_head_1.retreat"
+
+
+def test_a_robot_of_the_order_has_a_way_out(tmp_path: Path) -> None:
+    (problem,) = problems(devices_only(tmp_path, ', way_out = "+y"', ""))
+    assert problem.key == "zones.beside_head_1.robots.main.way_out"

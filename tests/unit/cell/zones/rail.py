@@ -141,10 +141,19 @@ class Rail:
         ]
 
 
-def rail(*, wait_s: float = 30.0, clear: tuple[float, ...] = (LEFT, RIGHT), **at_m: float) -> Rail:
+def rail(
+    *,
+    wait_s: float = 30.0,
+    clear: tuple[float, ...] = (LEFT, RIGHT),
+    retreat: tuple[str, ...] = (),
+    **at_m: float,
+) -> Rail:
     """One robot for each name, standing at its place; joint moves between clear places are free."""
     robots = {name: RailRobot(name, x_m) for name, x_m in at_m.items()}
-    share = Share(ZONE, tuple(np.full(6, x_m) for x_m in clear))
-    zone = Zone("middle", dict.fromkeys(robots, share), wait_s)
+    poses = tuple(np.full(6, x_m) for x_m in clear)
+    middle_m = (ZONE.lower_m[0] + ZONE.upper_m[0]) / 2
+    # Each leaves on the side on which it stands.
+    shares = {name: Share(ZONE, poses, (0, x_m > middle_m)) for name, x_m in at_m.items()}
+    zone = Zone("middle", shares, wait_s, retreat)
     arbiter = ZoneArbiter((zone,), {name: robot.state for name, robot in robots.items()})
     return Rail(robots, {name: ZonedRobot(one, arbiter, None) for name, one in robots.items()})

@@ -74,6 +74,52 @@ async def play(cell: Rail, told: list[Order]) -> int:
     return seen
 
 
+async def watch_retreat(cell: Rail) -> None:
+    """Nobody joins an arm in the zone; of two there one moves at a time, and none goes deeper."""
+    before = {name: robot.x_m for name, robot in cell.robots.items()}
+    inside = cell.inside()
+    while True:
+        await asyncio.sleep(TICK_S / 2)
+        now = cell.inside()
+        joined = set(now) - set(inside)
+        assert not joined or len(now) == 1, f"{joined} joined {inside}"
+        moved = {name for name in now if cell.robots[name].x_m != before[name]}
+        if len(now) > 1:
+            assert len(moved) <= 1, f"{moved} moved at once in the zone"
+            assert cell.robots["a"].x_m <= 1.25
+            assert cell.robots["b"].x_m >= 1.75
+        inside, before = now, {name: robot.x_m for name, robot in cell.robots.items()}
+
+
+async def lead_out(cell: Rail) -> None:
+    """Everybody who is inside, in the order of the zone; the last one may go anywhere."""
+    await asyncio.sleep(4 * TICK_S)
+    for name, place_m in (("a", 0.0), ("b", 3.0), ("c", 3.0)):
+        await cell.zoned[name].rearm()
+        if name in cell.inside():
+            await cell.zoned[name].move_linear(at(place_m), **SPEED)
+    assert cell.inside() == []
+
+
+@settings(deadline=None, max_examples=60)
+@given(orders)
+def test_two_arms_in_the_zone_get_out_of_it_whatever_they_are_told(told: list[Order]) -> None:
+    async def work() -> None:
+        cell = rail(a=1.25, b=1.75, c=3.0, wait_s=1.0, retreat=("a", "b"))
+        moves: dict[str, asyncio.Task[object]] = {}
+        watching = asyncio.create_task(watch_retreat(cell))
+        for order in told:
+            await obey(cell, order, moves)
+        ends = await asyncio.gather(*moves.values(), return_exceptions=True)
+        assert all(not isinstance(end, Exception) or isinstance(end, CellError) for end in ends)
+        await lead_out(cell)
+        assert not watching.done() or watching.result() is None
+        watching.cancel()
+        await asyncio.gather(watching, return_exceptions=True)
+
+    run(work())
+
+
 @settings(deadline=None, max_examples=60)
 @given(orders)
 def test_no_interleaving_lets_two_arms_share_the_zone(told: list[Order]) -> None:

@@ -91,6 +91,18 @@ async def test_a_head_does_not_come_out_beside_a_main_arm_that_has_swung(
     await arms.go("aux_2", arms.taught("aux_2", "measuring"))
 
 
+async def test_a_main_arm_and_a_head_in_one_zone_leave_in_the_order_of_the_cell_file(
+    config: CellConfig,
+) -> None:
+    """As after an abort and a jog at a panel: the main arm leaves first, then the head."""
+    arms = Arms(config, main="home", aux_1="measuring", aux_2="retracted")
+    arms.stand("main", swung(config, -1.0))
+    with pytest.raises(ZoneTaken, match="main stands in it"):
+        await arms.go("aux_1", arms.taught("aux_1", "measuring") + 0.01)
+    await arms.go("main", arms.taught("main", "home"))
+    await arms.go("aux_1", arms.taught("aux_1", "retracted"))
+
+
 def test_the_robots_of_a_cell_ask_the_arbiter(config: CellConfig) -> None:
     cell = Cell(config, CELL_FILE.parent)
     cell.workers.close()
