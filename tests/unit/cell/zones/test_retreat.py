@@ -18,8 +18,8 @@ async def move(cell: Rail, name: str, x_m: float) -> None:
     await cell.zoned[name].move_linear(at(x_m), **SPEED)
 
 
-def both(**settings: float) -> Rail:
-    return rail(a=1.25, b=1.75, c=RIGHT, retreat=("a", "b"), **settings)
+def both(wait_s: float = 30.0) -> Rail:
+    return rail(a=1.25, b=1.75, c=RIGHT, retreat=("a", "b"), wait_s=wait_s)
 
 
 def test_without_an_order_both_are_refused() -> None:
