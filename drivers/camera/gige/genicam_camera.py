@@ -10,18 +10,21 @@ from harvesters.core import Callback, ImageAcquirer
 from numpy.typing import NDArray
 
 from cellctl.clock import now_s
+from drivers.camera.gige.chunks import image_chunks
 from drivers.camera.gige.config import Acquisition, Selection
 from drivers.camera.gige.delivered import delivered, format_name, said, time_stamp
 from drivers.camera.gige.features import Features
 from drivers.camera.gige.producers import Found
 from drivers.camera.gige.protocol import OpenedCamera, SentImage, Trouble
 from drivers.camera.gige.selection import label_of, opened
-from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors
+from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, camera_errors, in_words
 
 BUFFERS = 4
 POLL_MS = 1
 _EMPTY_S = 0.003
 """How long one looks for images that were left over: longer than a poll of the event."""
+_ASK_S = 0.5
+"""Without an image for so long, the camera is asked whether it is there."""
 FREE_RUNNING_SKIP = 2
 """Images of a free-running camera that are passed over after a request. The first may have been
 exposed before the request and read out after it; the exposure of the second may have begun while
@@ -100,10 +103,11 @@ class GenicamCamera:
         until_s = now_s() + self._settings.image_timeout_s
         incomplete = self._incomplete.count
         while (left_s := until_s - now_s()) > 0:
-            buffer = self._fetch(left_s)
+            buffer = self._fetch(min(left_s, _ASK_S))
             if self._incomplete.count > incomplete:
                 raise TroubleError(Trouble.DAMAGED, f"{self.label}: packets are missing")
             if buffer is None:
+                self._require_alive()
                 continue
             if skip:
                 skip -= 1
@@ -119,6 +123,16 @@ class GenicamCamera:
         """Let the camera go, whatever state it is in."""
         with camera_errors(self.label):
             self._acquirer.destroy()
+
+    def _require_alive(self) -> None:
+        """Raise ``TroubleError`` for a camera that does not answer: no image will come from it."""
+        port = self._acquirer.remote_device.port
+        try:
+            port.read(0, 4)  # a register that the standards of all transports have, and no cache
+        except (gentl.IoException, gentl.TimeoutException) as error:
+            raise TroubleError(Trouble.LOST, f"{self.label}: {in_words(error)}") from error
+        except GENICAM_ERRORS:
+            return  # it has answered, though not what was asked
 
     def _waiting(self) -> bool:
         """Whether images wait to be fetched; True where the producer does not say it."""
@@ -144,6 +158,7 @@ class GenicamCamera:
                 image = delivered(buffer, nodes)
                 if image is None:
                     raise TroubleError(Trouble.DAMAGED, f"{self.label}: a buffer without an image")
+                chunks = image_chunks(buffer, nodes)
                 meta = SentImage(
                     pixel_format=image.pixel_format,
                     width=image.width,
@@ -152,6 +167,8 @@ class GenicamCamera:
                     device_time_ns=time_ns,
                     trigger_s=self._trigger_s,
                     time_s=whole_s,
+                    exposure_s=chunks.exposure_s,
+                    gain_db=chunks.gain_db,
                 )
                 return meta, _memory(image.data)
         except ValueError as error:

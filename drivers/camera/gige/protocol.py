@@ -121,6 +121,9 @@ class SentImage:
     for, which is before its exposure; NaN for a wire, whose trigger this PC does not see."""
     time_s: float
     """Monotonic, when it was whole in this PC."""
+    exposure_s: float | None = None
+    """Of this exposure, by its chunks; None where it has none that say so."""
+    gain_db: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,9 +39,9 @@ size_t camera_line_bytes(const camera *self) {
     return width * (format == PFNC_MONO12 ? 2 : 1) + LINE_PADDING;
 }
 
-size_t camera_payload(const camera *self) {
-    return camera_line_bytes(self) * camera_u32(self, REG_HEIGHT);
-}
+size_t camera_image_bytes(const camera *self) { return camera_line_bytes(self) * camera_u32(self, REG_HEIGHT); }
+
+size_t camera_payload(const camera *self) { return camera_image_bytes(self) + chunks_bytes(self); }
 
 void camera_power_up(camera *self, int index, camera_state *state) {
     memset(self, 0, sizeof *self);
@@ -107,7 +107,7 @@ GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t s
     if (error) return error;
     if (address + size > REGISTER_BYTES || address >= REG_VENDOR) return GC_ERR_INVALID_ADDRESS;
     pthread_mutex_lock(&self->mutex);
-    bool shape = address <= REG_PIXEL_FORMAT;
+    bool shape = address <= REG_PIXEL_FORMAT || address == REG_CHUNK_MODE;
     if (shape && self->stream_running) {
         pthread_mutex_unlock(&self->mutex);
         return GC_ERR_ACCESS_DENIED;

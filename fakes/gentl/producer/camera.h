@@ -51,7 +51,7 @@ enum {
     REG_PAYLOAD_SIZE = 0x14, REG_START = 0x18, REG_STOP = 0x1C, REG_MODE = 0x20, REG_TRIGGER_MODE = 0x24,
     REG_TRIGGER_SOURCE = 0x28, REG_TRIGGER_SOFTWARE = 0x2C, REG_LOCKED = 0x30, REG_TRIGGER_SELECTOR = 0x34,
     REG_EXPOSURE_US = 0x40, REG_GAIN_DB = 0x48, REG_WIDTH_MAX = 0x50, REG_HEIGHT_MAX = 0x54, REG_PACKET_SIZE = 0x58,
-    REG_PACKET_DELAY = 0x5C, REG_VENDOR = 0x80, REG_MODEL = 0xC0, REG_SERIAL = 0x100, REG_USER_ID = 0x140,
+    REG_PACKET_DELAY = 0x5C, REG_CHUNK_MODE = 0x64, REG_VENDOR = 0x80, REG_MODEL = 0xC0, REG_SERIAL = 0x100, REG_USER_ID = 0x140,
 };
 enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009 };
 
@@ -62,13 +62,16 @@ enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0
 
 enum { SOURCE_SOFTWARE, SOURCE_LINE1 };
 
+/* What a camera appends to its images with ChunkModeActive; the image itself is the first chunk. */
+enum { CHUNK_IMAGE = 1, CHUNK_EXPOSURE_US = 0x1001, CHUNK_GAIN_DB = 0x1002, CHUNK_FRAME_ID = 0x1003, CHUNKS = 4 };
+
 typedef enum { FREE, INPUT, OUTPUT, OUT } place; /* of a buffer: nowhere, waiting, filled, with the user */
 
 typedef struct {
     uint8_t *base;
-    size_t size, filled;
+    size_t size, filled, image_bytes;
     void *user;
-    bool announced, owned, new_data, incomplete;
+    bool announced, owned, new_data, incomplete, has_chunks;
     place where;
     uint64_t order, time_ns, frame_id;
     uint32_t width, height, offset_x, offset_y, pixel_format, padding;
@@ -92,7 +95,11 @@ bool camera_lost(const camera *self);
 GC_ERROR camera_read(camera *self, uint64_t address, void *data, size_t size);
 GC_ERROR camera_write(camera *self, uint64_t address, const void *data, size_t size);
 size_t camera_line_bytes(const camera *self);
+size_t camera_image_bytes(const camera *self);
 size_t camera_payload(const camera *self);
+size_t chunks_bytes(const camera *self); /* beyond the image; 0 without chunks */
+void chunks_append(const camera *self, frame_buffer *buffer);
+GC_ERROR chunks_list(const frame_buffer *buffer, SINGLE_CHUNK_DATA *chunks, size_t *count);
 uint32_t camera_line(const camera *self);
 uint32_t camera_u32(const camera *self, uint32_t address);
 

@@ -171,7 +171,7 @@ GC_API DSGetInfo(DS_HANDLE stream, int32_t what, INFO_DATATYPE *type, void *out,
         case STREAM_INFO_IS_GRABBING: return answer_bool(self->stream_running, type, out, size);
         case STREAM_INFO_DEFINES_PAYLOADSIZE: return answer_bool(0, type, out, size);
         case STREAM_INFO_TLTYPE: return answer_text("GEV", type, out, size);
-        case STREAM_INFO_NUM_CHUNKS_MAX: return answer_size(0, type, out, size);
+        case STREAM_INFO_NUM_CHUNKS_MAX: return answer_size(CHUNKS, type, out, size);
         case STREAM_INFO_BUF_ANNOUNCE_MIN: return answer_size(1, type, out, size);
         case STREAM_INFO_BUF_ALIGNMENT: return answer_size(1, type, out, size);
         default: return fail(GC_ERR_NOT_AVAILABLE, "information about the stream");
@@ -216,24 +216,25 @@ GC_API DSGetBufferInfo(DS_HANDLE stream, BUFFER_HANDLE handle, int32_t what, INF
         case BUFFER_INFO_YOFFSET: return answer_size(one->offset_y, type, out, size);
         case BUFFER_INFO_XPADDING: return answer_size(one->padding, type, out, size);
         case BUFFER_INFO_YPADDING:
-        case BUFFER_INFO_IMAGEOFFSET:
-        case BUFFER_INFO_DELIVERED_CHUNKPAYLOADSIZE: return answer_size(0, type, out, size);
+        case BUFFER_INFO_IMAGEOFFSET: return answer_size(0, type, out, size);
+        case BUFFER_INFO_DELIVERED_CHUNKPAYLOADSIZE: return answer_size(one->has_chunks ? one->filled : 0, type, out, size);
         case BUFFER_INFO_FRAMEID: return answer_u64(one->frame_id, type, out, size);
         case BUFFER_INFO_IMAGEPRESENT: return answer_bool(one->new_data, type, out, size);
         case BUFFER_INFO_PAYLOADTYPE: return answer_size(PAYLOAD_TYPE_IMAGE, type, out, size);
         case BUFFER_INFO_PIXELFORMAT: return answer_u64(one->pixel_format, type, out, size);
         case BUFFER_INFO_PIXELFORMAT_NAMESPACE: return answer_u64(PIXELFORMAT_NAMESPACE_PFNC_32, type, out, size);
         case BUFFER_INFO_PIXEL_ENDIANNESS: return answer_i32(1, type, out, size);
-        case BUFFER_INFO_DATA_LARGER_THAN_BUFFER:
-        case BUFFER_INFO_CONTAINS_CHUNKDATA: return answer_bool(0, type, out, size);
+        case BUFFER_INFO_DATA_LARGER_THAN_BUFFER: return answer_bool(0, type, out, size);
+        case BUFFER_INFO_CONTAINS_CHUNKDATA: return answer_bool(one->has_chunks, type, out, size);
         default: return fail(GC_ERR_NOT_AVAILABLE, "information about the buffer");
     }
 }
 
-GC_API DSGetBufferChunkData(DS_HANDLE stream, BUFFER_HANDLE handle, void *chunks, size_t *count) {
-    (void)stream, (void)handle, (void)chunks;
-    *count = 0;
-    return fail(GC_ERR_NO_DATA, "no chunks");
+GC_API DSGetBufferChunkData(DS_HANDLE stream, BUFFER_HANDLE handle, SINGLE_CHUNK_DATA *chunks, size_t *count) {
+    frame_buffer *one = buffer_of(stream_of(stream), handle);
+    if (!one) return fail(GC_ERR_INVALID_HANDLE, "no such buffer");
+    GC_ERROR error = chunks_list(one, chunks, count);
+    return error ? fail(error, "no chunks, or no room for them") : error;
 }
 
 GC_API DSGetNumBufferParts(DS_HANDLE stream, BUFFER_HANDLE handle, uint32_t *count) {

@@ -84,6 +84,7 @@ enum { EVENT_ERROR, EVENT_NEW_BUFFER };
 enum { EVENT_EVENT_TYPE, EVENT_NUM_IN_QUEUE, EVENT_NUM_FIRED, EVENT_SIZE_MAX, EVENT_INFO_DATA_SIZE_MAX };
 
 typedef struct { BUFFER_HANDLE buffer; void *user; } EVENT_NEW_BUFFER_DATA;
+typedef struct { uint64_t chunk_id; ptrdiff_t offset; size_t length; } SINGLE_CHUNK_DATA;
 typedef struct { uint64_t address; void *data; size_t size; } PORT_REGISTER_STACK_ENTRY;
 
 #endif

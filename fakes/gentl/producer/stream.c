@@ -107,6 +107,7 @@ static void take(camera *self) {
     buffer->pixel_format = camera_u32(self, REG_PIXEL_FORMAT);
     buffer->padding = buffer->pixel_format == PFNC_MONO12_PACKED ? 0 : LINE_PADDING;
     buffer->frame_id = self->frame_id;
+    chunks_append(self, buffer);
     buffer->time_ns = self->last_time_ns;
     buffer->new_data = true;
     buffer->where = OUTPUT;

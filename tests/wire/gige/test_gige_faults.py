@@ -273,17 +273,27 @@ async def test_a_short_loss_costs_one_fault(producer: Path, fakes: FakeCameras) 
         await eye.grab()
 
 
-async def test_a_lost_camera_without_software_trigger_is_found_at_the_second_image(
-    producer: Path, fakes: FakeCameras
+@pytest.mark.parametrize("trigger", ["none", "Line1"])
+async def test_a_lost_camera_that_nothing_is_sent_to_is_asked_for(
+    producer: Path, fakes: FakeCameras, trigger: str
 ) -> None:
-    async with camera(producer, trigger="none") as eye:
-        await eye.grab()
+    """Long before its image would be late: with a trigger by wire that may be a minute."""
+    async with camera(producer, trigger=trigger, image_timeout_s=60.0) as eye:
+        first = asyncio.create_task(eye.grab())
+        while not first.done():
+            fakes.pulse()
+            await asyncio.wait({first}, timeout=0.1)
+        await first
+        waiting = asyncio.create_task(eye.grab())
         fakes.inject(LEFT, "lost")
         fakes.inject(LEFT, "lost", 0)
-        with pytest.raises(ReplyTimeout):
-            await eye.grab()
         with pytest.raises(LinkLost):
-            await eye.grab()
+            await asyncio.wait_for(waiting, 20.0)
+
+
+async def test_a_camera_that_is_slow_is_not_lost(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer, image_timeout_s=10.0) as eye:
+        fakes.inject(LEFT, "slow_ms", 1500)
         await eye.grab()
 
 

@@ -168,6 +168,44 @@ async def test_padded_lines_and_packed_samples(
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, pixel_format))
 
 
+CHUNKS = {"ChunkModeActive": True}
+
+
+@pytest.mark.parametrize("pixel_format", ["Mono8", "Mono12Packed"])
+async def test_chunks_behind_an_image(
+    tmp_path: Path, fakes: FakeCameras, pixel_format: Format
+) -> None:
+    """With an automatic exposure, only they know how long this image was exposed."""
+    text = description().replace(
+        '  <Float Name="ExposureTime"', AUTOMATIC + '  <Float Name="ExposureTime"'
+    )
+    features = CHUNKS | {"ExposureAuto": "Continuous", "ExposureTime": 2500.0, "Gain": 6.0}
+    producer = producer_of(tmp_path, text)
+    async with camera(
+        producer, pixel_format=pixel_format, exposure_s=None, features=features
+    ) as eye:
+        images = [await eye.grab() for _ in range(3)]
+    for number, image in enumerate(images, start=1):
+        assert np.array_equal(image.pixels, expected_image(number, 64, 48, pixel_format))
+        assert image.exposure is not None
+        assert image.exposure.exposure_s == pytest.approx(0.0025)
+        assert image.exposure.gain_db == pytest.approx(6.0)
+
+
+async def test_chunks_that_a_camera_does_not_describe(tmp_path: Path, fakes: FakeCameras) -> None:
+    """They stay unread, and the image is whole."""
+    text = description()
+    for name in ("ChunkExposureTime", "ChunkGain", "ChunkFrameID"):
+        text = without(name, text)
+    for port in ("Exposure", "Gain", "Frame"):
+        text = re.sub(rf'  <Port Name="Chunk{port}Port">.*\n', "", text)
+    async with camera(producer_of(tmp_path, text), features=CHUNKS, gain_db=1.0) as eye:
+        image = await eye.grab()
+    assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
+    assert image.exposure is not None
+    assert image.exposure.gain_db == pytest.approx(1.0)
+
+
 async def test_a_mosaic_as_colour_and_as_grey(producer: Path, fakes: FakeCameras) -> None:
     async with camera(producer, pixel_format="BayerRG8") as eye:
         colour = await eye.grab()
