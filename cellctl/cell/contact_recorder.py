@@ -54,11 +54,6 @@ class ContactRecorder:
             return float("nan")
         return float(np.interp(time_s, self._times, self._travels))
 
-    @property
-    def last_time_s(self) -> float:
-        """Time of the newest sample that was taken over."""
-        return self._since_s
-
     def curve(self) -> ForceCurve:
         """All that was recorded so far."""
         self._take_travel()

@@ -78,11 +78,6 @@ class PackMLMachine:
         return _PAUSE_COMMANDS[self._pause] if self._pause else requested(self.state)
 
     @property
-    def state_change_in_process(self) -> bool:
-        """StateChangeInProcess."""
-        return self.state is not self.state_requested
-
-    @property
     def mode(self) -> Mode:
         """UnitModeCurrent."""
         return self._mode

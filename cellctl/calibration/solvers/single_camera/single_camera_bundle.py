@@ -4,20 +4,17 @@ Unknowns that all views share, in order: the nine of ``CAMERA_PARAMETERS``, then
 board's shape.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import compress
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import CameraView, Corners, ShapeModes
+from cellctl.calibration.boards.board import CameraView, Corners
 from cellctl.calibration.boards.projection import project
 from cellctl.calibration.solvers.bundle import (
     LinearImage,
     by_board_pose,
 )
-from cellctl.calibration.solvers.view_rejection import Mask
+from cellctl.calibration.solvers.views_of_board import BoardPoses, ViewsOfBoard
 from cellctl.geometry.pose import Array
 
 CAMERA = 9
@@ -27,54 +24,24 @@ k3 moves no corner by a hundredth of a pixel, and without a prior it would take 
 _RADIAL = [4, 5, 8]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CameraBundle:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class CameraBundle(BoardPoses):
     """All unknowns."""
 
     camera: Array
     """Nine numbers of ``CAMERA_PARAMETERS``."""
     shape: Array
     """Parameters of the board's shape."""
-    view_rotations: Array
-    """camera_R_board, shape (views, 3, 3)."""
-    view_translations_m: Array
-    """Shape (views, 3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CameraProblem:
+class CameraProblem(ViewsOfBoard[CameraView, CameraBundle]):
     """Adjusts a ``CameraBundle``; see ``ProblemOfViews``.
 
     The covariance has shape (9 + shape, 9 + shape).
     """
 
-    views: Sequence[CameraView]
-    flat_m: Array
-    modes: ShapeModes
     name: str = "camera"
-
-    def __len__(self) -> int:
-        return len(self.views)
-
-    def of_views(self, chosen: Mask) -> "CameraProblem":
-        """The adjustment of the chosen views alone."""
-        return replace(self, views=list(compress(self.views, chosen)))
-
-    def state_of_views(self, state: CameraBundle, chosen: Mask) -> CameraBundle:
-        """The unknowns of the chosen views alone."""
-        return replace(
-            state,
-            view_rotations=state.view_rotations[chosen],
-            view_translations_m=state.view_translations_m[chosen],
-        )
-
-    def joined(self, shared: CameraBundle, views: CameraBundle) -> CameraBundle:
-        """What the views share from one, the poses of the boards from the other."""
-        return replace(
-            shared,
-            view_rotations=views.view_rotations,
-            view_translations_m=views.view_translations_m,
-        )
 
     @property
     def prior(self) -> Array:
@@ -105,11 +72,8 @@ class CameraProblem:
 
     def moved(self, state: CameraBundle, shared: Array, views: Array) -> CameraBundle:
         """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""
-        turns = Rotation.from_rotvec(views[:, 3:]).as_matrix()
         return replace(
-            state,
+            state.views_moved(views),
             camera=state.camera + shared[:CAMERA],
             shape=state.shape + shared[CAMERA:],
-            view_rotations=turns @ state.view_rotations,
-            view_translations_m=state.view_translations_m + views[:, :3],
         )

@@ -154,10 +154,10 @@ def _covered(
 
 def _start(start: CameraStart, modes: int) -> CameraBundle:
     return CameraBundle(
-        start.camera,
-        np.zeros(modes),
-        np.stack([pose[:3, :3] for pose in start.camera_T_board]),
-        np.stack([pose[:3, 3] for pose in start.camera_T_board]),
+        camera=start.camera,
+        shape=np.zeros(modes),
+        view_rotations=np.stack([pose[:3, :3] for pose in start.camera_T_board]),
+        view_translations_m=np.stack([pose[:3, 3] for pose in start.camera_T_board]),
     )
 
 

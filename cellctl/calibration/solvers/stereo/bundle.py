@@ -4,28 +4,26 @@ Unknowns that all views share, in order: the 24 of ``PARAMETER_ORDER``, then tho
 shape.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import compress
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import BoardView, Corners, ShapeModes
+from cellctl.calibration.boards.board import BoardView, Corners
 from cellctl.calibration.boards.projection import project
 from cellctl.calibration.solvers.bundle import (
     LinearImage,
     by_board_pose,
 )
-from cellctl.calibration.solvers.view_rejection import Mask
+from cellctl.calibration.solvers.views_of_board import BoardPoses, ViewsOfBoard
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skews
 
 _HEAD = 24
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BundleState:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class BundleState(BoardPoses):
     """All unknowns."""
 
     left: Array
@@ -36,46 +34,16 @@ class BundleState:
     translation_m: Array
     shape: Array
     """Parameters of the board's shape."""
-    view_rotations: Array
-    """left_R_board, shape (views, 3, 3)."""
-    view_translations_m: Array
-    """Shape (views, 3)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class StereoProblem:
+class StereoProblem(ViewsOfBoard[BoardView, BundleState]):
     """Adjusts a ``BundleState``; see ``ProblemOfViews``.
 
     The covariance has shape (24 + shape, 24 + shape); residuals are pairs, left and right.
     """
 
-    views: Sequence[BoardView]
-    flat_m: Array
-    modes: ShapeModes
     name: str = "stereo"
-
-    def __len__(self) -> int:
-        return len(self.views)
-
-    def of_views(self, chosen: Mask) -> "StereoProblem":
-        """The adjustment of the chosen views alone."""
-        return replace(self, views=list(compress(self.views, chosen)))
-
-    def state_of_views(self, state: BundleState, chosen: Mask) -> BundleState:
-        """The unknowns of the chosen views alone."""
-        return replace(
-            state,
-            view_rotations=state.view_rotations[chosen],
-            view_translations_m=state.view_translations_m[chosen],
-        )
-
-    def joined(self, shared: BundleState, views: BundleState) -> BundleState:
-        """What the views share from one, the poses of the boards from the other."""
-        return replace(
-            shared,
-            view_rotations=views.view_rotations,
-            view_translations_m=views.view_translations_m,
-        )
 
     @property
     def prior(self) -> Array:
@@ -121,14 +89,11 @@ class StereoProblem:
 
     def moved(self, state: BundleState, shared: Array, views: Array) -> BundleState:
         """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""
-        turns = Rotation.from_rotvec(views[:, 3:]).as_matrix()
         return replace(
-            state,
+            state.views_moved(views),
             left=state.left + shared[:9],
             right=state.right + shared[9:18],
             rotation=Rotation.from_rotvec(shared[18:21]).as_matrix() @ state.rotation,
             translation_m=state.translation_m + shared[21:24],
             shape=state.shape + shared[_HEAD:],
-            view_rotations=turns @ state.view_rotations,
-            view_translations_m=state.view_translations_m + views[:, :3],
         )

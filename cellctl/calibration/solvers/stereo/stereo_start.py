@@ -75,13 +75,13 @@ def start_values(
         doubts[index] = f"its {' and '.join(sides)} {pictures} of {views[earlier].name}"
     plausible = np.array([index not in doubts for index in range(len(views))])
     state = BundleState(
-        left.camera,
-        right.camera,
-        rotation,
-        translation_m,
-        np.zeros(modes),
-        np.stack([pose[:3, :3] for pose in left.camera_T_board]),
-        np.stack([pose[:3, 3] for pose in left.camera_T_board]),
+        left=left.camera,
+        right=right.camera,
+        rotation=rotation,
+        translation_m=translation_m,
+        shape=np.zeros(modes),
+        view_rotations=np.stack([pose[:3, :3] for pose in left.camera_T_board]),
+        view_translations_m=np.stack([pose[:3, 3] for pose in left.camera_T_board]),
     )
     return StereoStart(list(views), state, plausible, excluded, doubts)
 

@@ -39,8 +39,3 @@ class InsertionWay:
     def outwards_from(self, base_T_flange: RigidTransform, way_m: float) -> RigidTransform:
         """A flange so far out of the socket from where it is: a stop has left it anywhere."""
         return RigidTransform.from_translation(self.outwards * way_m) * base_T_flange
-
-    def beside_m(self, base_T_flange: RigidTransform) -> float:
-        """How far the flange is off the way, across it."""
-        offset = base_T_flange.translation - self.seated.translation
-        return float(np.linalg.norm(offset - self.outwards * (self.outwards @ offset)))
