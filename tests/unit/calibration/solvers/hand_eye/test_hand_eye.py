@@ -204,3 +204,28 @@ def test_pnp_covariance_matches_its_scatter() -> None:
     assert band[0] < total < band[1] * 1.02  # the noise is estimated, so the tail is a bit longer
     with pytest.raises(BoardPoseInvalid):
         board_in_camera(CAMERA, BOARD_M[:5], clean[:5])
+
+
+@pytest.mark.parametrize("setup", list(Setup))
+def test_the_order_of_the_poses_changes_nothing(setup: Setup) -> None:
+    poses = make_poses(4, setup)
+    # One pose is wrong, so that what is left out does not depend on the order either.
+    wrong = perturbed_by_mm(poses[7], 4.0)
+    poses = [*poses[:7], wrong, *poses[8:]]
+    found = calibrate_hand_eye(poses, setup, noise=NOISE)
+    assert found.rejected == ("pose 7",)
+    for seed in range(3):
+        order = np.random.default_rng(seed).permutation(len(poses))
+        again = calibrate_hand_eye([poses[index] for index in order], setup, noise=NOISE)
+        assert again.rejected == found.rejected
+        for one, other in ((found.camera, again.camera), (found.board, again.board)):
+            off_m, off_rad = pose_error(one.pose, other.pose)
+            assert np.linalg.norm(off_m) < 1e-9
+            assert np.linalg.norm(off_rad) < 1e-9
+
+
+def perturbed_by_mm(pose: HandEyePose, off_mm: float) -> HandEyePose:
+    """The same pose of the arm with the board seen beside its place."""
+    beside = RigidTransform.from_translation([off_mm * 1e-3, 0.0, 0.0])
+    seen = UncertainPose(beside * pose.camera_T_board.pose, pose.camera_T_board.covariance)
+    return HandEyePose(pose.name, pose.base_T_flange, seen)

@@ -158,3 +158,17 @@ def test_the_picture_is_drawn(results: list[SingleCameraResult]) -> None:
     rejected = replace(results[0].views[0], used=False)
     shown = replace(results[0], views=(rejected, *results[0].views[1:]))
     assert single_camera_picture(shown).startswith(b"\x89PNG")
+
+
+def test_the_order_of_the_images_changes_nothing(results: list[SingleCameraResult]) -> None:
+    """Places in the working depth stay within a nanometre, all over the picture."""
+    views = camera_views(np.random.default_rng(SEEDS[0]))
+    order = np.random.default_rng(5).permutation(len(views))
+    again = calibrate_single_camera([views[index] for index in order], BOARD, IMAGE_SIZE)
+    x, y = np.meshgrid(*(np.linspace(20.0, side - 20.0, 5) for side in IMAGE_SIZE))
+    pixels = np.stack([x.ravel(), y.ravel()], axis=1)
+    places_m = [
+        undistort(one.camera.model, pixels)[:, :2] * DISTANCE_M for one in (results[0], again)
+    ]
+    np.testing.assert_allclose(places_m[0], places_m[1], rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(results[0].sigma, again.sigma, rtol=1e-6)

@@ -41,6 +41,19 @@ def test_more_plugs_make_it_surer() -> None:
     assert eight == pytest.approx(four / 2, rel=0.05)
 
 
+def test_the_order_of_the_taught_plugs_changes_nothing() -> None:
+    plugs = exact.taught_plugs(6, SEATED, scatter_m=8e-6)
+    found = teach(plugs).slots[0]
+    for seed in range(3):
+        order = np.random.default_rng(seed).permutation(len(plugs))
+        again = teach([plugs[index] for index in order]).slots[0]
+        off_m, off_rad = exact.distance(found.socket_T_plug.pose, again.socket_T_plug.pose)
+        assert off_m < 1e-9
+        assert off_rad < 1e-9
+        assert again.scatter_m == pytest.approx(found.scatter_m, abs=1e-9)
+        assert exact.distance(found.base_T_socket, again.base_T_socket)[0] < 1e-9
+
+
 def test_three_plugs_are_too_few() -> None:
     with pytest.raises(TooFewTeachings, match="slot 1: 3"):
         teach(exact.taught_plugs(3))
