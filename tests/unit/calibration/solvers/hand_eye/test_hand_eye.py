@@ -214,14 +214,13 @@ def test_the_order_of_the_poses_changes_nothing(setup: Setup) -> None:
     poses = [*poses[:7], wrong, *poses[8:]]
     found = calibrate_hand_eye(poses, setup, noise=NOISE)
     assert found.rejected == ("pose 7",)
-    for seed in range(3):
-        order = np.random.default_rng(seed).permutation(len(poses))
-        again = calibrate_hand_eye([poses[index] for index in order], setup, noise=NOISE)
-        assert again.rejected == found.rejected
-        for one, other in ((found.camera, again.camera), (found.board, again.board)):
-            off_m, off_rad = pose_error(one.pose, other.pose)
-            assert np.linalg.norm(off_m) < 1e-9
-            assert np.linalg.norm(off_rad) < 1e-9
+    order = np.random.default_rng(0).permutation(len(poses))
+    again = calibrate_hand_eye([poses[index] for index in order], setup, noise=NOISE)
+    assert again.rejected == found.rejected
+    for one, other in ((found.camera, again.camera), (found.board, again.board)):
+        off_m, off_rad = pose_error(one.pose, other.pose)
+        assert np.linalg.norm(off_m) < 1e-9
+        assert np.linalg.norm(off_rad) < 1e-9
 
 
 def perturbed_by_mm(pose: HandEyePose, off_mm: float) -> HandEyePose:
