@@ -15,6 +15,7 @@ from cellctl.errors.config import DeviceNotInCell
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image, StereoPair
+from cellctl.vision.camera.depth import eight_bits
 
 CellFile = Annotated[Path, typer.Argument(help="The cell's TOML file.")]
 HeadName = Annotated[str | None, typer.Option(help="A stereo head of the cell file.")]
@@ -40,7 +41,7 @@ class View:
             return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
         if self.pixel_format is PixelFormat.MONO16:
             bits = 16 if self.exposure is None else self.exposure.bits
-            return np.asarray(self.pixels >> (bits - 8), dtype=np.uint8)
+            return eight_bits(self.pixels, bits)
         return np.asarray(self.pixels, dtype=np.uint8)
 
 

@@ -17,11 +17,13 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import Camera
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.faults.connector import PixelsNotMeasurable
 from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
 from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
 from cellctl.records.run_recorder import RunRecorder
+from cellctl.vision.camera.depth import eight_bits
 from cellctl.vision.camera.single_camera import SingleCamera
 from cellctl.workers import VisionWorkers
 
@@ -83,13 +85,17 @@ class Eyes:
 def measured_channel(image: CameraImage) -> Image:
     """The one plane of grey values that is measured: green of a colour image (``vision.pixels``).
 
-    Raises ``ValueError`` for a format that nobody measures.
+    Deep cameras are reduced to eight bits, which are finer than the noise of the picture. Raises
+    ``PixelsNotMeasurable``.
     """
     if image.pixel_format is PixelFormat.RGB8:
         return np.ascontiguousarray(image.pixels[:, :, _GREEN], dtype=np.uint8)
     if image.pixel_format is PixelFormat.MONO8:
         return np.asarray(image.pixels, dtype=np.uint8)
-    raise ValueError(f"cannot measure {image.pixel_format.value}")
+    # In 16 bits a camera of 12 looks like a dark one: only its driver knows how many count.
+    if image.exposure is None:
+        raise PixelsNotMeasurable(f"{image.pixel_format.value} without the number of its bits")
+    return eight_bits(np.asarray(image.pixels, dtype=np.uint16), image.exposure.bits)
 
 
 def combined(poses: tuple[UncertainPose, ...]) -> UncertainPose:

@@ -14,7 +14,7 @@ from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 CONFIG = Path(__file__).parents[3] / "config"
 
 
-@pytest.mark.parametrize("name", ["deck.toml", "cell.toml", "deck-gige.toml"])
+@pytest.mark.parametrize("name", ["deck.toml", "cell.toml", "deck-gige.toml", "antenna-gige.toml"])
 def test_the_shipped_cell_files_are_good(name: str) -> None:
     assert problems(CONFIG / name) == []
 

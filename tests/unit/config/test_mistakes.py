@@ -53,7 +53,7 @@ def test_check_prints_line_key_value_and_what_is_allowed(tmp_path: Path) -> None
     assert "allowed: 1 to 100" in done.output
 
 
-@pytest.mark.parametrize("name", ["cell.toml", "deck-gige.toml"])
+@pytest.mark.parametrize("name", ["cell.toml", "deck-gige.toml", "antenna-gige.toml"])
 def test_a_template_is_not_good_as_it_is(tmp_path: Path, name: str) -> None:
     path = written(tmp_path, name)
     done = CliRunner().invoke(whole_app(), ["check", str(path)])

@@ -1,4 +1,4 @@
-"""46x–47x: electrical connectors and gripper marks, measured in one image and a known plane.
+"""46x–47x, 597: electrical connectors and gripper marks, measured in one image and a known plane.
 
 ConnectorError
 ├── ConnectorFileInvalid, MarksFileInvalid, PlaneFileInvalid    460–462  inputs
@@ -9,7 +9,8 @@ ConnectorError
 ├── ContactMissing, ContactBent, ContactHidden                  472–474  single contacts
 ├── MarksMissing                                                475      gripper marks
 ├── ConnectorUncertain                                          476      how well
-└── PaperMethodRefused                                          477      the method of the paper
+├── PaperMethodRefused                                          477      the method of the paper
+└── PixelsNotMeasurable                                         597      the form of the image
 """
 
 from cellctl.errors.base import Reaction
@@ -178,3 +179,12 @@ class PaperMethodRefused(ConnectorError):
     text = "The paper's method did not find every contact"
     cause = "Mean and line through the contacts mean nothing unless all of them are there."
     remedy = "Use the default method, which names the contact; clean the connector."
+
+
+class PixelsNotMeasurable(ConnectorError):
+    """An image comes in a form in which nothing is measured."""
+
+    number = 597
+    text = "Images of this camera cannot be measured"
+    cause = "A driver that hands on samples of 16 bits and does not say how many of them count."
+    remedy = "Set the camera to Mono8, or to the mosaic of a colour camera, such as BayerRG8."
