@@ -6,18 +6,11 @@ It stamps with the clock of the machine, which is the same in every process of i
 import asyncio
 import time
 from multiprocessing.connection import Connection
-from pathlib import Path
 
-import numpy as np
-
-from fakes.scenario import load
 from fakes.wire.duco.controller import DucoController
 from fakes.wire.duco.logic import DucoLogic
-from fakes.world.robot import RobotArm
-from fakes.world.truth import draw
+from tests.wire.standing_arm import standing_arm
 
-SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
-READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
 WATCH_S = 0.001
 
 Stamp = tuple[str, float]
@@ -46,11 +39,7 @@ def serve(pipe: Connection) -> None:
 
 
 async def _serve(pipe: Connection) -> None:
-    scenario = load(SCENARIO)
-    arm = RobotArm(scenario.robots["main"], draw(scenario, seed=1).robots["main"], seed=1)
-    arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
-    started_s = time.monotonic() - arm.standstill_s
-    logic = StampedLogic(arm, lambda: time.monotonic() - started_s)
+    logic = StampedLogic(*standing_arm())
     logic.stamps = []
     controller = DucoController(logic)
     await controller.start()

@@ -1,26 +1,21 @@
 """The SIASUN driver against the shipped job files, run by the interpreter."""
 
 import asyncio
-import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from fakes.jobs.controller import JobController
 from fakes.jobs.program import load_program
-from fakes.scenario import load
 from fakes.sections import Channel
 from fakes.world.robot import RobotArm
-from fakes.world.truth import draw
 from tests.ports import free_ports
 from tests.wire.proxy import ChaosProxy
-from tests.wire.scenarios import as_on_a_real_cell
-from tests.wire.siasun.sjl_rig import READY_DEG, SCENARIO
+from tests.wire.siasun.sjl_rig import arm_settings
+from tests.wire.standing_arm import standing_arm
 
 JOBS = Path(__file__).parents[3] / "drivers" / "robot" / "siasun" / "job"
 
@@ -60,35 +55,18 @@ async def job_rig(
     **changes: object,
 ) -> AsyncIterator[JobRig]:
     """Wired up but neither end started; both are stopped at the end."""
-    scenario = as_on_a_real_cell(load(SCENARIO))
     command_port, state_port, guard_port = free_ports(3)
-    settings = SiasunConfig.model_validate(
-        {
-            "robot_name": "SR500A",
-            "command_port": command_port,
-            "state_port": state_port,
-            "connect_timeout_s": 3.0,
-            "workspace_min_mm": (900.0, -900.0, 300.0),
-            "workspace_max_mm": (2500.0, 900.0, 2200.0),
-            "joints_min_deg": (-360.0,) * 6,
-            "joints_max_deg": (360.0,) * 6,
-            "max_speed_mm_s": 250.0,
-            "max_joint_speed_percent": 100,
-        }
-        | changes
-    )
+    settings = arm_settings(command_port, state_port, **changes)
     targets: dict[Channel, int] = {"CMD": command_port, "STA": state_port, "GRD": guard_port}
     async with AsyncExitStack() as stack:
         wires = {
             channel: await stack.enter_async_context(ChaosProxy(targets[channel]))
             for channel in channels
         }
-        arm = RobotArm(scenario.robots["main"], draw(scenario, seed=1).robots["main"], seed=1)
-        arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
-        started_s = time.monotonic() - arm.standstill_s
+        arm, clock = standing_arm()
         controller = JobController(
             arm,
-            lambda: time.monotonic() - started_s,
+            clock,
             {channel: wire.port for channel, wire in wires.items()},
             JOBS,
             statement_s=statement_s,

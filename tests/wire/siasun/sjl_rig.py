@@ -1,30 +1,40 @@
 """The SIASUN driver and the fake controller on free ports, with a chaos proxy on each channel."""
 
 import asyncio
-import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
-from pathlib import Path
-
-import numpy as np
 
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from fakes.scenario import load
 from fakes.sections import Channel
 from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.robot import RobotArm
-from fakes.world.truth import draw
 from tests.ports import free_ports
 from tests.wire.proxy import ChaosProxy
-from tests.wire.scenarios import as_on_a_real_cell
+from tests.wire.standing_arm import standing_arm
 
-SCENARIO = Path(__file__).parents[3] / "config" / "deck.scenario.toml"
 OFFER = StreamOffer()
-READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
-"""Deck above the station, away from limits and singularities."""
+
+
+def arm_settings(command_port: int, state_port: int, **changes: object) -> SiasunConfig:
+    """Of the driver of this arm, with changes."""
+    return SiasunConfig.model_validate(
+        {
+            "robot_name": "SR500A",
+            "command_port": command_port,
+            "state_port": state_port,
+            "connect_timeout_s": 3.0,
+            "workspace_min_mm": (900.0, -900.0, 300.0),
+            "workspace_max_mm": (2500.0, 900.0, 2200.0),
+            "joints_min_deg": (-360.0,) * 6,
+            "joints_max_deg": (360.0,) * 6,
+            "max_speed_mm_s": 250.0,
+            "max_joint_speed_percent": 100,
+        }
+        | changes
+    )
 
 
 @dataclass
@@ -57,36 +67,18 @@ async def sjl_rig(
 ) -> AsyncIterator[Rig]:
     """Wired up but neither end started; both are stopped at the end. ``offer`` is what the job
     program offers for streamed motion."""
-    scenario = as_on_a_real_cell(load(SCENARIO))
     command_port, state_port, guard_port = free_ports(3)
-    settings = SiasunConfig.model_validate(
-        {
-            "robot_name": "SR500A",
-            "command_port": command_port,
-            "state_port": state_port,
-            "connect_timeout_s": 3.0,
-            "workspace_min_mm": (900.0, -900.0, 300.0),
-            "workspace_max_mm": (2500.0, 900.0, 2200.0),
-            "joints_min_deg": (-360.0,) * 6,
-            "joints_max_deg": (360.0,) * 6,
-            "max_speed_mm_s": 250.0,
-            "max_joint_speed_percent": 100,
-        }
-        | changes
-    )
+    settings = arm_settings(command_port, state_port, **changes)
     targets: dict[Channel, int] = {"CMD": command_port, "STA": state_port, "GRD": guard_port}
     async with AsyncExitStack() as stack:
         wires = {
             channel: await stack.enter_async_context(ChaosProxy(targets[channel]))
             for channel in channels
         }
-        truth = draw(scenario, seed=1).robots["main"]
-        arm = RobotArm(scenario.robots["main"], truth, seed=1)
-        arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
-        started_s = time.monotonic() - arm.standstill_s
+        arm, clock = standing_arm()
         controller = SjlController(
             arm,
-            lambda: time.monotonic() - started_s,
+            clock,
             {channel: wire.port for channel, wire in wires.items()},
             offer=offer,
         )

@@ -1,25 +1,17 @@
 """The driver of a collaborative arm and its fake controller, with a chaos proxy on both ports."""
 
-import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
-from pathlib import Path
-
-import numpy as np
 
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig, SiasunRpcStopChannelConfig
 from drivers.robot.siasun_rpc.driver import SiasunRpcRobot
-from fakes.scenario import load
 from fakes.wire.duco.controller import DucoController
 from fakes.wire.duco.logic import DucoLogic
 from fakes.world.robot import RobotArm
-from fakes.world.truth import draw
 from tests.wire.proxy import ChaosProxy
+from tests.wire.standing_arm import standing_arm
 
-SCENARIO = Path(__file__).parents[3] / "config" / "deck.scenario.toml"
-READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
-"""Away from limits and singularities."""
 CONTROLLER = {"tool": "flange", "work_frame": "base", "euler": "fixed-xyz", "stop_word": 1}
 CONTROLLER |= {"rearm_word": 2, "heartbeat_ms": 300, "host": "127.0.0.1"}
 
@@ -50,11 +42,8 @@ class DucoRig:
 @asynccontextmanager
 async def duco_rig(**changes: object) -> AsyncIterator[DucoRig]:
     """The controller listens, the driver is not connected; both are stopped at the end."""
-    scenario = load(SCENARIO)
-    arm = RobotArm(scenario.robots["main"], draw(scenario, seed=1).robots["main"], seed=1)
-    arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
-    started_s = time.monotonic() - arm.standstill_s
-    controller = DucoController(DucoLogic(arm, lambda: time.monotonic() - started_s))
+    arm, clock = standing_arm()
+    controller = DucoController(DucoLogic(arm, clock))
     async with AsyncExitStack() as stack:
         await controller.start()
         stack.push_async_callback(controller.stop)

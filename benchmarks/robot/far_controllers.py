@@ -1,0 +1,29 @@
+"""Controllers of industrial arms at the far end of a benchmark, in a process of their own."""
+
+import asyncio
+from multiprocessing.connection import Connection
+
+from fakes.jobs.controller import JobController
+from fakes.sections import Channel
+from fakes.wire.sjl.controller import SjlController
+from tests.wire.standing_arm import standing_arm
+
+Ports = dict[Channel, int]
+
+
+def serve_controller(pipe: Connection, way: str, ports: Ports, statement_s: float) -> None:
+    """Connect to a driver until anything comes through the pipe. ``way`` is ``sjl`` for the
+    protocol's text, ``jobs`` for the shipped jobs with so much time for each statement."""
+    asyncio.run(_serve(pipe, way, ports, statement_s))
+
+
+async def _serve(pipe: Connection, way: str, ports: Ports, statement_s: float) -> None:
+    arm, clock = standing_arm()
+    controller = (
+        SjlController(arm, clock, ports)
+        if way == "sjl"
+        else JobController(arm, clock, ports, statement_s=statement_s)
+    )
+    controller.start()
+    await asyncio.to_thread(pipe.recv)
+    await controller.stop()
