@@ -98,6 +98,7 @@ bench-power-cut: venv
 
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc
+	$(BIN)/python -m benchmarks.robot.acks
 	$(BIN)/python -m benchmarks.robot.slow_jobs
 	$(BIN)/python -m benchmarks.robot.stops
 

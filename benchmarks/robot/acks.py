@@ -2,11 +2,11 @@
 
     python -m benchmarks.robot.acks --calls 300 --out build/acks.json
 
-Short steps of the driver over each way to an arm: SJL/1, the shipped jobs at two speeds of their
-interpreter, and the remote interface of collaborative arms. Before each of them as many bytes go
-over a bare socket and back, so that whatever the PC does beside meets both alike. Controllers and
-the other end of the socket are processes of their own on this PC. The figures say what driver, job
-and machine cost; a real controller adds its own time.
+Short steps and releases of the driver over each way to an arm: SJL/1, the shipped jobs at two
+speeds of their interpreter, and the remote interface of collaborative arms. Before each of them as
+many bytes go over a bare socket and back, so that whatever the PC does beside meets both alike.
+Controllers and the other end of the socket are processes of their own on this PC. The figures say
+what driver, job and machine cost; a real controller adds its own time.
 """
 
 import argparse
@@ -27,7 +27,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from benchmarks.robot.far_controllers import Ports, serve_controller
-from benchmarks.robot.rpc import far_end
+from benchmarks.robot.rpc_bench import far_end
 from cellctl.interfaces.robot import Robot
 from drivers.robot.siasun.driver import SiasunRobot
 from drivers.robot.siasun.running_command import RunningCommand
@@ -122,9 +122,10 @@ WAYS: dict[str, Callable[[], AbstractAsyncContextManager[Robot]]] = {
 }
 
 
-async def measure(way: str, calls: int) -> AckRow:
-    """One way, call by call beside the bare socket."""
-    times: list[float] = []
+async def measure(way: str, calls: int) -> list[AckRow]:
+    """One way, call by call beside the bare socket: steps, which the controller plans before it
+    answers, and releases, which move nothing and which the remote interface does not have."""
+    times: dict[str, list[float]] = {"step": [], "release": []}
     bare: list[float] = []
     accepted = Accepted()
     async with far_end() as bench, WAYS[way]() as robot:
@@ -136,15 +137,25 @@ async def measure(way: str, calls: int) -> AckRow:
             await reader.readexactly(RECORD_BYTES)
             bare.append(time.perf_counter() - start_s)
             up = RigidTransform.from_translation([0.0, 0.0, STEP_M * ((turn + 1) % 2)])
-            start_s = time.perf_counter()
-            with accepted.noted():
-                await robot.step(up * home, speed_m_s=SPEED_M_S)
-            times.append(accepted.time_s - start_s)
+            moves: dict[str, Callable[[], Awaitable[object]]] = {
+                "step": partial(robot.step, up * home, speed_m_s=SPEED_M_S),
+                "release": robot.rearm,
+            }
+            for name, move in moves.items():
+                start_s = time.perf_counter()
+                with accepted.noted():
+                    await move()
+                if accepted.time_s > start_s:
+                    times[name].append(accepted.time_s - start_s)
         # Until the far end has hung up too: nothing is left open when it is told to end.
         writer.write_eof()
         await reader.read()
         writer.close()
-    return AckRow(way, calls, *_ms(times, 50, 99, 100), *_ms(bare, 50, 99))
+    return [
+        AckRow(f"{way}: {name}", len(found), *_ms(found, 50, 99, 100), *_ms(bare, 50, 99))
+        for name, found in times.items()
+        if found
+    ]
 
 
 def _ms(seconds: list[float], *percents: int) -> list[float]:
@@ -173,7 +184,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path)
     options = parser.parse_args(arguments)
     load = os.getloadavg()[0]
-    rows = [asyncio.run(measure(way, options.calls)) for way in options.way]
+    rows = [row for way in options.way for row in asyncio.run(measure(way, options.calls))]
     print(table(rows))
     print(f"load of this PC: {load:.1f} before, {os.getloadavg()[0]:.1f} after")
     if options.out is not None:

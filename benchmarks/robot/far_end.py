@@ -34,7 +34,7 @@ class StampedLogic(DucoLogic):
 
 def serve(pipe: Connection) -> None:
     """Tell the three ports; then ``move`` begins a slow turn, ``stamps`` asks for the stamps since,
-    ``end`` ends."""
+    ``refuse`` lets the next call that moves the arm be answered with -1, ``end`` ends."""
     asyncio.run(_serve(pipe))
 
 
@@ -50,6 +50,9 @@ async def _serve(pipe: Connection) -> None:
             logic.stamps.clear()
             sign = -1.0 if logic.joints()[0] > 0.0 else 1.0
             logic.move_joint([sign * 0.8, *logic.joints()[1:]], 10.0)
+            pipe.send(None)
+        elif word == "refuse":
+            logic.faults.inject("minus_one", count=1)
             pipe.send(None)
         else:
             while logic.moving():  # noqa: ASYNC110 - the arm tells nobody

@@ -122,6 +122,8 @@ class DucoLogic:
 
     def servo(self, pose: list[float], frames: tuple[str, str]) -> int:
         """servoj_pose: a new target in place of the one before."""
+        if self.faults.use("minus_one"):
+            return -1
         if self.faults.use("servo_lost"):
             return self.tasks.begin(TaskEnd.IDLE).number
         if not self.frame_known(*frames):

@@ -18,7 +18,7 @@ from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 from tests.wire.jobs.job_rig import JOBS
-from tests.wire.siasun.sjl_rig import SCENARIO
+from tests.wire.standing_arm import SCENARIO
 
 
 def job(folder: Path, *lines: str) -> Path:

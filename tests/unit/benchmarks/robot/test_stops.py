@@ -13,10 +13,10 @@ def test_the_digital_output_stops_beside_the_programs(capsys: pytest.CaptureFixt
 
 @pytest.mark.parametrize("name", [name for name in WAYS if "silent" not in name])
 def test_every_way_is_in_the_table(name: str) -> None:
-    row = StopRow(name, WAYS[name][0], 1.0, WAYS[name][2], WAYS[name][2])
+    row = StopRow(name, WAYS[name][0], 30, 1.0, 2.0, WAYS[name][2], WAYS[name][2])
     assert row.kept
     assert "exceeded" not in table([row])
 
 
 def test_a_bound_that_is_exceeded_is_said() -> None:
-    assert "**exceeded**" in table([StopRow("GRD", "its job", 10.0, 301.0, 300.0)])
+    assert "**exceeded**" in table([StopRow("GRD", "its job", 30, 10.0, 290.0, 301.0, 300.0)])
