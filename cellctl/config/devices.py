@@ -67,7 +67,8 @@ class RobotConfig(DeviceConfig):
     in_maintenance: MaintenanceSpeeds | None = None
     """Lower speeds for the mode in which people set up the cell; none: those above."""
     d1_mm: Annotated[float, Field(ge=100, le=3000)] | None = None
-    """D-H: height of the A2 axis above the base plane; the base frame's calibration needs it."""
+    """D-H: height of the A2 axis above the base plane; the base frame's calibration needs it. Where
+    it is not stated the ``dh`` table of the driver's settings gives it."""
     a1_mm: Annotated[float, Field(ge=0, le=2000)] | None = None
     """D-H: distance of the A2 axis from the A1 axis, likewise."""
 

@@ -4,6 +4,7 @@ from typing import Any, cast
 
 from cellctl import plugins
 from cellctl.config.devices import RobotConfig
+from cellctl.geometry.pose import MM
 from cellctl.interfaces import MotionBounds, Robot
 
 
@@ -17,3 +18,16 @@ def motion_bounds(robot: RobotConfig) -> MotionBounds:
     """What the driver refuses with these settings; raises like ``robot_driver``."""
     driver, settings = robot_driver(robot)
     return driver.bounds(settings)
+
+
+def first_link_mm(robot: RobotConfig) -> tuple[float | None, float | None]:
+    """Height of the A2 axis above the base plane and its distance from the A1 axis (D-H d1 and a1
+    in mm): as the robot states them, else as its driver's settings describe the arm; None where
+    neither does."""
+    driver, settings = robot_driver(robot)
+    chain = driver.chain(settings)
+    d1_mm, a1_mm = (None, None) if chain is None else (chain.dh[0, 1] / MM, chain.dh[0, 2] / MM)
+    return (
+        d1_mm if robot.d1_mm is None else robot.d1_mm,
+        a1_mm if robot.a1_mm is None else robot.a1_mm,
+    )

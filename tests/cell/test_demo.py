@@ -11,6 +11,7 @@ import pytest
 from cellctl.records.store import RunStore
 from cellctl.vision.picture import INSET_PX
 from tests.cell.rigs.own_cell import OwnCell, cellctl
+from tests.wire.jobs.job_rig import JOBS
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -27,6 +28,21 @@ def test_a_good_part_with_its_record(own: OwnCell) -> None:
     _within_the_limits_of_the_mission(result)
     _record_is_complete(out, result)
     _commands_find_the_run(out / "store")
+
+
+@pytest.mark.long  # the wire tests run the same job files, one arm at a time
+def test_a_good_part_with_the_shipped_jobs_on_all_three_arms(own: OwnCell) -> None:
+    out = own.folder / "run"
+    demo = own.demo(out, "--robots", "jobs")
+    assert demo.end(280) == 0, demo.stdout + demo.stderr
+    demo.nobody_left()
+    _within_the_limits_of_the_mission(json.loads((out / "result.json").read_text("utf-8")))
+    # Only the shipped jobs say this of themselves; the fake of the protocol's text is older.
+    version = re.search(r"version (\d+\.\d+):", (JOBS / "SJLMAIN.job").read_text("ascii"))
+    assert version is not None
+    log = (out / "daemon.log").read_text("utf-8")
+    for arm in ("SR500A", "T90A-1", "T90A-2"):
+        assert f"{arm} STA: connected, job program {version[1]}" in log
 
 
 def _within_the_limits_of_the_mission(result: dict[str, Any]) -> None:

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from cellctl.cli import check
 from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
+from cellctl.config.robot_drivers import first_link_mm
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -216,7 +217,6 @@ def test_a_role_may_be_taken_by_a_device_of_another_name(tmp_path: Path) -> None
         ('carried_by = "aux_2"\n', "", "stereo_cameras.head_2.carried_by"),
         ('mounted_on = "main"', 'mounted_on = "aux_1"', "force_sensors.force.mounted_on"),
         ('mounted_on = "main"', 'mounted_on = "arm"', "force_sensors.force.mounted_on"),
-        ("d1_mm = 1045.0\n", "", "robots.main.d1_mm"),
         ('process = "deck-to-frame"', 'process = "welding"', "recipes.0.process"),
         ('process = "deck-to-frame"\n', "", "recipes.0.process"),
         ("id = 1\n", 'id = 1\nroles = { head_3 = "head_1" }\n', "recipes.0.roles.head_3"),
@@ -248,3 +248,13 @@ def test_check_says_whose_joint_moves_nobody_checks(tmp_path: Path) -> None:
     (tmp_path / "features").symlink_to(CONFIG / "features")
     assert words in CliRunner().invoke(whole_app(), ["check", str(filled_in)]).output
     assert words not in CliRunner().invoke(whole_app(), ["check", str(CONFIG / "deck.toml")]).output
+
+
+def test_the_first_link_is_taken_from_the_dh_table_where_it_is_not_stated(tmp_path: Path) -> None:
+    lengths = ("d1_mm = 1045.0\na1_mm = 500.0\n", "")
+    path = changed(tmp_path, stated=lengths)
+    assert problems(path) == []
+    assert first_link_mm(load_cell(path).robots["main"]) == pytest.approx((1045.0, 500.0))
+    path.write_text(re.sub(r"^dh = .*\n", "", path.read_text(), count=1, flags=re.MULTILINE))
+    missing = {problem.key for problem in problems(path)}
+    assert {"robots.main.d1_mm", "robots.main.a1_mm"} <= missing

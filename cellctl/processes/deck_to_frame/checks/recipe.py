@@ -6,6 +6,7 @@ from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.robot_drivers import first_link_mm
 from cellctl.processes.deck_to_frame.checks.base_frame_turns import base_frame_turn_issues
 from cellctl.processes.deck_to_frame.checks.features import feature_issues
 from cellctl.processes.deck_to_frame.checks.mating_plan import plan_issues
@@ -25,10 +26,10 @@ def recipe_issues(
     if mounted_on != main:
         where = f"force_sensors.{sensor}.mounted_on"
         yield ConfigIssue(where, repr(mounted_on), f"the robot that carries the deck: {main}")
-    for length in ("d1_mm", "a1_mm"):
-        if getattr(cell.robots[main], length) is None:
-            allowed = "the base frame is calibrated with it (procedure 103)"
-            yield ConfigIssue(f"robots.{main}.{length}", "(missing)", allowed)
+    for name, length_mm in zip(("d1_mm", "a1_mm"), first_link_mm(cell.robots[main]), strict=True):
+        if length_mm is None:
+            allowed = "needed, or a dh table: procedure 103 calibrates the base frame with it"
+            yield ConfigIssue(f"robots.{main}.{name}", "(missing)", allowed)
     settings = cast(DeckSettings, cell.processes[recipe.process])
     yield from base_frame_turn_issues(cell, main, settings, recipe.process)
     yield from _heads(cell, recipe)

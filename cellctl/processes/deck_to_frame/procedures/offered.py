@@ -12,6 +12,7 @@ from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.free_moves import free_tolerance, guarded_section
 from cellctl.cell.stereo_station import StereoStation
+from cellctl.config.robot_drivers import first_link_mm
 from cellctl.geometry.pose import MM
 from cellctl.procedures.base_frame import AxisTurns, calibrate_base
 from cellctl.procedures.payload import identify_payload_on_cell
@@ -121,8 +122,10 @@ class _OnCell:
             speed_ratio=main.speed_percent / 100,
             frames=settings.tracker_frames,
         )
-        # The check of the cell file saw to it that the robot states both lengths.
-        arm = ArmGeometry(d1_m=(main.d1_mm or 0.0) * MM, a1_m=(main.a1_mm or 0.0) * MM)
+        d1_mm, a1_mm = first_link_mm(main)
+        assert d1_mm is not None  # by the check of the cell file
+        assert a1_mm is not None  # likewise
+        arm = ArmGeometry(d1_m=d1_mm * MM, a1_m=a1_mm * MM)
         await clear_the_cell(cell, context.board)
         async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             return await calibrate_base(
