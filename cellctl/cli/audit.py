@@ -1,32 +1,27 @@
 """`cellctl audit`: who did what, from the audit log of the run store."""
 
 import json
-from contextlib import closing
 from dataclasses import asdict
-from pathlib import Path
 from typing import Annotated
 
 import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.run_store import DataDir, opened_store
 from cellctl.records.entries import AuditEntry
-from cellctl.records.store import RunStore
 
 
 def audit(
     *,
-    data_dir: Annotated[Path, typer.Option("--data-dir", help="Folder of the run store.")] = Path(
-        "runs"
-    ),
+    data_dir: DataDir = None,
     who: Annotated[str, typer.Option(help="Only whose name holds this text.")] = "",
     action: Annotated[str, typer.Option(help="Only this action, for example gauge.")] = "",
     limit: Annotated[int, typer.Option(help="How many, newest first.", min=1)] = 50,
     as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
     """Who did what: commands, gauges, acknowledgements; every entry is sealed."""
-    # A mistyped folder must be an error, not a new and empty store.
-    with closing(RunStore(data_dir, create=False)) as store:
+    with opened_store(data_dir) as store:
         log = store.audit_log()
     found = [
         entry for entry in reversed(log) if who in entry.actor and action in ("", entry.action)

@@ -33,7 +33,7 @@ CELL = (
 FILES = (
     Listed("runs", _RECORDS, "Look into the run store."),
     Listed("replay", _RECORDS, "Compute every measurement of a run anew from its recordings."),
-    Listed("faults", _RECORDS, "The fault catalogue as Markdown, or one fault in words."),
+    Listed("faults", _RECORDS, "All faults, installed packages' included; or one in words."),
     Listed("audit", _RECORDS, "Who did what: commands, gauges, acknowledgements."),
     Listed("calibrate", OFFLINE, "Calibrate from files."),
     Listed("measure", OFFLINE, "Measure the named holes of a feature file in a stereo pair."),

@@ -7,18 +7,18 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.runs import DEFAULT, DataDir, Run
+from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.cli.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.errors.records import NotReplayable
 from cellctl.records.replayed import Replayed
-from cellctl.records.store import RunStore
 from cellctl.runtime.process import Process
 
 
 def replay(
     run: Run,
     *,
-    data_dir: DataDir = DEFAULT,
+    data_dir: DataDir = None,
     every: Annotated[bool, typer.Option("--every", help="Also what came out the same.")] = False,
 ) -> None:
     """Compute every measurement of a run anew from its raw images, poses and forces.
@@ -37,16 +37,13 @@ def replay(
         raise typer.Exit(1)
 
 
-def _replayed(run: int, data_dir: Path) -> list[Replayed]:
-    store = RunStore(data_dir, create=False)
-    try:
+def _replayed(run: int, data_dir: Path | None) -> list[Replayed]:
+    with opened_store(data_dir) as store:
         record = store.run(run)
         calibrations = {one.id: one for one in store.calibrations()}
         process = _process(record.head.process)
         files = store.artefacts
         return list(process.replay(record, lambda one: files.get(one.sha256), calibrations))
-    finally:
-        store.close()
 
 
 def _process(name: str) -> type[Process[Any, Any, Any]]:

@@ -1,12 +1,11 @@
 """`cellctl runs report`: the report of a run as one file, to be sent or printed."""
 
-from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from cellctl.records.store import RunStore
+from cellctl.cli.run_store import DataDir, opened_store
 
 
 def report(
@@ -16,9 +15,7 @@ def report(
     out: Annotated[
         Path | None, typer.Option(help="File; default: run-NUMBER.html or .pdf.")
     ] = None,
-    data_dir: Annotated[Path, typer.Option("--data-dir", help="Folder of the run store.")] = Path(
-        "runs"
-    ),
+    data_dir: DataDir = None,
 ) -> None:
     """Write the report of a run as one file with its pictures, HTML or PDF."""
     # Only a report is drawn; the list of runs does not wait for what draws.
@@ -26,7 +23,7 @@ def report(
     from cellctl.records.report.export import write_report
 
     path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
-    with closing(RunStore(data_dir, create=False)) as store:
+    with opened_store(data_dir) as store:
         pages = pages_of(store.run(run).head.process)
         write_report(store, run, path, pages=pages, pdf=pdf)
     typer.echo(path)

@@ -1,7 +1,6 @@
 """`cellctl runs`: look into the run store; enter what a person measured."""
 
 from collections.abc import Sequence, Set
-from contextlib import closing
 from pathlib import Path
 from typing import Annotated
 
@@ -10,36 +9,29 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.cli.run_report import report
+from cellctl.cli.run_store import DataDir, opened_store
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.seals import LedgerHead
-from cellctl.records.store import RunStore
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
 
-DataDir = Annotated[Path, typer.Option("--data-dir", help="Folder of the run store.")]
 Run = Annotated[int, typer.Argument(help="Number of the run.", min=1)]
-DEFAULT = Path("runs")
 
 HASH_DIGITS = 64
 _COLOURS = {"good": "green", None: "yellow"}
 
 
-def _store(data_dir: Path) -> closing[RunStore]:
-    # A mistyped folder must be an error, not a new and empty store.
-    return closing(RunStore(data_dir, create=False))
-
-
 @app.command("list")
 def list_runs(
-    data_dir: DataDir = DEFAULT,
+    data_dir: DataDir = None,
     serial: Annotated[str | None, typer.Option(help="Only this serial number.")] = None,
     limit: Annotated[int, typer.Option(help="How many, newest first.", min=1)] = 20,
 ) -> None:
     """The newest runs."""
-    with _store(data_dir) as store:
+    with opened_store(data_dir) as store:
         runs = store.runs(limit, serial)
         # A plug gauge may have turned a good part into a bad one since the run was closed.
         spoilt = {
@@ -55,9 +47,9 @@ def list_runs(
 
 
 @app.command()
-def show(run: Run, data_dir: DataDir = DEFAULT) -> None:
+def show(run: Run, data_dir: DataDir = None) -> None:
     """One run in figures."""
-    with _store(data_dir) as store:
+    with opened_store(data_dir) as store:
         record = store.run(run)
     console = Console()
     console.print(_table([record.head]))
@@ -81,7 +73,7 @@ def export(
     run: Run,
     *,
     out: Annotated[Path | None, typer.Option(help="Folder; default: run-NUMBER.")] = None,
-    data_dir: DataDir = DEFAULT,
+    data_dir: DataDir = None,
     single_file: Annotated[
         bool, typer.Option("--single-file", help="Pictures inside the report.")
     ] = False,
@@ -91,7 +83,7 @@ def export(
     from cellctl.cli.process_pages import pages_of
     from cellctl.records.report.export import export_run
 
-    with _store(data_dir) as store:
+    with opened_store(data_dir) as store:
         folder = out or Path(f"run-{run}")
         pages = pages_of(store.run(run).head.process)
         written = export_run(store, run, folder, pages=pages, single_file=single_file)
@@ -109,10 +101,10 @@ def gauge(
     mm: Annotated[float, typer.Option(help="Largest plug gauge that passes.")],
     source: Annotated[str, typer.Option(help="Who measured it.")],
     gauge_id: Annotated[str, typer.Option(help="Number on the plug gauge.")] = "",
-    data_dir: DataDir = DEFAULT,
+    data_dir: DataDir = None,
 ) -> None:
     """Enter a plug-gauge result of a run; a later one of the same hole counts, all are kept."""
-    with _store(data_dir) as store:
+    with opened_store(data_dir) as store:
         # A gauge result comes after the run was sealed, so it has a seal of its own, and the audit
         # log names whoever measured.
         store.set_gauge(run, hole, mm, source, gauge_id)
@@ -126,7 +118,7 @@ def gauge(
 
 @app.command()
 def verify(
-    data_dir: DataDir = DEFAULT,
+    data_dir: DataDir = None,
     head: Annotated[str, typer.Option(help="LENGTH:HASH, as printed on a report.")] = "",
 ) -> None:
     """Check that nothing that is sealed was changed, files included; exit code 1 if it was.
@@ -135,7 +127,7 @@ def verify(
     not found: the newest report has a head to compare with.
     """
     printed = _printed(head)
-    with _store(data_dir) as store:
+    with opened_store(data_dir) as store:
         problems = store.verify(printed)
         newest = store.ledger_head()
     for problem in problems:

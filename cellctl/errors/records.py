@@ -13,7 +13,10 @@ class StoreUnavailable(RecordsError):
     number = 801
     text = "Run store cannot be opened"
     cause = "Folder missing or not writable, disk full, or a damaged database."
-    remedy = "Check data_dir in the cell file and the disk; restore the store from its backup."
+    remedy = (
+        "Check data_dir in the cell file, or the folder named with --data-dir, and the disk. A "
+        "store that is damaged is restored from its backup."
+    )
 
 
 class StoreTooNew(StoreUnavailable):

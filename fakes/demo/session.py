@@ -15,6 +15,7 @@ from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
 from fakes.demo.page import DemoPage, write_settings
 from fakes.demo.safety import own_calibrations
+from fakes.demo.stored_results import StoredResults
 from fakes.demo.verdict import why_not_good
 from fakes.sections import JobController
 
@@ -140,6 +141,7 @@ class Session:
     def _calibrate(self) -> int:
         if not self._demo.procedures:
             self._console.print(f"{self._demo.process} has no calibrations to run")
+        results = StoredResults(self._folder / "calibration")
         for procedure in self._demo.procedures:
             procedure.prepare(self._control)
             self._console.print(f"procedure {procedure.number}: {procedure.title}")
@@ -147,6 +149,8 @@ class Session:
             result = self._line("--mode", "maintenance", "--recipe", number, "--timeout", timeout_s)
             if result.get("result") != "good":
                 return self._not_good(result, self._faults())
+            for table in results.new():
+                self._console.print(table)
         return GOOD
 
     def _produce(self) -> int:
@@ -163,6 +167,7 @@ class Session:
         self._console.print(result_table(outcome))
         if outcome.report:
             self._console.print(f"report: {outcome.report}")
+            self._console.print("its records: .venv/bin/cellctl runs list")
         if not outcome.judgement.passed:
             return self._not_good(result, faults)
         return GOOD

@@ -6,7 +6,8 @@ import typer
 from rich.console import Console
 
 from cellctl.api.local.messages import AcknowledgeCommand, made
-from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 

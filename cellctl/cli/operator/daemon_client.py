@@ -4,9 +4,6 @@ import socket
 import time
 from collections.abc import Collection
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 from cellctl.api.local.messages import (
     ANSWER_LIMIT,
@@ -21,6 +18,7 @@ from cellctl.api.local.messages import (
     to_line,
 )
 from cellctl.api.local.report import StatusReport
+from cellctl.cli.nearest_cell import nearest_socket
 from cellctl.clock import now_s
 from cellctl.errors.local import (
     CommandMissedItsGoal,
@@ -29,32 +27,18 @@ from cellctl.errors.local import (
     MessageMalformed,
 )
 
-SERVICE = Path("/run/cellctl/cellctl.sock")
-"""The socket of the shipped systemd unit."""
-HERE = Path("runs/cellctl.sock")
-"""The socket of a daemon that was started in this folder with the default data_dir."""
 ANSWER_S = 10.0
 SETTLE_S = 60.0
 _POLL_S = 0.2
 _PATIENT_POLL_S = 1.0
 """While a whole run is waited for: the daemon has other things to do."""
 
-SocketOption = Annotated[
-    Path | None,
-    typer.Option(
-        "--socket",
-        envvar="CELLCTL_SOCKET",
-        help=f"The daemon's socket; default: {SERVICE}, else {HERE}.",
-    ),
-]
-
 
 class DaemonClient:
     """Asks the daemon, one connection per question."""
 
     def __init__(self, path: Path | None) -> None:
-        # The installed service goes before a daemon that somebody has started in this folder.
-        self._path = path or (SERVICE if SERVICE.exists() else HERE)
+        self._path = path or nearest_socket()
 
     def status(self) -> StatusReport:
         """The cell at this moment; raises ``DaemonNotReached`` or ``MessageMalformed``."""

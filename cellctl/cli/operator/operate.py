@@ -16,7 +16,8 @@ from cellctl.api.local.messages import (
     made,
 )
 from cellctl.api.local.report import StatusReport
-from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.errors.local import CommandMissedItsGoal
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")

@@ -7,7 +7,8 @@ import typer
 from rich.console import Console
 from rich.live import Live
 
-from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import screen
 from cellctl.clock import utc_now
 

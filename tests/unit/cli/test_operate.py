@@ -25,6 +25,7 @@ from cellctl.api.local.messages import (
 )
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
 from cellctl.api.local.socket_file import default_path
+from cellctl.cli import nearest_cell
 from cellctl.cli.commands import whole_app
 from cellctl.cli.operator import daemon_client
 from cellctl.cli.operator.status_screen import screen
@@ -273,4 +274,4 @@ def test_the_service_is_found_where_its_unit_puts_the_socket(
     unit = (DOCS.parent / "systemd" / "cellctl.service").read_text(encoding="utf-8")
     (name,) = re.findall(r"^RuntimeDirectory=(\w+)$", unit, re.MULTILINE)
     monkeypatch.setenv("RUNTIME_DIRECTORY", f"/run/{name}")
-    assert default_path(Path("elsewhere")) == daemon_client.SERVICE
+    assert default_path(Path("elsewhere")) == nearest_cell.SERVICE_SOCKET
