@@ -47,6 +47,7 @@ def imperfections() -> None:
 
 @app.command()
 def run(
+    *,
     scenario: ScenarioOption = DEFAULT_SCENARIO,
     seed: Annotated[int, typer.Option(min=0, help="Reproduces the whole cell.")] = 1,
     port: Annotated[
@@ -56,6 +57,13 @@ def run(
         list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
     ] = None,
     robots: RobotsOption = None,
+    gentl: Annotated[
+        Path | None,
+        typer.Option(
+            help="Cameras behind the fake GenTL producer, shown by this file, in place of frame "
+            "servers."
+        ),
+    ] = None,
 ) -> None:
     """Run the fake cell until SIGINT or SIGTERM."""
     from fakes.cell import run_cell
@@ -64,7 +72,7 @@ def run(
     scales = dict(_scale(item) for item in imperfection or [])
     written = scenarios.load(scenario, scales)
     described = written if robots is None else written.with_controllers(robots)
-    raise typer.Exit(asyncio.run(run_cell(described, seed, ports)))
+    raise typer.Exit(asyncio.run(run_cell(described, seed, ports, gentl)))
 
 
 def _port(item: str) -> tuple[str, int]:

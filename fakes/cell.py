@@ -7,11 +7,13 @@ import signal
 import sys
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from fakes.clock import WorldClock
 from fakes.control import ControlServer
-from fakes.devices import DeviceFaults, DeviceRack
+from fakes.device import DeviceFaults
+from fakes.devices import DeviceRack
 from fakes.faults import JOB_FAULTS, ROBOT_FAULTS, FaultBoard
 from fakes.jobs.controller import JobController
 from fakes.jobs.installation import Adaptation
@@ -35,8 +37,18 @@ class PortTaken(OSError):
 class Cell:
     """World and devices. ``start`` returns the ports; ``run`` lets the time pass."""
 
-    def __init__(self, scenario: Scenario, seed: int, ports: dict[str, int] | None = None) -> None:
-        """``ports`` override those of the scenario: device, ``robot.CHANNEL`` or ``control``."""
+    def __init__(
+        self,
+        scenario: Scenario,
+        seed: int,
+        ports: dict[str, int] | None = None,
+        gentl: Path | None = None,
+    ) -> None:
+        """``ports`` override those of the scenario: device, ``robot.CHANNEL`` or ``control``.
+
+        ``gentl`` is the file of the cameras that the fake GenTL producer shows; without one there
+        are frame servers.
+        """
         self._ports = ports or {}
         self._control_port = self._ports.get("control", scenario.control_port)
         self.clock = WorldClock()
@@ -47,7 +59,7 @@ class Cell:
             for name, robot in scenario.robots.items()
             if robot.controller != "rpc"
         }
-        self._rack = DeviceRack(self.world, self.clock, self._ports)
+        self._rack = DeviceRack(self.world, self.clock, self._ports, gentl)
         self.stopping = asyncio.Event()
         self._control = ControlServer(Operator(self, self.commands()).handlers())
 
@@ -82,6 +94,7 @@ class Cell:
             name: await _listen(name, device.port, device.start())
             for name, device in self._rack.devices.items()
         }
+        listening = {name: port for name, port in listening.items() if port}
         for robot in self.robots.values():
             robot.start()
         control = self._control.start(port=self._control_port)
@@ -154,12 +167,14 @@ async def _listen(name: str, port: int, starting: Awaitable[int]) -> int:
         ) from error
 
 
-async def run_cell(scenario: Scenario, seed: int, ports: dict[str, int]) -> int:
+async def run_cell(
+    scenario: Scenario, seed: int, ports: dict[str, int], gentl: Path | None = None
+) -> int:
     """Run a cell until SIGINT or SIGTERM; prints one line of JSON when everything listens.
 
-    Returns the exit code: 1 when a port is taken.
+    Returns the exit code: 1 when a port is taken. Arguments are those of ``Cell``.
     """
-    cell = Cell(scenario, seed, ports)
+    cell = Cell(scenario, seed, ports, gentl)
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, cell.stopping.set)

@@ -4,22 +4,17 @@ Job controllers of robots are not here: they connect to the PC, as the real ones
 """
 
 import asyncio
-from collections.abc import Awaitable, Callable, Iterator, Mapping
-from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from functools import partial
-from typing import Any, Protocol, TypeVar
+from pathlib import Path
+from typing import Any, TypeVar
 
+from fakes.camera_rack import CameraRack
 from fakes.clock import WorldClock
+from fakes.device import Device
 from fakes.faults import TRACKER_FAULTS, FaultBoard
-from fakes.render.look import options_of
-from fakes.render.options import RenderOptions
-from fakes.render.worker import make_pool, render_frame
 from fakes.scenario import Scenario
-from fakes.sections import DigitalIo, Gripper, Robot, SingleCamera, StereoCamera, Tracker
-from fakes.wire.cameras.cfs_server import MONO8, RGB8, CfsServer, ExposureError
-from fakes.wire.cameras.frame_server import FrameServer
-from fakes.wire.cameras.image_server import ImageServer, Picture
+from fakes.sections import DigitalIo, Gripper, Robot, Tracker
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import gripper_coupler
@@ -29,41 +24,27 @@ from fakes.wire.sri.box import SriBox
 from fakes.world.targets import SeenTarget
 from fakes.world.world import Command, World
 
-HOST = "127.0.0.1"
 T = TypeVar("T")
-
-
-class DeviceFaults(Protocol):
-    """The faults of a device that keeps them itself."""
-
-    def inject(self, name: str, *arguments: Any, **parameters: Any) -> None:
-        """Switch a fault on; ``ValueError`` for a name that does not exist."""
-
-    def clear(self) -> None:
-        """Switch all faults off."""
-
-
-@dataclass(frozen=True, slots=True)
-class Device:
-    """A server of the fake cell."""
-
-    name: str
-    port: int
-    """Where it shall listen; 0 for any free port."""
-    faults: FaultBoard | DeviceFaults
-    start: Callable[[], Awaitable[int]]
-    """Listens and returns the port; ``OSError`` when it is taken."""
-    stop: Callable[[], Awaitable[None]]
 
 
 class DeviceRack:
     """Every listening device of a scenario, wired to the world."""
 
-    def __init__(self, world: World[Any], clock: WorldClock, ports: Mapping[str, int]) -> None:
-        """``clock`` is that of the world; ``ports`` override those of the scenario."""
+    def __init__(
+        self,
+        world: World[Any],
+        clock: WorldClock,
+        ports: Mapping[str, int],
+        gentl: Path | None = None,
+    ) -> None:
+        """``clock`` is that of the world; ``ports`` override those of the scenario.
+
+        ``gentl`` is the file of the cameras that the fake GenTL producer shows, which is written
+        anew; without one there are frame servers.
+        """
         self._scenario: Scenario = world.scenario
         self._world, self._clock, self._ports = world, clock, ports
-        self._renderers: ProcessPoolExecutor | None = None
+        self._cameras = CameraRack(world, ports, gentl)
         self._inputs: dict[str, dict[int, bool]] = {}
         self._couplers: dict[str, CouplerServer] = {}
         self.devices = {device.name: device for device in self._all()}
@@ -79,8 +60,7 @@ class DeviceRack:
 
     def shut_down(self) -> None:
         """End the renderers, once the devices have stopped."""
-        if self._renderers is not None:
-            self._renderers.shutdown(cancel_futures=True)
+        self._cameras.shut_down()
 
     def _all(self) -> Iterator[Device]:
         scenario = self._scenario
@@ -91,10 +71,7 @@ class DeviceRack:
             yield self._force_sensor(name)
         for name, tracker in scenario.trackers.items():
             yield self._tracker(name, tracker)
-        for name, head in scenario.stereo_cameras.items():
-            yield self._stereo_camera(name, head)
-        for name, camera in scenario.cameras.items():
-            yield self._camera(name, camera)
+        yield from self._cameras.devices()
         for name, gripper in scenario.grippers.items():
             yield self._gripper(name, gripper)
         for name, io in scenario.digital_ios.items():
@@ -137,58 +114,6 @@ class DeviceRack:
         port = self._port(name, tracker.port)
         return Device(name, port, faults, partial(server.start, port=port), server.stop)
 
-    # -- cameras --------------------------------------------------------------------------------
-    def _stereo_camera(self, name: str, camera: StereoCamera) -> Device:
-        port = self._port(name, camera.port)
-        server = FrameServer(
-            HOST,
-            port,
-            partial(self._world.camera_scene, name),
-            self._pool(),
-            options=self._look(),
-            identity=f"fake-head;{camera.serial};1.0",
-            exposure_us=self._scenario.optics[camera.optics].exposure_us,
-        )
-        return _frame_device(name, port, server)
-
-    def _camera(self, name: str, camera: SingleCamera) -> Device:
-        pool, options = self._pool(), self._look()
-
-        async def take(faults: frozenset[str]) -> Picture:
-            scene = self._world.camera_scene(name)
-            loop = asyncio.get_running_loop()
-            try:
-                frame = await loop.run_in_executor(pool, render_frame, scene, options, faults)
-            except BrokenExecutor as error:
-                raise ExposureError(str(error)) from error
-            pixel_format = RGB8 if camera.colour else MONO8
-            return Picture(frame.width, frame.height, frame.payload, scene.time_s, pixel_format)
-
-        port = self._port(name, camera.port)
-        server = ImageServer(
-            HOST,
-            port,
-            take,
-            identity=f"fake-camera;{camera.serial};1.0",
-            exposure_us=self._scenario.optics[camera.optics].exposure_us,
-        )
-        return _frame_device(name, port, server)
-
-    def _look(self) -> RenderOptions:
-        rendering = self._scenario.rendering
-        assert rendering is not None  # the scenario's model demands it where there is a camera
-        return options_of(
-            rendering,
-            glare=self._scenario.size_of("glare"),
-            tilt_shading=self._scenario.size_of("tilt_shading"),
-        )
-
-    def _pool(self) -> ProcessPoolExecutor:
-        """One renderer for all cameras; a cell without cameras does without."""
-        if self._renderers is None:
-            self._renderers = make_pool()
-        return self._renderers
-
     # -- couplers -------------------------------------------------------------------------------
     def _gripper(self, name: str, gripper: Gripper) -> Device:
         jaws = self._world.jaws[name]
@@ -226,14 +151,6 @@ class DeviceRack:
     def _outputs(self, device: str) -> dict[str, Any]:
         """Outputs as they are driven now, by address."""
         return {"outputs": _known(self._couplers, device).outputs}
-
-
-def _frame_device(name: str, port: int, server: CfsServer) -> Device:
-    async def start() -> int:
-        await server.start()
-        return server.port
-
-    return Device(name, port, server.faults, start, server.stop)
 
 
 def _known(devices: Mapping[str, T], name: str) -> T:

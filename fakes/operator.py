@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fakes.control import Handler
-from fakes.devices import DeviceFaults
+from fakes.device import DeviceFaults
 from fakes.faults import FaultBoard
 from fakes.world.world import Command
 

@@ -200,7 +200,17 @@ class Camera(Section):
 
 
 class StereoCamera(Camera):
-    """A stereo head; its frame is that of its left camera."""
+    """A stereo head; its frame is that of its left camera.
+
+    Its serial number is that of both cameras, left and right, with a plus between them: a PC that
+    reads each of them by itself puts them together so, and that of a frame server does likewise.
+    """
+
+    @property
+    def serials(self) -> tuple[str, str]:
+        """Of the left and of the right camera; a head with one number has an L and an R to it."""
+        left, plus, right = self.serial.partition("+")
+        return (left, right) if plus else (f"{left}L", f"{left}R")
 
 
 class RingLamp(Section):

@@ -16,9 +16,11 @@ from fakes.demo import registry
 from fakes.demo.children import ChildFailed, Family
 from fakes.demo.control import Refused
 from fakes.demo.demo import Demo
+from fakes.demo.gentl import Cameras
 from fakes.demo.ports import PortInUse, check_ports
 from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, require_simulated
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
+from fakes.gentl.build import NoCompilerError
 from fakes.imperfections import UnknownImperfection, parsed_scale
 from fakes.scenes.registry import UnknownScene
 from fakes.sections import JobController
@@ -34,6 +36,7 @@ _REFUSALS = (
     registry.UnknownProcess,
     UnknownScene,
     UnknownImperfection,
+    NoCompilerError,
 )
 """Each of them is a sentence for the user."""
 
@@ -78,6 +81,13 @@ def demo(
         JobController | None,
         typer.Option(help="What all robot controllers do; default: what the scenario file says."),
     ] = None,
+    cameras: Annotated[
+        Cameras | None,
+        typer.Option(
+            help="How images come: as from GigE cameras, or from frame servers; default: gentl "
+            "where there is a C compiler."
+        ),
+    ] = None,
 ) -> None:
     """Run one job of a process on its fake cell; exit code 0 only for a good part.
 
@@ -94,6 +104,7 @@ def demo(
             out=out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}",
             imperfections=dict(parsed_scale(item) for item in imperfection or ()),
             robots=robots,
+            cameras=cameras,
         )
         _check(files)
         code = _run(shown, files, job, console, complaint)

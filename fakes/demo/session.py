@@ -11,12 +11,14 @@ from rich.console import Console
 from fakes.demo.children import Child, ChildFailed, Family
 from fakes.demo.control import Control
 from fakes.demo.demo import Demo
+from fakes.demo.gentl import Cameras, GentlPath, way_of_images
 from fakes.demo.live import LiveView
 from fakes.demo.outcome import collect, result_table
 from fakes.demo.page import DemoPage, write_settings
 from fakes.demo.safety import own_calibrations
 from fakes.demo.stored_results import StoredResults
 from fakes.demo.verdict import why_not_good
+from fakes.scenario import Scenario, load
 from fakes.sections import JobController
 
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
@@ -38,6 +40,8 @@ class Files:
     """Scales in place of those of the scenario file, by name."""
     robots: JobController | None = None
     """What all controllers do, in place of what the scenario file says."""
+    cameras: Cameras | None = None
+    """How images come to the daemon; None for the real way where this computer can build it."""
 
 
 def too_slow(lost_s: float, passed_s: float) -> str:
@@ -71,25 +75,34 @@ class Session:
         self._seed = seed
         self._begun_s = time.monotonic()
         self._daemon: Child | None = None
+        self._gentl: GentlPath | None = None
 
     def start_fake(self) -> None:
         """The fake cell, until all its devices listen."""
         self._console.print(
             f"{self._demo.title}: starting fake cell (seed {self._seed}) and daemon …"
         )
+        self._gentl, how = way_of_images(
+            self._files.cameras, self._files.cell, self._load_scenario, self._folder / "gentl"
+        )
+        if how:
+            self._console.print(how, markup=False)
         scenario, seed = str(self._files.scenario), str(self._seed)
         arguments = ["-m", "fakes", "run", "--scenario", scenario, "--seed", seed]
         for name, scale in self._files.imperfections.items():
             arguments += ["--imperfection", f"{name}={scale:g}"]
         if self._files.robots is not None:
             arguments += ["--robots", self._files.robots]
+        if self._gentl is not None:
+            arguments += ["--gentl", str(self._gentl.cameras)]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
         self._control = Control(int(ports["control"]))
 
     def start_daemon(self) -> None:
         """The daemon, until every device of its cell file is connected."""
         store = self._folder / "store"
-        command = ["-m", "cellctl", "run", str(self._files.cell), "--data-dir", str(store)]
+        cell = self._files.cell if self._gentl is None else self._gentl.cell
+        command = ["-m", "cellctl", "run", str(cell), "--data-dir", str(store)]
         calibrations = own_calibrations(self._files.cell, self._folder)
         if calibrations is not None:
             command += ["--calibration-dir", str(calibrations)]
@@ -122,6 +135,9 @@ class Session:
         closed = self._daemon.logged("run closed") if self._daemon is not None else None
         run = f"run {closed['run']} is closed as {closed['result']}; " if closed else ""
         return f"stopped: {run}daemon and fake cell have ended"
+
+    def _load_scenario(self) -> Scenario:
+        return load(self._files.scenario, self._files.imperfections)
 
     def _stay(self) -> int:
         data = f"--data-dir {self._folder / 'store'}"

@@ -1,7 +1,8 @@
 """The cameras that the fake GenTL producer shows, in a file that both have mapped.
 
 The layout is that of ``shared_state`` in ``producer/camera.h``. A camera draws images of its own,
-of which each pixel is known: see ``expected_image``.
+of which each pixel is known: see ``expected_image``. Or it looks into a fake cell, which exposes
+where ``images`` says: see ``fakes.gentl.exposures``.
 """
 
 import mmap
@@ -16,6 +17,8 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from fakes.gentl.formats import PFNC, Format
+
 ENVIRONMENT = "FAKE_GENTL_STATE"
 """Names the file to the producer."""
 
@@ -23,6 +26,7 @@ _MAGIC = 0x46474331
 _HEADER_BYTES = 256
 _CAMERAS = 8
 _TEXT_BYTES = 64
+_ADDRESS_BYTES = 64
 _WORDS = (
     "present", "width", "height", "pixel_format", "exposures", "drop", "lost", "incomplete",
     "stale", "slow_ms", "hang", "crash", "busy", "opened", "buffers",
@@ -31,16 +35,9 @@ _WORDS = (
 _RESERVED_WORDS = 11
 _CAMERA_BYTES = 4 * (len(_WORDS) + _RESERVED_WORDS) + 2 * _TEXT_BYTES
 
-Format = Literal["Mono8", "Mono12", "Mono12Packed", "BayerRG8"]
 Fault = Literal[
     "drop", "lost", "incomplete", "truncated", "stale", "slow_ms", "hang", "crash", "busy"
 ]
-_FORMATS = {
-    "Mono8": 0x01080001,
-    "Mono12": 0x01100005,
-    "Mono12Packed": 0x010C0006,
-    "BayerRG8": 0x01080009,
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +56,8 @@ class FakeCamera:
 class FakeCameras:
     """A file of cameras; a context that unmaps it."""
 
-    def __init__(self, path: Path, cameras: Sequence[FakeCamera]) -> None:
+    def __init__(self, path: Path, cameras: Sequence[FakeCamera], images: str = "") -> None:
+        """``images`` is the address of the fake cell that exposes; without one, cameras draw."""
         if not 0 < len(cameras) <= _CAMERAS:
             raise ValueError(f"1 to {_CAMERAS} cameras, not {len(cameras)}")
         self.path = path
@@ -67,11 +65,12 @@ class FakeCameras:
         path.write_bytes(bytes(_HEADER_BYTES + _CAMERAS * _CAMERA_BYTES))
         with path.open("r+b") as file:
             self._memory = mmap.mmap(file.fileno(), 0)
-        struct.pack_into("<II", self._memory, 0, _MAGIC, len(cameras))
+        header = (_MAGIC, len(cameras), images.encode())
+        struct.pack_into(f"<II{_ADDRESS_BYTES}s", self._memory, 0, *header)
         for camera in cameras:
             self._put(camera.serial, "width", camera.width)
             self._put(camera.serial, "height", camera.height)
-            self._put(camera.serial, "pixel_format", _FORMATS[camera.pixel_format])
+            self._put(camera.serial, "pixel_format", PFNC[camera.pixel_format])
             self._put(camera.serial, "address", int(IPv4Address(camera.address)))
             texts = self._at(camera.serial) + _CAMERA_BYTES - 2 * _TEXT_BYTES
             struct.pack_into(

@@ -13,7 +13,8 @@ from drivers.camera.frame_server.driver import FrameServerCamera
 from drivers.camera.gige.config import GigeCameraConfig, Selection
 from drivers.camera.gige.driver import GigeCamera
 from drivers.camera.gige.pixels import decoded
-from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Format, expected_image
+from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, expected_image
+from fakes.gentl.formats import Format
 from fakes.wire.cameras.image_server import ImageServer
 from tests.contracts.inprocess.camera import InProcessCamera
 from tests.contracts.suites.camera import CameraContract, SingleCameraBench

@@ -18,6 +18,12 @@ uint32_t camera_u32(const camera *self, uint32_t address) {
     return value;
 }
 
+double camera_f64(const camera *self, uint32_t address) {
+    double value;
+    memcpy(&value, self->registers + address, sizeof value);
+    return value;
+}
+
 static void set_u32(camera *self, uint32_t address, uint32_t value) {
     memcpy(self->registers + address, &value, sizeof value);
 }
@@ -36,7 +42,8 @@ size_t camera_line_bytes(const camera *self) {
     uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
     size_t width = camera_u32(self, REG_WIDTH);
     if (format == PFNC_MONO12_PACKED) return width / 2 * 3; /* widths are multiples of four */
-    return width * (format == PFNC_MONO12 ? 2 : 1) + LINE_PADDING;
+    size_t pixel = format == PFNC_RGB8 ? 3 : format == PFNC_MONO12 ? 2 : 1;
+    return width * pixel + LINE_PADDING;
 }
 
 size_t camera_image_bytes(const camera *self) { return camera_line_bytes(self) * camera_u32(self, REG_HEIGHT); }
@@ -48,6 +55,7 @@ void camera_power_up(camera *self, int index, camera_state *state) {
     self->index = index;
     self->state = state;
     self->losses_seen = state->losses;
+    self->exposures = -1;
     pthread_mutex_init(&self->mutex, NULL);
     /* Waits are measured on the clock that nobody sets. */
     pthread_condattr_t attributes;

@@ -11,6 +11,7 @@
 #define MAX_BUFFERS 64
 #define REGISTER_BYTES 1024
 #define TEXT_BYTES 64
+#define ADDRESS_BYTES 64
 #define XML_ADDRESS 0x10000u
 #define INTERFACE_ADDRESS 0xC0A80A01u /* 192.168.10.1 */
 #define INTERFACE_MASK 0xFFFFFF00u
@@ -40,7 +41,9 @@ typedef struct {
 } camera_state;
 
 typedef struct {
-    uint32_t magic, count, reserved[62];
+    uint32_t magic, count;
+    char images[ADDRESS_BYTES]; /* abstract address of the socket where a fake cell exposes; empty: images are drawn here */
+    uint32_t reserved[46];
     camera_state cameras[MAX_CAMERAS];
 } shared_state;
 
@@ -53,7 +56,10 @@ enum {
     REG_EXPOSURE_US = 0x40, REG_GAIN_DB = 0x48, REG_WIDTH_MAX = 0x50, REG_HEIGHT_MAX = 0x54, REG_PACKET_SIZE = 0x58,
     REG_PACKET_DELAY = 0x5C, REG_CHUNK_MODE = 0x64, REG_VENDOR = 0x80, REG_MODEL = 0xC0, REG_SERIAL = 0x100, REG_USER_ID = 0x140,
 };
-enum { PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009 };
+enum {
+    PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009,
+    PFNC_RGB8 = 0x02180014,
+};
 
 /* Bytes that a producer leaves at the end of each line; a packed image has none. */
 #ifndef LINE_PADDING
@@ -82,6 +88,7 @@ typedef struct camera {
     camera_state *state;
     uint8_t registers[REGISTER_BYTES];
     bool is_open, stream_open, acquiring, stream_running, ending, event_killed, event_registered;
+    int exposures; /* the socket where the fake cell exposes, -1 for none */
     uint32_t triggers, starts, line_seen, losses_seen;
     uint64_t frame_id, order, delivered, last_time_ns;
     frame_buffer buffers[MAX_BUFFERS];
@@ -102,6 +109,7 @@ void chunks_append(const camera *self, frame_buffer *buffer);
 GC_ERROR chunks_list(const frame_buffer *buffer, SINGLE_CHUNK_DATA *chunks, size_t *count);
 uint32_t camera_line(const camera *self);
 uint32_t camera_u32(const camera *self, uint32_t address);
+double camera_f64(const camera *self, uint32_t address);
 
 GC_ERROR stream_open(camera *self);
 void stream_close(camera *self);

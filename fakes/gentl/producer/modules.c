@@ -45,8 +45,14 @@ int seen_camera(uint32_t number) {
     return -1;
 }
 
+/* The file of a producer that was built for one set of cameras. */
+#ifndef STATE_FILE
+#define STATE_FILE NULL
+#endif
+
 static GC_ERROR map_state(void) {
     const char *path = getenv("FAKE_GENTL_STATE");
+    if (!path) path = STATE_FILE;
     if (!path) return fail(GC_ERR_ERROR, "FAKE_GENTL_STATE does not name the file of the fake cameras");
     int file = open(path, O_RDWR | O_CLOEXEC);
     if (file < 0) return fail(GC_ERR_IO, "the file of the fake cameras cannot be opened");

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "camera.h"
+#include "cell_images.h"
 
 static uint16_t deep_value(uint32_t level) { return (uint16_t)((16 * level + 5) & 0x0FFF); }
 
@@ -30,7 +31,7 @@ static void draw_packed(uint8_t *line, uint32_t width, uint32_t level) {
 }
 
 /* Any image tells its camera and its frame number, so that a test knows every pixel: see fakes/gentl/cameras.py. */
-static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
+static void draw(camera *self, frame_buffer *buffer, uint64_t frame_id) {
     uint32_t width = camera_u32(self, REG_WIDTH), height = camera_u32(self, REG_HEIGHT);
     uint32_t left = camera_u32(self, REG_OFFSET_X), top = camera_u32(self, REG_OFFSET_Y);
     uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
@@ -43,7 +44,7 @@ static void expose(camera *self, frame_buffer *buffer, uint64_t frame_id) {
         else if (format == PFNC_MONO12_PACKED)
             draw_packed(line, width, level);
         else
-            draw_8(line, width, level);
+            draw_8(line, format == PFNC_RGB8 ? 3 * width : width, level);
     }
 }
 
@@ -61,47 +62,49 @@ static bool due(const camera *self) {
     return camera_u32(self, REG_TRIGGER_MODE) ? self->triggers > 0 : true;
 }
 
-static void pause_us(camera *self, uint64_t microseconds) {
+static void wait_until(camera *self, uint64_t until_ns) {
+    uint64_t now = now_ns();
+    if (now >= until_ns) return;
     pthread_mutex_unlock(&self->mutex);
-    usleep((useconds_t)microseconds);
+    usleep((useconds_t)((until_ns - now) / 1000));
     pthread_mutex_lock(&self->mutex);
 }
 
-static void take(camera *self) {
-    bool triggered = camera_u32(self, REG_TRIGGER_MODE) != 0;
-    if (triggered) self->triggers--;
-    double exposure_us;
-    memcpy(&exposure_us, self->registers + REG_EXPOSURE_US, sizeof exposure_us);
-    /* A free-running camera of 50 images a second. */
-    uint32_t starts = self->starts;
-    self->state->strobes++;
-    uint64_t took_us = triggered ? (uint64_t)exposure_us : 20000;
-    pause_us(self, took_us + 1000ull * self->state->slow_ms);
-    /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
-    if (!self->acquiring || self->starts != starts || camera_lost(self)) return;
-    frame_buffer *buffer = first(self, INPUT);
-    bool again = self->state->stale > 0;
-    if (again)
-        self->state->stale--;
-    else {
-        self->frame_id++;
-        self->last_time_ns = now_ns();
-        self->state->exposures++;
-    }
-    if (!buffer || buffer->size < camera_payload(self)) return; /* nobody has given room: it is lost */
-    expose(self, buffer, self->frame_id);
-    buffer->filled = camera_payload(self);
-    if (self->state->truncated) {
-        self->state->truncated--;
-        buffer->filled /= 2;
-    }
-    buffer->incomplete = self->state->incomplete > 0;
-    if (buffer->incomplete) {
-        self->state->incomplete--;
-        memset(buffer->base + buffer->filled / 2, 0, buffer->filled - buffer->filled / 2);
-    }
+/* Once for each image that a test has asked for. */
+static bool used(volatile uint32_t *count) {
+    bool more = *count > 0;
+    if (more) --*count;
+    return more;
+}
+
+/* The image and its size; a piece of it for one that misses packets. */
+static bool fill(camera *self, frame_buffer *buffer, const cell_image *image) {
     buffer->width = camera_u32(self, REG_WIDTH);
     buffer->height = camera_u32(self, REG_HEIGHT);
+    buffer->filled = camera_payload(self);
+    if (buffer->size < buffer->filled) return false;
+    if (cell_is_there()) {
+        if (!cell_fill(image, buffer)) return false;
+        buffer->width = image->answer.width;
+        buffer->height = image->answer.height;
+        buffer->filled = image->answer.size;
+    } else
+        draw(self, buffer, self->frame_id);
+    if (used(&self->state->truncated)) buffer->filled /= 2;
+    if (buffer->incomplete) memset(buffer->base + buffer->filled / 2, 0, buffer->filled - buffer->filled / 2);
+    return true;
+}
+
+static void deliver(camera *self, uint64_t ended_ns, const cell_image *image) {
+    if (!used(&self->state->stale) && image->answer.outcome != CELL_STALE) {
+        self->frame_id++;
+        self->last_time_ns = ended_ns;
+        self->state->exposures++;
+    }
+    frame_buffer *buffer = first(self, INPUT);
+    if (!buffer) return; /* nobody has given room: it is lost */
+    buffer->incomplete = used(&self->state->incomplete) || image->answer.outcome == CELL_INCOMPLETE;
+    if (!fill(self, buffer, image)) return;
     buffer->offset_x = camera_u32(self, REG_OFFSET_X);
     buffer->offset_y = camera_u32(self, REG_OFFSET_Y);
     buffer->pixel_format = camera_u32(self, REG_PIXEL_FORMAT);
@@ -114,6 +117,23 @@ static void take(camera *self) {
     buffer->order = ++self->order;
     self->delivered++;
     pthread_cond_broadcast(&self->changed);
+}
+
+static void take(camera *self) {
+    bool triggered = camera_u32(self, REG_TRIGGER_MODE) != 0;
+    if (triggered) self->triggers--;
+    /* A free-running camera of 50 images a second. */
+    uint64_t took_us = triggered ? (uint64_t)camera_f64(self, REG_EXPOSURE_US) : 20000;
+    took_us += 1000ull * self->state->slow_ms;
+    uint32_t starts = self->starts;
+    self->state->strobes++;
+    uint64_t begun_ns = now_ns(), ended_ns = begun_ns + 1000 * took_us; /* what a cell takes to render is no time of it */
+    cell_image image = {.block = -1};
+    bool exposed = !cell_is_there() || cell_expose(self, starts, begun_ns, &image);
+    wait_until(self, ended_ns);
+    /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
+    if (exposed && self->acquiring && self->starts == starts && !camera_lost(self)) deliver(self, ended_ns, &image);
+    cell_let_go(&image);
 }
 
 static bool by_wire(const camera *self) {
@@ -166,6 +186,7 @@ void stream_close(camera *self) {
     pthread_cond_broadcast(&self->changed);
     pthread_mutex_unlock(&self->mutex);
     pthread_join(self->thread, NULL);
+    cell_hang_up(self);
     self->stream_open = false;
 }
 

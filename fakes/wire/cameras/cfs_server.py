@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from fakes.wire.cameras.frame_server_faults import FrameFaults
+from fakes.wire.cameras.rendering import ExposureError
 
 _REQUEST: Final = struct.Struct(">4sHHII")
 _REPLY: Final = struct.Struct(">4sHHIIQIHHHHII")
@@ -30,10 +31,6 @@ _ENDS: Final = (ConnectionError, asyncio.IncompleteReadError, TimeoutError)
 """How a client goes: closed, closed within a request, or no longer reading."""
 _DEPARTURE_S: Final = 0.1
 """A newcomer waits this long for a client that has just closed its end."""
-
-
-class ExposureError(Exception):
-    """The cameras could not expose; the client is told of a camera fault."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,13 +4,12 @@ The scene is taken when the request arrives; rendering runs in a pool of worker 
 event loop of the fake cell never waits for it.
 """
 
-import asyncio
 from collections.abc import Callable
-from concurrent.futures import BrokenExecutor, Executor
+from concurrent.futures import Executor
 
 from fakes.render.options import RenderOptions
-from fakes.render.worker import render_frame
-from fakes.wire.cameras.cfs_server import CfsServer, ExposureError, Reply
+from fakes.wire.cameras.cfs_server import CfsServer, Reply
+from fakes.wire.cameras.rendering import rendered
 from fakes.world.scene import CameraScene
 
 
@@ -43,13 +42,7 @@ class FrameServer(CfsServer):
         scene = self._scene()
         self._frame_id += 1
         frame_id = self._frame_id
-        loop = asyncio.get_running_loop()
-        try:
-            frame = await loop.run_in_executor(
-                self._pool, render_frame, scene, self._options, faults
-            )
-        except BrokenExecutor as error:
-            raise ExposureError("the process that renders has died") from error
+        frame = await rendered(self._pool, scene, self._options, faults)
         return Reply(
             request_id=0,
             frame_id=frame_id,

@@ -13,7 +13,8 @@ from cellctl.interfaces.camera import PixelFormat
 from drivers.camera.gige.config import GigeCameraConfig, Region, Selection
 from drivers.camera.gige.features import Features
 from fakes.gentl.build import SOURCES, build_producer
-from fakes.gentl.cameras import FakeCameras, Format, expected_image
+from fakes.gentl.cameras import FakeCameras, expected_image
+from fakes.gentl.formats import Format
 from tests.wire.gige.conftest import LEFT, camera
 
 AUTOMATIC = """

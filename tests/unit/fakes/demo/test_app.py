@@ -63,6 +63,16 @@ def test_an_occupied_port_is_named_with_what_to_do(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_way_of_the_images_that_cannot_be_built_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("fakes.gentl.build.shutil.which", lambda _name: None)
+    own = OwnCell.make(tmp_path)
+    files = ("--scenario", str(own.scenario), "--cell", str(own.cell))
+    said = refused(*files, "--out", str(tmp_path / "out"), "--cameras", "gentl")
+    assert said == "no C compiler (cc) on this machine\n"
+
+
 def test_an_unknown_scene_names_those_that_there_are(tmp_path: Path) -> None:
     scenario = tmp_path / "scenario.toml"
     scenario.write_text('scene = "moon"\n')

@@ -1,0 +1,154 @@
+"""A demonstration whose images come through the fake GenTL producer, harvesters and `gige`."""
+
+import json
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from fakes.gentl.build import NoCompilerError, build_producer
+from fakes.gentl.cameras import FakeCamera
+from fakes.gentl.shown import shown
+from fakes.scenario import Scenario
+
+Cameras = Literal["gentl", "frame-server"]
+"""How the images of the fake cell come to the daemon."""
+
+_SECTIONS = ("stereo_cameras", "cameras")
+_DRIVER, _REPLACED = "gige", "frame-server"
+_BETWEEN_TRIGGERS_S = 0.5
+"""A real pair of cameras has 5 ms; fake cell, renderer and daemon share two processors."""
+_REPLY_TIMEOUT_S = 60.0
+
+
+@dataclass(frozen=True, slots=True)
+class GentlPath:
+    """What fake cell and daemon need for this path of the images."""
+
+    cameras: Path
+    """The file that shows the cameras to the producer; the fake cell writes it."""
+    cell: Path
+    """The cell file with the driver `gige` in place of frame servers."""
+
+
+def way_of_images(
+    wanted: Cameras | None, cell: Path, load: Callable[[], Scenario], folder: Path
+) -> tuple[GentlPath | None, str]:
+    """How images come, and a sentence for the user where there is a choice; None: as they did.
+
+    Without a wish it is the producer, where this computer can build it. ``load`` reads the
+    scenario, ``folder`` takes what is made. Raises ``NoCompilerError`` for a wish that cannot be
+    met.
+    """
+    written = _read(cell)
+    if not any(True for _ in _frame_servers(written)):
+        return None, ""
+    if wanted == "frame-server":
+        return None, "images come from frame servers"
+    scenario = load()
+    if wanted is None and (name := _head_with_one_number(scenario)):
+        return None, (
+            f"{name} has one serial number, which its calibrations name: images come from frame "
+            "servers. With those of both its cameras (LEFT+RIGHT) they would come through GenTL"
+        )
+    try:
+        path = _prepared(written, cell.absolute(), scenario, folder.absolute())
+    except NoCompilerError as error:
+        if wanted is not None:
+            raise
+        reason = str(error).partition("\n")[0]
+        return None, f"{reason}: images come from frame servers, not through GenTL"
+    return path, "images come through a GenTL producer, as from GigE cameras"
+
+
+def _head_with_one_number(scenario: Scenario) -> str:
+    """Behind a producer it would get another one, and no calibration would fit it any more."""
+    heads = scenario.stereo_cameras.items()
+    return next((name for name, head in heads if "+" not in head.serial), "")
+
+
+def _read(cell: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(cell.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return {}  # the daemon says what is wrong with it
+
+
+def _prepared(written: dict[str, Any], cell: Path, scenario: Scenario, folder: Path) -> GentlPath:
+    """The producer compiled, and the cell file written where its relative paths hold too."""
+    folder.mkdir(exist_ok=True)
+    state = folder / "cameras"
+    # Named in the producer itself, so that every program that loads it finds the same cameras.
+    producer = build_producer(folder, f'-DSTATE_FILE="{state}"')
+    there = shown(scenario)
+    for name, section in _frame_servers(written):
+        if name not in there:
+            continue  # the daemon says that it does not answer
+        optics = scenario.optics[scenario.all_cameras()[name].optics]
+        section["driver"] = _DRIVER
+        section["settings"] = {
+            **_chosen(there[name]),
+            "producers": [str(producer)],
+            "pixel_format": there[name][0].pixel_format,
+            "exposure_s": optics.exposure_us / 1e6,
+            "connect_timeout_s": _REPLY_TIMEOUT_S,
+            "image_timeout_s": section.get("settings", {}).get("reply_timeout_s", _REPLY_TIMEOUT_S),
+            "tries": 1,
+        }
+    changed = _beside_the_same_files(cell, folder / "cell")
+    changed.write_text(_toml_document(written), encoding="utf-8")
+    return GentlPath(state, changed)
+
+
+def _beside_the_same_files(cell: Path, folder: Path) -> Path:
+    """A place for another cell file, with links to what lies beside this one."""
+    folder.mkdir(exist_ok=True)
+    for path in cell.parent.iterdir():
+        link = folder / path.name
+        if path != cell and path not in folder.parents and not link.is_symlink():
+            link.symlink_to(path)
+    return folder / cell.name
+
+
+def _frame_servers(written: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    for section in _SECTIONS:
+        for name, device in written.get(section, {}).items():
+            if device.get("driver") == _REPLACED and device.get("simulated") is True:
+                yield name, device
+
+
+def _chosen(lenses: tuple[FakeCamera, ...]) -> dict[str, Any]:
+    """Which cameras the device is made of."""
+    names = ("camera",) if len(lenses) == 1 else ("left", "right")
+    chosen: dict[str, Any] = {
+        name: {"serial_number": lens.serial} for name, lens in zip(names, lenses, strict=True)
+    }
+    return chosen if len(lenses) == 1 else chosen | {"max_difference_s": _BETWEEN_TRIGGERS_S}
+
+
+def _toml_document(written: Mapping[str, Any]) -> str:
+    """A line for each key of the top, a table for each device."""
+    lines = [f"{_toml(key)} = {_toml(value)}" for key, value in written.items() if not _deep(value)]
+    for section, devices in written.items():
+        if not _deep(devices):
+            continue
+        for name, keys in devices.items():
+            lines += ["", f"[{_toml(section)}.{_toml(name)}]"]
+            lines += [f"{_toml(key)} = {_toml(value)}" for key, value in keys.items()]
+    return "\n".join(lines) + "\n"
+
+
+def _deep(value: Any) -> bool:
+    return isinstance(value, dict) and all(isinstance(item, dict) for item in value.values())
+
+
+def _toml(value: Any) -> str:
+    """A value in one line; strings, numbers and truth values are those of JSON."""
+    if isinstance(value, dict):
+        return (
+            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
+        )
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_toml, value)) + "]"
+    return json.dumps(value, ensure_ascii=False)
