@@ -201,6 +201,16 @@ def test_every_file_that_is_named_exists(page: Path) -> None:
     assert [path for path in paths if not (ROOT / path).exists()] == []
 
 
+def test_every_place_on_the_architecture_page_exists() -> None:
+    # The page leaves the name of the package out; names that stand for any are in <angles>.
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    named = [one for one in _INLINE.findall(text) if re.fullmatch(r"[a-z_]+/[\w./]*", one)]
+    homes = (ROOT, ROOT / "cellctl", *(ROOT / "cellctl" / "processes").glob("*/"))
+    missing = [one for one in named if not any((home / one).exists() for home in homes)]
+    assert len(named) > 40
+    assert missing == []
+
+
 def test_every_test_that_is_named_exists() -> None:
     tests = "\n".join(path.read_text("utf-8") for path in (ROOT / "tests").rglob("*.py"))
     known = set(re.findall(r"def (test_\w+)\(", tests))
