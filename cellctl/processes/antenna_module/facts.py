@@ -25,15 +25,14 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
     RP_OVER_SIGMA,
     ArmFigures,
     CameraFigures,
+    DrawingIdentities,
     MountedCamera,
     PlugCell,
 )
+from cellctl.processes.antenna_module.chain.made_with import MadeWith, ReferenceMadeWith
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
-from cellctl.processes.antenna_module.chain.taught import MadeWith, PlugCorrection
-from cellctl.processes.antenna_module.chain.taught_reference import (
-    ReferenceMadeWith,
-    TaughtReference,
-)
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.drawings import Drawings, Plate, read_drawings, read_plate
 from cellctl.processes.antenna_module.faults.plugging import (
     CalibrationsDoNotBelongTogether,
@@ -99,12 +98,13 @@ async def read_facts(
     if scheme.taught and correction is None and not teaching:
         raise CalibrationMissing(f"{kind.name}: the scheme {scheme.name} needs taught plugs")
     drawings = read_drawings(recipe, cell.cell.folder)
-    plug_cell = plug_cell_of(snapshot, cell.settings, recipe, drawings)
-    plate = cell.settings.reference
+    section = cell.settings.reference
+    plate = None if section is None else read_plate(section, cell.cell.folder)
+    plug_cell = plug_cell_of(snapshot, cell.settings, recipe, drawings, plate)
     if correction is not None and not teaching:
         # Now and not only when it is planned: by then a module hangs in the gripper.
         plug, socket = drawings.plug.name, drawings.socket.name
-        correction.require_made_with(MadeWith.of(scheme.name, plug_cell, plug, socket))
+        correction.made_with.require(MadeWith.of(scheme.name, plug_cell, plug, socket))
     return PluggingFacts(
         cell=cell,
         recipe=recipe,
@@ -115,7 +115,7 @@ async def read_facts(
         scheme=scheme,
         correction=correction,
         drawings=drawings,
-        plate=None if plate is None else read_plate(plate, cell.cell.folder),
+        plate=plate,
         reference=None if plate is None or teaching else _reference(snapshot, plug_cell),
     )
 
@@ -125,7 +125,7 @@ def _reference(snapshot: CalibrationSnapshot, plug_cell: PlugCell) -> TaughtRefe
     reference = snapshot.find(REFERENCE)
     if reference is None:
         raise CalibrationMissing(f"{REFERENCE.name}: none that is valid, procedure 205 teaches it")
-    reference.require_made_with(ReferenceMadeWith.of(plug_cell))
+    reference.made_with.require(ReferenceMadeWith.of(plug_cell))
     return reference
 
 
@@ -134,6 +134,7 @@ def plug_cell_of(
     settings: AntennaSettings,
     recipe: AntennaRecipe,
     drawings: Drawings,
+    plate: Plate | None,
 ) -> PlugCell:
     """What the chain works with; raises ``CalibrationsDoNotBelongTogether``."""
     arm, cameras = settings.arm, settings.cameras
@@ -153,6 +154,13 @@ def plug_cell_of(
         ),
         gripper=drawings.gripper.name,
         flange_T_marks=pose_from_xyzabc(recipe.flange_T_marks),
+        drawings=DrawingIdentities(
+            plug=drawings.plug.places_id,
+            socket=drawings.socket.places_id,
+            gripper=drawings.gripper.places_id,
+            plate_above="" if plate is None else plate.above.places_id,
+            plate_below="" if plate is None else plate.below.places_id,
+        ),
     )
 
 

@@ -59,6 +59,17 @@ class MountedCamera:
     """flange_T_cam1 or base_T_cam2."""
 
 
+@dataclass(frozen=True, slots=True)
+class DrawingIdentities:
+    """Of what the drawings say of places; empty where a drawing is not known or not there."""
+
+    plug: str = ""
+    socket: str = ""
+    gripper: str = ""
+    plate_above: str = ""
+    plate_below: str = ""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class PlugCell:
     """Everything that a scheme may use besides the looks."""
@@ -73,3 +84,4 @@ class PlugCell:
     """Name in the drawing of the gripper's marks, wherever its file lies."""
     flange_T_marks: RigidTransform = field(default_factory=RigidTransform.identity)
     """Of the gripper's marks by its drawing; what it is wrong by is taught."""
+    drawings: DrawingIdentities = DrawingIdentities()

@@ -17,6 +17,7 @@ from cellctl.processes.antenna_module.chain.compose import (
     target_pose,
 )
 from cellctl.processes.antenna_module.chain.looks import Looks
+from cellctl.processes.antenna_module.chain.made_with import MadeWith
 from cellctl.processes.antenna_module.chain.requirements import (
     require_fresh,
     require_one_set,
@@ -24,7 +25,7 @@ from cellctl.processes.antenna_module.chain.requirements import (
     require_wrist,
 )
 from cellctl.processes.antenna_module.chain.schemes import Scheme, base_T_socket
-from cellctl.processes.antenna_module.chain.taught import MadeWith, PlugCorrection, TaughtSlot
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection, TaughtSlot
 from cellctl.processes.antenna_module.chain.termed_pose import Term
 from cellctl.processes.antenna_module.chain.worst_contact import (
     WorstContact,
@@ -156,7 +157,7 @@ def _slot(
     if correction is None:
         raise CalibrationMissing(f"the scheme {scheme.name} needs a taught plug correction")
     plug, socket = looks.plug.connector, looks.sockets[0].connector
-    correction.require_made_with(MadeWith.of(scheme.name, cell, plug, socket))
+    correction.made_with.require(MadeWith.of(scheme.name, cell, plug, socket))
     require_wrist(wrist, correction.wrist)
     return correction.slot_for(base_T_socket(looks, cell, scheme).pose)
 

@@ -12,49 +12,10 @@ from cellctl.calibration.pose_record import matrix_mm_to_pose, pose_from_record,
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.wrist import WRIST_JOINTS
-from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
+from cellctl.processes.antenna_module.chain.made_with import MadeWith
 from cellctl.processes.antenna_module.faults.plugging import (
-    CalibrationsDoNotBelongTogether,
     OutOfTaughtRange,
 )
-
-
-@dataclass(frozen=True, slots=True)
-class MadeWith:
-    """What a correction belongs to; another one of any of these makes it worthless."""
-
-    scheme: str
-    cam1: str
-    """Identity of the hand-eye calibration of camera I."""
-    cam2: str
-    camera_1: str
-    """Identity of the intrinsics of camera I."""
-    camera_2: str
-    gripper: str
-    connector: str
-    """Names of plug and socket."""
-
-    @classmethod
-    def of(cls, scheme: str, cell: PlugCell, plug: str, socket: str) -> "MadeWith":
-        """What a teaching or a plan uses."""
-        return cls(
-            scheme=scheme,
-            cam1=cell.cam1.id,
-            cam2=cell.cam2.id,
-            camera_1=cell.cam1.camera_id,
-            camera_2=cell.cam2.camera_id,
-            gripper=cell.gripper,
-            connector=f"{plug} in {socket}",
-        )
-
-    def to_record(self) -> dict[str, str]:
-        """Plain data."""
-        return {name: getattr(self, name) for name in self.__slots__}
-
-    @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> "MadeWith":
-        """The inverse of ``to_record``."""
-        return cls(**{name: str(record[name]) for name in cls.__slots__})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,13 +68,6 @@ class PlugCorrection:
                 f"allowed {self.range_m / MM:.0f} mm"
             )
         return self.slots[nearest], distances[nearest]
-
-    def require_made_with(self, used: MadeWith) -> None:
-        """Raise ``CalibrationsDoNotBelongTogether``, naming what differs."""
-        now, then = used.to_record(), self.made_with.to_record()
-        other = [f"{key} {then[key]}, now {now[key]}" for key in now if now[key] != then[key]]
-        if other:
-            raise CalibrationsDoNotBelongTogether(f"correction taught with {'; '.join(other)}")
 
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""

@@ -8,36 +8,10 @@ import numpy as np
 
 from cellctl.calibration.checks import Checks, all_passed, checks_from_record, evidence_to_record
 from cellctl.geometry.pose import MM
-from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
+from cellctl.processes.antenna_module.chain.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.chain.reference_check import ReferenceReading
-from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 
 _PLACES = ("axis_in_camera_2", "marks_from_axis", "plate_in_camera_1", "plate_in_camera_2")
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceMadeWith:
-    """What the places of a reference were computed with; they do not compare without it."""
-
-    cam1: str
-    """Identity of the hand-eye calibration of camera I."""
-    cam2: str
-    gripper: str
-    """Name of the drawing of its marks, wherever its file lies."""
-
-    @classmethod
-    def of(cls, cell: PlugCell) -> "ReferenceMadeWith":
-        """What a check uses."""
-        return cls(cell.cam1.id, cell.cam2.id, cell.gripper)
-
-    def to_record(self) -> dict[str, str]:
-        """Plain data."""
-        return {name: getattr(self, name) for name in self.__slots__}
-
-    @classmethod
-    def from_record(cls, record: Mapping[str, Any]) -> "ReferenceMadeWith":
-        """The inverse of ``to_record``."""
-        return cls(**{name: str(record[name]) for name in cls.__slots__})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,13 +28,6 @@ class TaughtReference:
     def passed(self) -> bool:
         """The verdict."""
         return all_passed(self.checks)
-
-    def require_made_with(self, used: ReferenceMadeWith) -> None:
-        """Raise ``CalibrationsDoNotBelongTogether``, naming what differs."""
-        now, then = used.to_record(), self.made_with.to_record()
-        other = [f"{key} {then[key]}, now {now[key]}" for key in now if now[key] != then[key]]
-        if other:
-            raise CalibrationsDoNotBelongTogether(f"reference taught with {'; '.join(other)}")
 
     def to_record(self) -> dict[str, Any]:
         """Plain data: mm."""

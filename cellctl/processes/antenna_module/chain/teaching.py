@@ -13,9 +13,10 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import PlugCell, isotropic
 from cellctl.processes.antenna_module.chain.compose import taught_socket_T_plug
 from cellctl.processes.antenna_module.chain.looks import Looks
+from cellctl.processes.antenna_module.chain.made_with import MadeWith
 from cellctl.processes.antenna_module.chain.requirements import require_one_set, require_one_wrist
 from cellctl.processes.antenna_module.chain.schemes import Scheme, base_T_socket
-from cellctl.processes.antenna_module.chain.taught import MadeWith, PlugCorrection, TaughtSlot
+from cellctl.processes.antenna_module.chain.taught import PlugCorrection, TaughtSlot
 from cellctl.processes.antenna_module.faults.calibration import TeachScatter, TooFewTeachings
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 

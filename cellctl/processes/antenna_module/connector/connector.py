@@ -26,6 +26,9 @@ from cellctl.processes.antenna_module.faults.connector import ConnectorFileInval
 
 Kind = Literal["pins", "holes"]
 _FEWEST = 3
+_PLACES = frozenset(
+    {"kind", "diameter_mm", "length_mm", "rim_depth_mm", "chamfer_mm", "seat_depth_mm", "contact"}
+)
 _LIMIT_N = Field(gt=0, le=1000)
 
 
@@ -64,6 +67,9 @@ class Connector:
     """Axial force of a good plugging: least and greatest."""
     outline_m: tuple[float, float]
     """Sides of the insulator along x and y."""
+    places_id: str
+    """Identity of everything that says where contacts are and where the connector sits. Forces and
+    tolerances are not in it: what was taught holds with others, too."""
 
     @property
     def least_spacing_m(self) -> float:
@@ -187,6 +193,7 @@ def parse_connector(content: bytes, name: str) -> Connector:
         spring_depth_m=table.spring_depth_mm * MM,
         force_n=table.force_n,
         outline_m=(table.outline_mm[0] * MM, table.outline_mm[1] * MM),
+        places_id=table.id_of(_PLACES),
     )
 
 

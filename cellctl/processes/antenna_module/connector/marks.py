@@ -29,6 +29,9 @@ from cellctl.processes.antenna_module.connector.toml_file import (
 from cellctl.processes.antenna_module.faults.connector import MarksFileInvalid
 
 _FEWEST = 3
+_PLACES = frozenset(
+    {"kind", "diameter_mm", "height_mm", "connector_mm", "connector_yaw_deg", "mark"}
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,6 +52,8 @@ class Marks:
     within_m: float
     """How far off its place a plug may be gripped."""
     within_rad: float
+    places_id: str
+    """Identity of everything that says where the marks are."""
 
 
 class _MarkTable(Table):
@@ -116,4 +121,5 @@ def parse_marks(content: bytes, name: str) -> Marks:
         marks_T_connector=RigidTransform.from_components(place_m, turn),
         within_m=table.within_mm * MM,
         within_rad=float(np.radians(table.within_deg)),
+        places_id=table.id_of(_PLACES),
     )

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from cellctl.calibration.input_file import error_words
+from cellctl.sealed_json import content_id
 
 PositiveMm = Annotated[float, Field(gt=0, le=1000)]
 Coordinate = Annotated[float, Field(ge=-1000, le=1000)]
@@ -19,6 +20,10 @@ class Table(BaseModel):
     """A table of a drawing. A misspelt key is a mistake, not something to be ignored."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, strict=True)
+
+    def id_of(self, keys: frozenset[str]) -> str:
+        """SHA-256 of these keys, whatever else the file says and how it is laid out."""
+        return content_id(self.model_dump(mode="json", include=set(keys)))
 
 
 M = TypeVar("M", bound=Table)

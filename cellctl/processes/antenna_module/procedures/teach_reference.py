@@ -1,13 +1,11 @@
 """Procedure 205: where axis, gripper marks and plate are, for later checks to compare with."""
 
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, REFERENCE
+from cellctl.processes.antenna_module.chain.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.chain.reference_check import (
     require_nothing_moved,
 )
-from cellctl.processes.antenna_module.chain.taught_reference import (
-    ReferenceMadeWith,
-    TaughtReference,
-)
+from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
 from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moving import Mover
@@ -65,7 +63,7 @@ async def teach_reference_on_cell(
 
 def _since_last_time(facts: PluggingFacts, taught: TaughtReference) -> tuple[str, ...]:
     before = facts.calibrations.find(REFERENCE)
-    if before is None or before.made_with != taught.made_with:
+    if before is None or before.made_with.differences(taught.made_with):
         return ()
     warmed = require_nothing_moved(before.reading, taught.reading, facts.plug_cell.arm.drift_m)
     return () if warmed is None else (f"arm has warmed up since the last time: {warmed.detail}",)

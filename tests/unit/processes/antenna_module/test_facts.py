@@ -93,8 +93,44 @@ async def test_a_file_may_be_renamed(folder: Folder) -> None:
     assert (await folder.facts()).correction is not None
 
 
+async def test_limits_of_a_drawing_may_change(folder: Folder) -> None:
+    """What was taught is a place; forces, tolerances and words are nothing of it."""
+    pins = "connectors/micro-d-15-pins.toml"
+    folder.replace(pins, "true_position_mm = ", "true_position_mm = 0.5e-2 # was ")
+    assert (await folder.facts()).correction is not None
+
+
+async def test_a_correction_of_an_earlier_version_knows_no_drawings(folder: Folder) -> None:
+    content = folder.record("plug_correction_1")
+    for key in ("plug_drawing", "socket_drawing", "gripper_drawing"):
+        del content["record"]["made_with"][key]
+    folder.store("plug_correction_1", content)
+    moved_pin(folder)
+    assert (await folder.facts()).correction is not None
+
+
 def foreign_gripper(folder: Folder) -> None:
     folder.replace("connectors/gripper.toml", 'name = "gripper"', 'name = "gripper 2"')
+
+
+def moved_pin(folder: Folder) -> None:
+    """The name stays: somebody has corrected the drawing."""
+    folder.replace(
+        "connectors/micro-d-15-pins.toml", "position_mm = [-4.445,", "position_mm = [-4.435,"
+    )
+
+
+def moved_hole(folder: Folder) -> None:
+    folder.replace("connectors/micro-d-15-holes.toml", "seat_depth_mm = 2.5", "seat_depth_mm = 2.4")
+
+
+def moved_mark(folder: Folder) -> None:
+    folder.replace("connectors/gripper.toml", "position_mm = [-24.0,", "position_mm = [-24.1,")
+
+
+def moved_dot(folder: Folder) -> None:
+    drawing = "connectors/reference-plate-above.toml"
+    folder.replace(drawing, "diameter_mm = 1.2", "diameter_mm = 1.3")
 
 
 def foreign_connector(folder: Folder) -> None:
@@ -144,6 +180,10 @@ def exchanged_camera(folder: Folder) -> None:
 MISTAKES: dict[str, tuple[Callable[[Folder], None], type[CellError], str]] = {
     "gripper": (foreign_gripper, CalibrationsDoNotBelongTogether, "gripper gripper, now gripper 2"),
     "connector": (foreign_connector, CalibrationsDoNotBelongTogether, "now other-micro-d-15 in"),
+    "pin": (moved_pin, CalibrationsDoNotBelongTogether, "correction taught with plug_drawing"),
+    "hole": (moved_hole, CalibrationsDoNotBelongTogether, "correction taught with socket_drawing"),
+    "mark": (moved_mark, CalibrationsDoNotBelongTogether, "correction taught with gripper_drawing"),
+    "dot": (moved_dot, CalibrationsDoNotBelongTogether, "reference taught with plate_above_draw"),
     "drawings": (exchanged_drawings, ConfigInvalid, "plug: .* has holes, not pins"),
     "intrinsics": (exchanged_intrinsics, CalibrationsDoNotBelongTogether, "base_T_cam2 was made"),
     "changed": (changed_intrinsics, CalibrationRecordInvalid, "camera_2: .*was changed"),

@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.processes.antenna_module.chain.taught_reference import (
-    ReferenceMadeWith,
-    TaughtReference,
-)
+from cellctl.processes.antenna_module.chain.made_with import ReferenceMadeWith
+from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
 from tests.unit.processes.antenna_module.chain.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import ARM, drawn_looks
@@ -46,6 +44,6 @@ def test_a_damaged_record_is_refused(taught: TaughtReference, damage: dict[str, 
 
 def test_it_does_not_compare_with_other_calibrations(taught: TaughtReference) -> None:
     now = ReferenceMadeWith.of(cell())
-    taught.require_made_with(now)
+    taught.made_with.require(now)
     with pytest.raises(CalibrationsDoNotBelongTogether, match="cam1 hand-eye 1, now hand-eye 9"):
-        taught.require_made_with(replace(now, cam1="hand-eye 9"))
+        taught.made_with.require(replace(now, cam1="hand-eye 9"))
