@@ -37,6 +37,10 @@ class RobotLayer(Robot):
         """Those of the robot behind it."""
         return self._robot.link_facts()
 
+    def round_trips_s(self) -> tuple[float, ...]:
+        """Those of the robot behind it."""
+        return self._robot.round_trips_s()
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """As the robot behind it."""
         return await self._robot.move_joint(joints_rad, speed_ratio=speed_ratio)

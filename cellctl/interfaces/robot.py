@@ -128,6 +128,13 @@ class Robot(Device):
         """
         return {}
 
+    def round_trips_s(self) -> tuple[float, ...]:
+        """How long the newest questions or commands waited for their first answer, in s.
+
+        Asked by `cellctl robot`; empty where a driver does not measure it, or had none yet.
+        """
+        return ()
+
     @abstractmethod
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """Joint motion to shape (6,) at a ratio (0, 1] of the rated speed."""

@@ -1,16 +1,20 @@
 """Measures how long a robot takes to stop at the speeds of contact."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
-from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.calibration.store.envelope import read_calibration
+from cellctl.calibration.store.kind import CalibrationKind, verdict_is_pass
 from cellctl.cell.readiness import require_full_speed
+from cellctl.errors.calibration import CalibrationError
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_latency
@@ -30,6 +34,8 @@ POLL_S = 0.01
 START_TIMEOUT_S = 2.0
 END_TIMEOUT_S = 5.0
 SIGMA_MS = 15.0
+METHOD = "overrun against speed"
+"""In the record, which tells it from those of other procedures."""
 RESIDUAL_MM = 0.15
 """The robot reports every 20 ms: at 8 mm/s that is 0.16 mm between two reports."""
 
@@ -41,6 +47,33 @@ class StopLatency:
     estimate: LatencyEstimate
     speeds_m_s: Array
     overruns_m: Array
+
+
+@dataclass(frozen=True, slots=True)
+class StoredStopLatency:
+    """A result of this procedure that passed and was not invalidated."""
+
+    kind: str
+    made: datetime
+    valid_until: datetime
+    upper_ms: float
+
+
+def stored_stop_latencies(folder: Path) -> tuple[StoredStopLatency, ...]:
+    """Those in a folder of calibrations, by name; a file that cannot be read is none."""
+    return tuple(_stored_stop_latencies(folder))
+
+
+def _stored_stop_latencies(folder: Path) -> Iterator[StoredStopLatency]:
+    for path in sorted(folder.glob("*.json")):
+        try:
+            stored = read_calibration(folder, path.stem)
+        except CalibrationError:
+            continue
+        record = stored.record
+        if record.get("method") == METHOD and verdict_is_pass(record):
+            upper_ms = float(record["upper_ms"])
+            yield StoredStopLatency(stored.kind, stored.made, stored.valid_until, upper_ms)
 
 
 async def measure_stop_latency_on_cell(
@@ -84,7 +117,7 @@ def _checks(estimate: LatencyEstimate, bound_ms: float) -> Checks:
 def _record(measured: StopLatency, checks: Checks) -> dict[str, Any]:
     estimate = measured.estimate
     return {
-        **evidence_to_record("overrun against speed", checks),
+        **evidence_to_record(METHOD, checks),
         "latency_ms": estimate.latency_s * 1e3,
         "sigma_ms": estimate.sigma_s * 1e3,
         "upper_ms": estimate.upper_s * 1e3,

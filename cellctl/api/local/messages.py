@@ -1,6 +1,6 @@
 """The messages of the local API: one JSON object a line, and one answer to each request."""
 
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
@@ -34,6 +34,14 @@ class StatusRequest(Message):
     """Asks, changes nothing."""
 
     request: Literal["status"] = "status"
+
+
+class RobotRequest(Message):
+    """Has the daemon listen to one robot for a while. Asks, changes nothing."""
+
+    request: Literal["robot"] = "robot"
+    name: Annotated[str, Field(max_length=64)]
+    seconds: Annotated[float, Field(ge=0.5, le=600.0)]
 
 
 class PlainCommand(Message):
@@ -114,7 +122,7 @@ class FollowRequest(Message):
     request: Literal["follow"] = "follow"
 
 
-Request = StatusRequest | FollowRequest | PageCommand | CommandRequest
+Request = StatusRequest | RobotRequest | FollowRequest | PageCommand | CommandRequest
 
 
 class Taken(Message):
@@ -150,7 +158,17 @@ class StatusAnswer(Message):
     report: StatusReport
 
 
-Answer = Taken | Refused | Failed | StatusAnswer
+class RobotAnswer(Message):
+    """Answer to a robot request."""
+
+    answer: Literal["robot"] = "robot"
+    cell: str
+    """Name of the cell, by which a service of another one is told."""
+    heard: dict[str, dict[str, Any]]
+    """By part and name."""
+
+
+Answer = Taken | Refused | Failed | StatusAnswer | RobotAnswer
 
 _REQUEST: TypeAdapter[Request] = TypeAdapter(Annotated[Request, Field(discriminator="request")])
 _ANSWER: TypeAdapter[Answer] = TypeAdapter(Annotated[Answer, Field(discriminator="answer")])

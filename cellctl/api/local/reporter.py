@@ -6,10 +6,12 @@ from typing import Any
 from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
 from cellctl.calibration.store.inventory import inventory
 from cellctl.cell.devices import Cell
+from cellctl.cell.robot_reports import listen
 from cellctl.clock import utc_now
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
+from cellctl.errors.local import MessageMalformed
 from cellctl.known_faults import known_fault
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
@@ -26,6 +28,15 @@ class Reporter:
         self._unit = unit
         self._arbiter = arbiter
         self._store = store
+
+    async def robot(self, name: str, seconds: float) -> dict[str, dict[str, Any]]:
+        """What a robot says for so long; raises ``MessageMalformed`` and what its state raises."""
+        robot = self._cell.robots.get(name)
+        if robot is None:
+            raise MessageMalformed(
+                f"no robot {name!r}; this cell has {', '.join(self._cell.robots)}"
+            )
+        return (await listen(robot, seconds)).as_json()
 
     async def report(self) -> StatusReport:
         """Everything at this moment. What cannot be read is reported as such, not raised."""

@@ -15,6 +15,8 @@ from cellctl.api.local.messages import (
     ProcedureCommand,
     Refused,
     Request,
+    RobotAnswer,
+    RobotRequest,
     StartCommand,
     StatusAnswer,
     StatusRequest,
@@ -80,6 +82,9 @@ class Terminal:
         """
         if isinstance(request, StatusRequest):
             return StatusAnswer(report=await self._reporter.report())
+        if isinstance(request, RobotRequest):
+            heard = await self._reporter.robot(request.name, request.seconds)
+            return RobotAnswer(cell=self._config.name, heard=heard)
         if isinstance(request, PageCommand):
             return await self._desk.handle(request, uid)
         assert not isinstance(request, FollowRequest), "the server sees to those who follow"

@@ -2,33 +2,21 @@
 
 import asyncio
 import json
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 import typer
 from rich.console import Console
 
-from cellctl.cli.commissioning.one_robot import ANY_AGE_S, cell_with, connected, state_as_json
-from cellctl.clock import now_s
+from cellctl.api.local.socket_file import default_path
+from cellctl.cell.robot_reports import listen
+from cellctl.cli.commissioning.one_robot import cell_with, connected
+from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
 from cellctl.config import CellConfig
-from cellctl.interfaces import Robot, RobotState
+from cellctl.errors.local import DaemonNotReached, MessageMalformed
+from cellctl.procedures.stop_latency import stored_stop_latencies
 
-_LOOK_S = 0.002
-
-
-@dataclass(slots=True)
-class Reports:
-    """What has been heard of a robot for a while."""
-
-    connect_s: float
-    facts: dict[str, str]
-    state: RobotState
-    periods_s: list[float] = field(default_factory=list)
-    """From one report to the next."""
-    oldest_s: float = 0.0
-    """Greatest age that the newest report has had."""
+Heard = dict[str, dict[str, Any]]
 
 
 def robot(
@@ -37,59 +25,61 @@ def robot(
     *,
     seconds: Annotated[float, typer.Option(min=0.5, max=600.0, help="How long to listen.")] = 3.0,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    socket: SocketOption = None,
 ) -> None:
-    """Connect to one robot without the daemon, listen, and print what it says. Moves nothing.
+    """Listen to one robot and print what it says. Moves nothing.
 
-    Its links end with the command: the robot is then latched, until the daemon has re-armed it.
+    Asks the daemon of this cell where one runs and is connected. Else it connects by itself, and
+    its links end with the command: the robot is then latched, until the daemon has re-armed it.
     """
     cell = cell_with(cell_file, name)
-    heard = _as_json(asyncio.run(_listen(cell, name, seconds)))
+    heard = _from_daemon(cell, name, seconds, socket)
+    source = "asked through the daemon"
+    if heard is None:
+        heard, source = asyncio.run(_from_robot(cell, name, seconds)), "connected without a daemon"
+    heard["stop_latency"] = _stop_latency(cell, cell_file, name)
     if as_json:
-        typer.echo(json.dumps(heard, indent=2))
+        typer.echo(json.dumps({"source": source, **heard}, indent=2))
         return
     console = Console(soft_wrap=True, highlight=False)
     driver = cell.robots[name].driver
-    console.print(f"{name} by {driver}: nothing was moved", markup=False)
-    for part in ("link", "reports", "state"):
-        console.print(part)
-        for key, value in heard[part].items():
+    console.print(f"{name} by {driver}, {source}: nothing was moved", markup=False)
+    for part, values in heard.items():
+        console.print(part.replace("_", " "), markup=False)
+        for key, value in values.items():
             console.print(f"  {key:24} {_text(value)}", markup=False)
 
 
-async def _listen(cell: CellConfig, name: str, seconds: float) -> Reports:
+def _from_daemon(cell: CellConfig, name: str, seconds: float, socket: Path | None) -> Heard | None:
+    """What the daemon of this cell hears; None where none runs, or it is not connected."""
+    stated = Path(cell.local_api.socket) if cell.local_api.socket else None
+    beside = default_path(Path(cell.data_dir))
+    path = socket or stated or (beside if beside.exists() else None)
+    try:
+        answer = DaemonClient(path).robot(name, seconds)
+    except (DaemonNotReached, MessageMalformed):
+        return None
+    # A service of another cell may run on this PC.
+    return answer.heard if answer.cell == cell.name else None
+
+
+async def _from_robot(cell: CellConfig, name: str, seconds: float) -> Heard:
     async with connected(cell, name) as (one, connect_s):
-        reports = Reports(connect_s, one.link_facts(), one.state(ANY_AGE_S))
-        await _collect(one, reports, now_s() + seconds)
-        # Again, as a hello of a second channel may have come later.
-        reports.facts = one.link_facts()
-        return reports
-
-
-async def _collect(one: Robot, reports: Reports, end_s: float) -> None:
-    while now_s() < end_s:
-        state, before = one.state(ANY_AGE_S), reports.state
-        if state.time_s > before.time_s:
-            reports.periods_s.append(state.time_s - before.time_s)
-            reports.state = state
-        reports.oldest_s = max(reports.oldest_s, now_s() - state.time_s)
-        await asyncio.sleep(_LOOK_S)
-
-
-def _as_json(reports: Reports) -> dict[str, Any]:
-    heard: dict[str, Any] = {
-        "link": {"connected_after_s": round(reports.connect_s, 3), **reports.facts},
-        "reports": {"count": len(reports.periods_s)},
-        "state": state_as_json(reports.state),
-    }
-    if reports.periods_s:
-        p50, p99, most = np.percentile(reports.periods_s, [50, 99, 100]) * 1000
-        heard["reports"] |= {
-            "period_ms_p50": round(float(p50), 1),
-            "period_ms_p99": round(float(p99), 1),
-            "period_ms_max": round(float(most), 1),
-        }
-    heard["reports"]["oldest_ms"] = round(1000 * reports.oldest_s, 1)
+        heard = (await listen(one, seconds)).as_json()
+    heard["link"] = {"connected_after_s": round(connect_s, 3), **heard["link"]}
     return heard
+
+
+def _stop_latency(cell: CellConfig, cell_file: Path, name: str) -> dict[str, Any]:
+    """What was measured, of a robot that carries a force sensor: only of such a one it is."""
+    if all(sensor.mounted_on != name for sensor in cell.force_sensors.values()):
+        return {}
+    folder = cell_file.parent / cell.calibration_dir
+    return {
+        f"{stored.kind} of {stored.made:%Y-%m-%d %H:%M}": f"at most {stored.upper_ms:.0f} ms, "
+        f"valid until {stored.valid_until:%Y-%m-%d %H:%M} UTC"
+        for stored in stored_stop_latencies(folder)
+    } or {"stored": "none; the bound of the recipe counts"}
 
 
 def _text(value: object) -> str:

@@ -11,12 +11,8 @@ import typer
 from rich.console import Console
 
 from cellctl.atomic_files import remove_durably, write_durably
-from cellctl.cli.commissioning.one_robot import (
-    cell_with,
-    connected,
-    joints_deg,
-    state_as_json,
-)
+from cellctl.cell.robot_reports import joints_deg, state_as_json
+from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, problems
 from cellctl.config.taught_pose_text import with_pose

@@ -12,6 +12,8 @@ from cellctl.api.local.messages import (
     Failed,
     Refused,
     Request,
+    RobotAnswer,
+    RobotRequest,
     StatusAnswer,
     StatusRequest,
     parse_answer,
@@ -47,6 +49,13 @@ class DaemonClient:
             raise MessageMalformed(f"no status: {answer}")
         return answer.report
 
+    def robot(self, name: str, seconds: float) -> RobotAnswer:
+        """What the daemon hears of a robot for so long; raises as ``status``."""
+        answer = self._ask(RobotRequest(name=name, seconds=seconds), ANSWER_S + seconds)
+        if not isinstance(answer, RobotAnswer):
+            raise MessageMalformed(f"no robot: {answer}")
+        return answer
+
     def command(self, request: CommandRequest) -> None:
         """Have a command obeyed; raises ``CommandRefused`` with the reason."""
         answer = self._ask(request)
@@ -71,10 +80,10 @@ class DaemonClient:
                 raise CommandMissedItsGoal(f"still {report.state} after {timeout_s:g} s")
             time.sleep(_PATIENT_POLL_S if end_s is None else _POLL_S)
 
-    def _ask(self, request: Request) -> Answer:
+    def _ask(self, request: Request, answer_s: float = ANSWER_S) -> Answer:
         try:
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
-                connection.settimeout(ANSWER_S)
+                connection.settimeout(answer_s)
                 connection.connect(str(self._path))
                 connection.sendall(to_line(request))
                 with connection.makefile("rb") as lines:

@@ -1,10 +1,12 @@
 """The CMD channel of one robot: sequence numbers, answers, and one command at a time."""
 
+from collections import deque
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, ProtocolViolation
 from cellctl.errors.robot import MotionRejected
@@ -14,6 +16,9 @@ from drivers.robot.siasun.codec.words import Words
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 from drivers.robot.siasun.running_command import RunningCommand
+
+ROUND_TRIPS = 500
+"""So many are remembered."""
 
 
 class CommandChannel:
@@ -35,6 +40,8 @@ class CommandChannel:
         self._reply_timeout_s = config.reply_timeout_s
         self._seq = 0
         self._running: RunningCommand | None = None
+        self.round_trips_s: deque[float] = deque(maxlen=ROUND_TRIPS)
+        """From the sending of each command to its acceptance."""
 
     @property
     def words(self) -> Words:
@@ -73,10 +80,12 @@ class CommandChannel:
         )
         try:
             self._seq += 1
+            sent_s = now_s()
             self.channel.send(build(command.session, command.seq))
             # A rejection comes at once. Waiting for it before the long wait for the end tells a
             # robot that refuses from one that is slow.
             await command.acknowledged(self._reply_timeout_s)
+            self.round_trips_s.append(now_s() - sent_s)
             yield command
         finally:
             self._running = None

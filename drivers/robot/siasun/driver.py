@@ -124,6 +124,10 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         """From the hello of both channels."""
         return link_facts({"CMD": self._command.channel, "STA": self._state.channel})
 
+    def round_trips_s(self) -> tuple[float, ...]:
+        """Of the commands of this session; the protocol has no question that does nothing."""
+        return tuple(self._command.round_trips_s)
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
@@ -136,8 +140,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """MOVL: straight move of the flange, ends at standstill. With a dh table, refused when the
-        arm cannot follow it."""
+        """MOVL to standstill. With a dh table, refused when the arm cannot follow the way."""
         self._bounds.pose(base_T_flange)
         speed = self._bounds.speed_mm_s(speed_m_s)
         acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
@@ -191,10 +194,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         await self._state.wait(lambda status: not status.moving, self._config.reply_timeout_s)
 
     async def _leave_stream(self, error: BaseException, command: RunningCommand | None) -> None:
-        """Stop the robot unless the controller has said itself that it has, or never began.
-
-        ``command`` is None as long as the controller has not accepted the stream.
-        """
+        """Stop the robot unless its controller has said that it has. ``command`` is None as long
+        as the controller has not accepted the stream."""
         known_to_stand = isinstance(error, CellError) and not isinstance(error, ReplyTimeout)
         if command is None and known_to_stand:
             return
@@ -248,8 +249,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         state = self.state(self._config.stale_s)
         # The pose of DONE is the encoder pose at standstill, and newer than the last report.
         end = replace(state, base_T_flange=base_T_flange)
-        # A controller that says DONE elsewhere has another idea of the target, such as another
-        # Euler order; the next move would be wrong as well.
+        # It has another idea of the target, such as another frame; the next move would be wrong.
         if off := target.off(end):
             self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
             raise self._latch

@@ -101,6 +101,10 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         """Version, and the frames that every pose is asked for with."""
         return self._link.facts()
 
+    def round_trips_s(self) -> tuple[float, ...]:
+        """Of the questions for its state, which are asked all the time."""
+        return tuple(self._link.watch.round_trips_s)
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """movej. With a dh table, refused when the flange would leave its box on the way."""
         _, percent = self._bounds.joints(joints_rad, speed_ratio)

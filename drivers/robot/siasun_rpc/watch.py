@@ -7,6 +7,7 @@ stream tells (override, error number, simulation) is taken from its newest frame
 
 import asyncio
 import math
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import cast
@@ -67,6 +68,10 @@ class Report:
         return self.stop_word != self.rearm_word
 
 
+ROUND_TRIPS = 500
+"""So many are remembered."""
+
+
 class StateWatch:
     """``run`` asks as long as it is let; everybody else reads what it has heard."""
 
@@ -84,6 +89,8 @@ class StateWatch:
         self._agreed_s = 0.0
         self._news = asyncio.Event()
         self._requests = _questions(config)
+        self.round_trips_s: deque[float] = deque(maxlen=ROUND_TRIPS)
+        """From each set of questions to its answers."""
 
     def follow(self, connection: RpcConnection, frames: FrameStream) -> None:
         """Go on with those of a new session; whoever waits for a report waits for one of it."""
@@ -98,6 +105,7 @@ class StateWatch:
             replies = await self._connection.exchange(
                 *self._requests, timeout_s=self._config.silence_s
             )
+            self.round_trips_s.append(now_s() - asked_s)
             try:
                 self._report = _report(asked_s, replies)
                 self._compare(self._report)

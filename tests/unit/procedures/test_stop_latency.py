@@ -1,6 +1,7 @@
 """The commissioning procedures on the fake cell's world, on simulated time."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,11 @@ from cellctl.errors.robot import SpeedOverridden
 from cellctl.interfaces import RobotState
 from cellctl.procedures import payload
 from cellctl.procedures.payload import still_wrench
-from cellctl.procedures.stop_latency import StopLatency, measure_stop_latency
+from cellctl.procedures.stop_latency import (
+    StopLatency,
+    measure_stop_latency,
+    stored_stop_latencies,
+)
 from cellctl.runtime.steps import HeldMeanwhile
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -121,3 +126,17 @@ def test_a_still_wrench_is_the_mean_of_steady_readings(monkeypatch: pytest.Monke
     cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
     with pytest.raises(NotSettled, match="scatter"):
         run_simulated(cell.start_s, cell.advance, run)
+
+
+def test_stored_results_are_told_from_other_calibrations(tmp_path: Path) -> None:
+    shipped = Path("config/demo-calibration")
+    (stored,) = stored_stop_latencies(shipped)
+    assert stored.kind == "stop_latency"
+    assert stored.upper_ms > 100.0
+    assert stored_stop_latencies(tmp_path) == ()
+    # A file that somebody has changed is none.
+    text = (shipped / "stop_latency.json").read_text()
+    (tmp_path / "stop_latency.json").write_text(text.replace('"upper_ms": ', '"upper_ms": 1'))
+    assert stored_stop_latencies(tmp_path) == ()
+    (tmp_path / "stop_latency.json").write_text(text)
+    assert stored_stop_latencies(tmp_path) == (stored,)

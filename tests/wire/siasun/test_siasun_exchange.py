@@ -45,6 +45,19 @@ async def test_move(cell: Cell) -> None:
     assert not state.moving  # type: ignore[attr-defined]
 
 
+async def test_the_time_from_a_command_to_its_acceptance_is_kept(cell: Cell) -> None:
+    assert cell.robot.round_trips_s() == ()
+    move = cell.move()
+    await cell.cmd.expect()
+    await asyncio.sleep(0.05)
+    cell.cmd.send("ACK,1")
+    cell.cmd.send(f"DONE,1,{THERE_TEXT}")
+    await cell.report_until(move, pose=THERE_TEXT)
+    await move
+    (round_trip_s,) = cell.robot.round_trips_s()
+    assert 0.045 < round_trip_s < 0.2
+
+
 async def test_only_one_move_at_a_time(cell: Cell) -> None:
     move = cell.move()
     await cell.cmd.expect()

@@ -210,6 +210,16 @@ async def test_a_frame_that_does_not_exist() -> None:
             await rig.robot.connect()
 
 
+async def test_the_times_of_the_questions_for_its_state_are_kept() -> None:
+    async with duco_rig() as rig:
+        await rig.robot.connect()
+        before = len(rig.robot.round_trips_s())
+        await asyncio.sleep(0.2)
+        times_s = rig.robot.round_trips_s()
+        assert len(times_s) > before
+        assert all(0.0 < time_s < 0.5 for time_s in times_s)
+
+
 async def test_a_joint_move_is_in_percent_and_radians() -> None:
     async with duco_rig() as rig:
         await rig.robot.connect()

@@ -14,6 +14,8 @@ from cellctl.api.local.messages import (
     ProcedureCommand,
     Refused,
     Request,
+    RobotAnswer,
+    RobotRequest,
     StartCommand,
     StatusAnswer,
     StatusRequest,
@@ -26,6 +28,7 @@ from cellctl.api.local.reporter import Reporter
 from cellctl.api.local.terminal import Terminal
 from cellctl.api.local.users import Users
 from cellctl.errors.link import LinkLost, StaleData
+from cellctl.errors.local import MessageMalformed
 from cellctl.errors.records import StoreUnavailable
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.reject import RejectCode
@@ -189,3 +192,17 @@ async def test_an_expired_calibration_is_called_so(rig: DaemonRig, operator: Ope
     report = await operator.status()
     assert report.calibrations[0].problem == "expired"
     assert report.calibrations[0].made is not None
+
+
+async def test_a_robot_is_listened_to_through_the_daemon(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    terminal = operator._terminal
+    answer = await terminal.handle(RobotRequest(name="main", seconds=0.5), UID)
+    assert isinstance(answer, RobotAnswer)
+    assert parse_answer(to_line(answer)) == answer, "survives the wire"
+    assert answer.cell == rig.bench.as_cell.config.name
+    assert answer.heard["reports"]["count"] > 3
+    assert len(answer.heard["state"]["joints_deg"]) == 6
+    with pytest.raises(MessageMalformed, match="this cell has main"):
+        await terminal.handle(RobotRequest(name="leg", seconds=0.5), UID)

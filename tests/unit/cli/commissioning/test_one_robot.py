@@ -2,8 +2,10 @@
 
 import json
 import re
+import socket
 import subprocess
 import sys
+import threading
 import tomllib
 from collections.abc import Iterator
 from contextlib import closing
@@ -13,6 +15,13 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
+from cellctl.api.local.messages import (
+    Request,
+    RobotAnswer,
+    RobotRequest,
+    parse_request,
+    to_line,
+)
 from cellctl.cli.commands import whole_app
 from cellctl.cli.commissioning.teach import write_pose
 from cellctl.errors.config import ConfigInvalid, FileInvalid
@@ -84,9 +93,55 @@ def test_a_robot_says_who_it_is_and_how_often(cell_file: Path) -> None:
     assert found["reports"]["oldest_ms"] >= found["reports"]["period_ms_p50"] / 2
     assert (found["state"]["mode"], found["state"]["drives_on"]) == ("remote", True)
     assert len(found["state"]["joints_deg"]) == 6
+    assert found["round_trips"] == {"count": 0}, "no command was given"
+    assert found["stop_latency"] == {"stored": "none; the bound of the recipe counts"}
     text = run("robot", cell_file, "arm", "--seconds", 0.5)
-    assert "nothing was moved" in text.stdout
+    assert "connected without a daemon: nothing was moved" in text.stdout
     assert "override_percent" in text.stdout
+
+
+class Daemon(threading.Thread):
+    """Answers one question for a robot, as the daemon of a cell with this name would."""
+
+    def __init__(self, path: Path, cell: str) -> None:
+        super().__init__(daemon=True)
+        self._cell = cell
+        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._listener.bind(str(path))
+        self._listener.listen(1)
+        self.asked: Request | None = None
+        self.start()
+
+    def run(self) -> None:
+        connection, _ = self._listener.accept()
+        with connection, connection.makefile("rb") as lines:
+            self.asked = parse_request(lines.readline())
+            heard: dict[str, dict[str, Any]] = {
+                "reports": {"count": 7},
+                "round_trips": {"count": 2, "ms_p50": 4.5},
+            }
+            connection.sendall(to_line(RobotAnswer(cell=self._cell, heard=heard)))
+        self._listener.close()
+
+
+def test_beside_a_daemon_the_daemon_is_asked(tmp_path: Path) -> None:
+    """The ports of the robot are the daemon's then; nothing is there to connect to here."""
+    daemon = Daemon(tmp_path / "here.sock", "fake-cell")
+    words = ("--seconds", 2, "--json", "--socket", tmp_path / "here.sock")
+    found = heard(run("robot", CONFIG / "deck.toml", "main", *words))
+    assert daemon.asked == RobotRequest(name="main", seconds=2.0)
+    assert found["source"] == "asked through the daemon"
+    assert found["round_trips"]["ms_p50"] == 4.5
+    (text,) = found["stop_latency"].values()
+    assert re.fullmatch(r"at most \d+ ms, valid until .* UTC", text)
+
+
+@pytest.mark.usefixtures("watched")
+def test_the_daemon_of_another_cell_is_not_asked_twice(cell_file: Path, tmp_path: Path) -> None:
+    Daemon(tmp_path / "other.sock", "another cell")
+    words = ("--seconds", 0.5, "--json", "--socket", tmp_path / "other.sock")
+    found = heard(run("robot", cell_file, "arm", *words))
+    assert found["source"] == "connected without a daemon"
 
 
 @pytest.mark.usefixtures("watched")

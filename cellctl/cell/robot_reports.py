@@ -1,0 +1,91 @@
+"""What one robot says of itself for a while, for people. Moves nothing."""
+
+import asyncio
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cellctl.clock import now_s
+from cellctl.geometry.pose import pose_to_xyzabc
+from cellctl.interfaces import Robot, RobotState
+
+ANY_AGE_S = 1e9
+_LOOK_S = 0.005
+
+
+@dataclass(slots=True)
+class RobotReports:
+    """What has been heard."""
+
+    facts: dict[str, str]
+    state: RobotState
+    periods_s: list[float] = field(default_factory=list)
+    """From one report to the next."""
+    oldest_s: float = 0.0
+    """Greatest age that the newest report has had."""
+    round_trips_s: tuple[float, ...] = ()
+    """From a question or command to its first answer, the newest ones."""
+
+    def as_json(self) -> dict[str, dict[str, Any]]:
+        """By part and name, in ms, mm and degrees."""
+        return {
+            "link": dict(self.facts),
+            "reports": {
+                "count": len(self.periods_s),
+                **_percentiles("period_ms", self.periods_s),
+                "oldest_ms": round(1000 * self.oldest_s, 1),
+            },
+            "round_trips": {
+                "count": len(self.round_trips_s),
+                **_percentiles("ms", self.round_trips_s),
+            },
+            "state": state_as_json(self.state),
+        }
+
+
+async def listen(robot: Robot, seconds: float) -> RobotReports:
+    """Hear a connected robot for so long. Raises what its ``state`` raises."""
+    heard = RobotReports(robot.link_facts(), robot.state(ANY_AGE_S))
+    end_s = now_s() + seconds
+    while now_s() < end_s:
+        state, before = robot.state(ANY_AGE_S), heard.state
+        if state.time_s > before.time_s:
+            heard.periods_s.append(state.time_s - before.time_s)
+            heard.state = state
+        heard.oldest_s = max(heard.oldest_s, now_s() - state.time_s)
+        await asyncio.sleep(_LOOK_S)
+    # Again, as a hello of a second channel may have come later.
+    heard.facts, heard.round_trips_s = robot.link_facts(), robot.round_trips_s()
+    return heard
+
+
+def state_as_json(state: RobotState) -> dict[str, Any]:
+    """A state in the units of the cell file: mm and degrees, angles A, B, C of Rz Ry Rx."""
+    return {
+        "mode": state.mode.value,
+        "emergency_stop": state.emergency_stop,
+        "drives_on": state.drives_on,
+        "moving": state.moving,
+        "stop_latched": state.stop_latched,
+        "error_code": state.error_code,
+        "error_words": state.error_words,
+        "override_percent": round(100.0 * state.speed_override_ratio, 1),
+        "flange_xyzabc_mm_deg": [round(float(v), 4) for v in pose_to_xyzabc(state.base_T_flange)],
+        "joints_deg": joints_deg(state),
+    }
+
+
+def joints_deg(state: RobotState) -> list[float]:
+    """Joints in degrees, as they are written in a cell file."""
+    return [round(float(angle), 5) + 0.0 for angle in np.degrees(state.joints_rad)]
+
+
+def _percentiles(name: str, times_s: list[float] | tuple[float, ...]) -> dict[str, float]:
+    if not times_s:
+        return {}
+    figures = np.percentile(times_s, [50, 99, 100]) * 1000
+    return {
+        f"{name}_{part}": round(float(figure), 2)
+        for part, figure in zip(("p50", "p99", "max"), figures, strict=True)
+    }
