@@ -11,7 +11,8 @@ from rich.console import Console
 from cellctl.api.local.socket_file import default_path
 from cellctl.cell.robot_reports import listen
 from cellctl.cli.commissioning.one_robot import cell_with, connected
-from cellctl.cli.operator.daemon_client import DaemonClient, SocketOption
+from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.config import CellConfig
 from cellctl.errors.local import DaemonNotReached, MessageMalformed
 from cellctl.procedures.stop_latency import stored_stop_latencies
