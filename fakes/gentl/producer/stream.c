@@ -87,7 +87,7 @@ static bool fill(camera *self, frame_buffer *buffer, const cell_image *image) {
         if (!cell_fill(image, buffer)) return false;
         buffer->width = image->answer.width;
         buffer->height = image->answer.height;
-        buffer->filled = image->answer.size;
+        buffer->filled -= camera_image_bytes(self) - image->answer.size;
     } else
         draw(self, buffer, self->frame_id);
     if (used(&self->state->truncated)) buffer->filled /= 2;

@@ -28,14 +28,8 @@ LATE: Final[dict[str, str]] = {
     "late": "the image comes so many seconds late (value)",
     "dribbled": "it comes in packets of so many bytes (value), 2 ms between them",
 }
-OF_THE_PRODUCER: Final[dict[str, tuple[Fault, ...]]] = {
-    "busy": ("busy", "lost"),
-    "lost": ("lost",),
-    "hang": ("hang",),
-    "crash": ("crash",),
-}
-"""Until they are cleared; a crash ends one process. A camera that another program has taken does
-not answer this one any more."""
+OF_THE_PRODUCER: Final[tuple[Fault, ...]] = ("busy", "lost", "hang", "crash")
+"""Until they are cleared; a crash ends one process."""
 _PACKET_S: Final = 0.002
 
 
@@ -64,15 +58,21 @@ class GentlFaults(NamedFaults):
             return
         if replies is not None:
             raise ValueError(f"{name} lasts until it is cleared, not for a number of exposures")
-        for fault in OF_THE_PRODUCER[name]:
-            self._at_producer(fault, 1)
+        if name == "busy":
+            # A camera that another program has taken does not answer this one any more.
+            self._at_producer("lost", 1)
+            self._at_producer("lost", 0)
+        self._switch(name, 1)
 
     def clear(self, name: str | None = None) -> None:
         """Switch one fault, or all of them, off."""
         super().clear(name)
-        for one in OF_THE_PRODUCER if name is None else {name} & OF_THE_PRODUCER.keys():
-            for fault in OF_THE_PRODUCER[one]:
-                self._at_producer(fault, 0)
+        self._switch(name, 0)
+
+    def _switch(self, name: str | None, amount: int) -> None:
+        for fault in OF_THE_PRODUCER:
+            if name in (None, fault):
+                self._at_producer(fault, amount)
 
 
 def outcome(faults: Mapping[str, float]) -> Outcome | None:
