@@ -17,8 +17,7 @@ from tests.wire.jobs.job_rig import JobRig
 from tests.wire.siasun.any_rig import above, move, rearm, stands, until_moving, within
 
 STARTED = {"LINK", "READ", "MORE"}
-BACKGROUND = {"LINK", "LOOP", "BEAT", "CUT", "WATCH", "PANEL", "PERMIT", "STATE", "FREE", "POSE"}
-BACKGROUND |= {"SUM", "LATCH"}
+BACKGROUND = {"LINK", "LOOP", "BEAT", "CUT", "WATCH", "PANEL", "PERMIT", "STATE", "POSE", "SUM"}
 
 Run = Callable[[JobRig], Awaitable[None]]
 
@@ -120,14 +119,14 @@ def _split_stop(channel: SiasunStopChannel, rig: JobRig) -> None:
 
 
 _STOPPED = STARTED | {"STOPPED", "ABORTED", "POSE"}
-_PANEL = {"SJLSTA": {"REFUSED", "LATCH"}}
+_PANEL = {"SJLSTA": {"REFUSED"}}
 WAYS: dict[str, Way] = {
     "commands": Way(
         _commands,
         {
             "SJLMAIN": STARTED
             | {"STRAIGHT", "ACC20", "ACC50", "ACC100", "JOINTS", "ARRIVED", "POSE", "REARM"},
-            "SJLSTA": BACKGROUND - {"LATCH"},
+            "SJLSTA": BACKGROUND,
         },
     ),
     "contact of the PC": Way(_in_a_motion(_open_contact, "STOP"), {"SJLMAIN": _STOPPED}),
