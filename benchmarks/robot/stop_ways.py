@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from cellctl.cell.permitted_robot import PermittedRobot
 from cellctl.interfaces.robot import Robot
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
@@ -95,6 +96,22 @@ async def _digital(*, silent: bool) -> AsyncIterator[Ready]:
 
 
 @asynccontextmanager
+async def _dead_job() -> AsyncIterator[Ready]:
+    """An alarm ends the background job and with it dead man and contact of the controller."""
+    async with (
+        job_rig(statement_s=STATEMENT_S, **SLOW) as rig,
+        permit_loop(rig, watchdog_ms=WATCHDOG_MS) as (io, _),
+    ):
+        await rig.connect()
+
+        async def stop() -> None:
+            rig.let_report_overflow()
+
+        robot = PermittedRobot(rig.robot, io, PERMIT)
+        yield Ready(robot, rig.arm, rig.controller.moving, stop)
+
+
+@asynccontextmanager
 async def _rpc(*, silent: bool) -> AsyncIterator[Ready]:
     async with duco_rig() as rig:
         await rig.robot.connect()
@@ -147,6 +164,9 @@ WAYS: dict[str, tuple[str, Way, float]] = {
     "GRD, silent guard": ("its background job", partial(_grd, silent=True), _DEAD_ROUNDS_MS),
     "digital output, silent PC": (
         "the coupler's watchdog", partial(_digital, silent=True), WATCHDOG_MS + HOST_MS,
+    ),
+    "digital output, background job ended by an alarm": (
+        "no program of it", _dead_job, ROUND_MS + HOST_MS,
     ),
     "RPC, silent guard": (
         "its service", partial(_rpc, silent=True), DEADMAN_MS + HOST_MS,

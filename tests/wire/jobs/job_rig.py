@@ -17,6 +17,8 @@ from tests.wire.proxy import ChaosProxy
 from tests.wire.siasun.sjl_rig import arm_settings
 from tests.wire.standing_arm import standing_arm
 
+_REPORT_WORD = 34
+"""The string that SJLSTA begins its reports with."""
 JOBS = Path(__file__).parents[3] / "drivers" / "robot" / "siasun" / "job"
 
 
@@ -39,6 +41,11 @@ class JobRig:
                 await asyncio.sleep(0)
         self.controller.start()
         await connecting
+
+    def let_report_overflow(self) -> None:
+        """The next report of SJLSTA does not fit into a string: one alarm of many that may end a
+        background job."""
+        self.controller.memory.strings[_REPORT_WORD] = "X" * 120
 
     def turn(self) -> None:
         """A job begins a motion, with the contact of STA closed as if the daemon were there."""

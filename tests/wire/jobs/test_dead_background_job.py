@@ -16,8 +16,6 @@ from tests.wire.jobs.permit_loop import PERMIT, permit_loop
 WATCHDOG_MS = 300
 STANDS_S = 0.5
 """From the alarm: to see the link go, the contact, 0.25 s dead time of the arm, and braking."""
-REPORT_WORD = 34
-"""The string that SJLSTA begins its reports with."""
 
 
 @pytest.fixture
@@ -36,11 +34,6 @@ async def moving(rig: JobRig, robot: Robot) -> "asyncio.Task[RobotState]":
     return job
 
 
-def let_report_overflow(rig: JobRig) -> None:
-    """The next report does not fit into a string: one alarm of many that may end a job."""
-    rig.controller.memory.strings[REPORT_WORD] = "X" * 120
-
-
 async def until_it_stands(rig: JobRig) -> float:
     """Seconds that it takes."""
     begun_s = time.monotonic()
@@ -53,7 +46,7 @@ async def until_it_stands(rig: JobRig) -> float:
 async def test_the_arm_stands_by_the_contact_of_the_pc(rig: JobRig) -> None:
     async with permit_loop(rig, watchdog_ms=WATCHDOG_MS) as (io, _):
         job = await moving(rig, PermittedRobot(rig.robot, io, PERMIT))
-        let_report_overflow(rig)
+        rig.let_report_overflow()
         with pytest.raises(LinkLost):
             await job
         assert rig.controller.alarm.startswith("SJLSTA")
@@ -67,7 +60,7 @@ async def test_beside_a_dead_pc_it_stands_by_the_watchdog_of_the_coupler(rig: Jo
     async with permit_loop(rig, watchdog_ms=WATCHDOG_MS) as (_, wire):
         job = await moving(rig, rig.robot)
         wire.forth.blocked = True
-        let_report_overflow(rig)
+        rig.let_report_overflow()
         assert await until_it_stands(rig) < STANDS_S + WATCHDOG_MS / 1000
         assert rig.arm.cut_short
         with pytest.raises(LinkLost):
@@ -78,7 +71,7 @@ async def test_without_the_contact_nothing_stops_it(rig: JobRig) -> None:
     """Why `cellctl check` demands the contact; with a controller that stops an arm by the alarm of
     a background job this could go."""
     job = await moving(rig, rig.robot)
-    let_report_overflow(rig)
+    rig.let_report_overflow()
     with pytest.raises(LinkLost):
         await job
     await asyncio.sleep(2 * STANDS_S)
