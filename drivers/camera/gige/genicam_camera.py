@@ -32,7 +32,7 @@ the first was read out. The third one begins after the second has ended."""
 
 
 class GenicamCamera:
-    """Open, set up and acquiring from the first call of ``start`` to ``close``."""
+    """Open until its producers are closed; it acquires from ``start`` to ``stop``."""
 
     def __init__(self, found: Found, camera: Selection, settings: Acquisition) -> None:
         """Raises ``TroubleError``."""
@@ -118,11 +118,6 @@ class GenicamCamera:
             Trouble.SILENT,
             f"{self.label}: no image within {self._settings.image_timeout_s:g} s",
         )
-
-    def close(self) -> None:
-        """Let the camera go, whatever state it is in."""
-        with camera_errors(self.label):
-            self._acquirer.destroy()
 
     def _require_alive(self) -> None:
         """Raise ``TroubleError`` for a camera that does not answer: no image will come from it."""

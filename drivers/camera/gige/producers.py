@@ -6,6 +6,7 @@ Each producer has a harvester of its own: one that cannot be used takes no other
 import ctypes
 import logging
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self
@@ -16,7 +17,7 @@ from harvesters.core import Harvester, ImageAcquirer, ParameterKey, ParameterSet
 from drivers.camera.gige.delivered import said
 from drivers.camera.gige.network import Network, network
 from drivers.camera.gige.protocol import CameraState, SeenCamera, Trouble
-from drivers.camera.gige.trouble import TroubleError, in_words
+from drivers.camera.gige.trouble import GENICAM_ERRORS, TroubleError, in_words
 
 _STATUS = gentl.DEVICE_ACCESS_STATUS_LIST
 _TAKEN = (
@@ -71,9 +72,9 @@ class Producers:
         return tuple(found)
 
     def close(self) -> None:
-        """Unload them."""
+        """Unload them, also those whose cameras are gone."""
         for harvester in self._harvesters:
-            harvester.reset()
+            _unload(harvester)
         self._harvesters = []
 
     def _look_with(self, path: Path) -> list[Found]:
@@ -93,6 +94,17 @@ class Producers:
             Found(_seen(path, info, networks[id(info.parent)]), harvester, place)
             for place, info in enumerate(infos)
         ]
+
+
+def _unload(harvester: Harvester) -> None:
+    for acquirer in tuple(harvester.image_acquirers):
+        # With a camera that is gone, harvesters fails where it stops the acquisition; called again,
+        # it goes on from there.
+        for _ in range(2):
+            with suppress(*GENICAM_ERRORS):
+                acquirer.destroy()
+    with suppress(*GENICAM_ERRORS):  # of a lost camera that cannot even be closed: the process ends
+        harvester.reset()
 
 
 def _require_loadable(path: Path) -> None:

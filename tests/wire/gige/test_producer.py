@@ -8,59 +8,49 @@ from pathlib import Path
 import pytest
 
 from fakes.gentl.build import build_producer
-from fakes.gentl.cameras import ENVIRONMENT, FakeCameras
+from fakes.gentl.cameras import FakeCameras
 from tests.wire.gige.conftest import LEFT, camera
 
-SESSION = """
-import sys
-from harvesters.core import Harvester
-for _ in range(3):
-    harvester = Harvester()
-    harvester.add_file(sys.argv[1])
-    harvester.update()
-    cameras = [harvester.create({"serial_number": serial}) for serial in sys.argv[2:]]
-    for camera in cameras:
-        nodes = camera.remote_device.node_map
-        nodes.TriggerMode.value = "On"
-        nodes.TriggerSource.value = "Software"
-        camera.start()
-    for _ in range(20):
-        for camera in cameras:
-            camera.remote_device.node_map.TriggerSoftware.execute()
-        for camera in cameras:
-            with camera.fetch(timeout=5) as buffer:
-                assert buffer.payload.components[0].data.size == 64 * 48
-    for camera in cameras:
-        camera.stop()
-        camera.destroy()
-    harvester.reset()
-print("clean")
-"""
 
-
-@pytest.mark.long
-def test_under_sanitizers(tmp_path: Path, fakes: FakeCameras) -> None:
-    producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined")
-    # The C++ library too: the sanitizer looks for its exceptions before Python loads anything.
-    preloaded = " ".join(map(_library, ("libasan.so", "libstdc++.so.6")))
-    session = subprocess.run(
-        [sys.executable, "-c", SESSION, str(producer), "GL-1", "GR-2"],
+def session(producer: Path, what: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """`producer_session` in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "tests.wire.gige.producer_session", str(producer), what],
         capture_output=True,
         text=True,
         check=False,
-        timeout=200,
-        # Leaks are those of Python and of the standard's libraries: only the producer is looked at.
-        env=os.environ
-        | {
-            "LD_PRELOAD": preloaded,
-            "ASAN_OPTIONS": "detect_leaks=0",
-            "UBSAN_OPTIONS": "halt_on_error=1",
-            ENVIRONMENT: str(fakes.path),
-        },
+        timeout=300,
+        env=os.environ | environment,
     )
-    assert session.stdout.endswith("clean\n"), session.stderr
-    assert "ERROR: AddressSanitizer" not in session.stderr
-    assert "runtime error" not in session.stderr
+
+
+def test_harvesters_has_nothing_to_warn_of(producer: Path) -> None:
+    done = session(producer, "good")
+    assert (done.stdout, done.stderr) == ("clean\n", "")
+
+
+def test_faults_leave_the_producer_usable(producer: Path) -> None:
+    done = session(producer, "faults")
+    assert done.stdout == "clean\n", done.stderr
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("what", ["good", "faults"])
+def test_under_sanitizers(tmp_path: Path, what: str) -> None:
+    producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined")
+    # The C++ library too: the sanitizer looks for its exceptions before Python loads anything.
+    preloaded = " ".join(map(_library, ("libasan.so", "libstdc++.so.6")))
+    done = session(
+        producer,
+        what,
+        LD_PRELOAD=preloaded,
+        # Leaks are those of Python and of the standard's libraries: only the producer is looked at.
+        ASAN_OPTIONS="detect_leaks=0",
+        UBSAN_OPTIONS="halt_on_error=1",
+    )
+    assert done.stdout.endswith("clean\n"), done.stderr
+    assert "ERROR: AddressSanitizer" not in done.stderr
+    assert "runtime error" not in done.stderr
 
 
 def _library(name: str) -> str:

@@ -1,0 +1,145 @@
+"""A session with the fake producer through harvesters: `good` and `faults` of its arguments.
+
+A program of its own, because it runs under sanitizers, which are loaded before Python is.
+"""
+
+import logging
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from itertools import product
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+from genicam import genapi, gentl
+
+from drivers.camera.gige.delivered import delivered
+from drivers.camera.gige.producers import Producers
+from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
+
+LEFT, RIGHT = "GL-1", "GR-2"
+ERRORS = (genapi.GenericException, gentl.GenericException)
+FORMATS = ("Mono8", "Mono12", "Mono12Packed", "BayerRG8")
+FAULTS: tuple[Fault, ...] = ("incomplete", "truncated", "stale", "drop")
+
+
+@contextmanager
+def opened(producer: Path) -> Iterator[list[Any]]:
+    """Both cameras of the network."""
+    producers = Producers((producer,))
+    there = {found.seen.serial_number: found for found in producers.look()}
+    try:
+        yield [there[serial].create() for serial in (LEFT, RIGHT)]
+    finally:
+        producers.close()
+
+
+def nodes_of(camera: Any) -> Any:
+    return camera.remote_device.node_map
+
+
+def triggered(camera: Any, source: str) -> None:
+    nodes_of(camera).TriggerMode.value = "On"
+    nodes_of(camera).TriggerSource.value = source
+
+
+def image(camera: Any, timeout_s: float = 10.0) -> Any:
+    """Shape and bytes of the next image; None for none within the time."""
+    buffer = camera.try_fetch(timeout=timeout_s, is_raw=True)
+    if buffer is None:
+        return None
+    found = delivered(buffer, nodes_of(camera))
+    assert found is not None
+    copied = (found.width, found.height, found.data.copy())
+    buffer.parent.queue_buffer(buffer)
+    return copied
+
+
+def good(producer: Path) -> None:
+    """Formats, regions, chunks, software trigger, several openings."""
+    for _ in range(3):
+        with opened(producer) as cameras:
+            for camera in cameras:
+                triggered(camera, "Software")
+            for pixel_format, chunks in product(FORMATS, (False, True)):
+                for camera in cameras:
+                    nodes_of(camera).PixelFormat.value = pixel_format
+                    nodes_of(camera).ChunkModeActive.value = chunks
+                    camera.start()
+                some_images(cameras)
+                for camera in cameras:
+                    camera.stop()
+
+
+def some_images(cameras: list[Any]) -> None:
+    """A few of each, both triggered before the first is fetched."""
+    for _ in range(5):
+        for camera in cameras:
+            nodes_of(camera).TriggerSoftware.execute()
+        for camera in cameras:
+            assert image(camera)[:2] == (64, 48)
+
+
+def faults(producer: Path, fakes: FakeCameras) -> None:
+    """What goes wrong with images, with the stream, and with the camera."""
+    with opened(producer) as (left, right):
+        triggered(left, "Software")
+        nodes_of(left).ChunkModeActive.value = True
+        left.start()
+        for fault in FAULTS:
+            fakes.inject(LEFT, fault)
+            for _ in range(3):
+                nodes_of(left).TriggerSoftware.execute()
+                with suppress(ValueError):  # of a truncated one
+                    image(left, 1.0)
+        fakes.inject(LEFT, "slow_ms", 300)
+        nodes_of(left).TriggerSoftware.execute()
+        left.stop()  # within the exposure
+        left.start()
+        nodes_of(left).TriggerSoftware.execute()
+        assert image(left) is not None
+        fakes.inject(LEFT, "slow_ms", 0)
+        triggered(right, "Line1")
+        fakes.wire(output=LEFT, to=RIGHT)
+        right.start()
+        nodes_of(left).TriggerSoftware.execute()
+        assert image(right) is not None
+        right.stop()
+        nodes_of(right).TriggerMode.value = "Off"
+        right.start()
+        assert image(right) is not None
+        fakes.inject(RIGHT, "lost")
+        for use in (nodes_of(right).AcquisitionStop.execute, lambda: image(right, 0.1)):
+            with suppress(*ERRORS):
+                use()
+        fakes.inject(RIGHT, "lost", 0)
+    with opened(producer) as (left, _):
+        triggered(left, "Software")
+        left.start()
+        nodes_of(left).TriggerSoftware.execute()
+        width, height, data = image(left)
+        assert np.array_equal(data.reshape(height, width), expected_image(1, 64, 48, "Mono8"))
+
+
+def main(producer: Path, what: str) -> None:
+    """Run one of both; the log of harvesters goes to the standard error stream."""
+    logger = logging.getLogger("harvesters.core")
+    logger.setLevel(logging.WARNING)
+    for handler in logger.handlers:
+        handler.setLevel(logging.WARNING)
+    cameras = [FakeCamera(LEFT, "left eye", 64, 48), FakeCamera(RIGHT, "right eye", 64, 48)]
+    with TemporaryDirectory() as folder, FakeCameras(Path(folder, "cameras"), cameras) as fakes:
+        os.environ[ENVIRONMENT] = str(fakes.path)
+        if what == "good":
+            good(producer)
+        else:
+            faults(producer, fakes)
+        assert (fakes.opened(LEFT), fakes.buffers(LEFT)) == (0, 0)
+    print("clean")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2])
