@@ -25,9 +25,10 @@ static uint64_t bits_of(const camera *self, const frame_buffer *buffer, uint32_t
 }
 
 void chunks_append(const camera *self, frame_buffer *buffer) {
-    buffer->has_chunks = camera_u32(self, REG_CHUNK_MODE) != 0;
     buffer->image_bytes = camera_image_bytes(self);
+    buffer->has_chunks = camera_u32(self, REG_CHUNK_MODE) && buffer->filled >= buffer->image_bytes; /* not behind a piece */
     if (!buffer->has_chunks) return;
+    buffer->filled = camera_payload(self);
     uint8_t *place = put_32(put_32(buffer->base + buffer->image_bytes, CHUNK_IMAGE), (uint32_t)buffer->image_bytes);
     for (int i = 0; i < CHUNKS - 1; i++) {
         uint64_t bits = bits_of(self, buffer, values[i]);

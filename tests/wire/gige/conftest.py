@@ -1,5 +1,7 @@
 """Two fake cameras behind the compiled producer, and what their drivers need."""
 
+import asyncio
+import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,15 @@ def fakes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeCamer
     with FakeCameras(tmp_path / "cameras", cameras) as fakes:
         monkeypatch.setenv(ENVIRONMENT, str(fakes.path))
         yield fakes
+
+
+async def descriptors(process: int) -> int:
+    """What a process has open, without the images that are just on their way to the driver."""
+    counts = []
+    for _ in range(20):
+        counts.append(len(os.listdir(f"/proc/{process}/fd")))
+        await asyncio.sleep(0.01)
+    return min(counts)
 
 
 def camera(producer: Path, **settings: Any) -> GigeCamera:

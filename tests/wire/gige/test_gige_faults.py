@@ -26,7 +26,7 @@ from drivers.camera.gige.config import GigeHeadConfig, Region, Selection
 from drivers.camera.gige.driver import GigeHead
 from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
-from tests.wire.gige.conftest import LEFT, RIGHT, camera
+from tests.wire.gige.conftest import LEFT, RIGHT, camera, descriptors
 
 
 @contextmanager
@@ -223,14 +223,13 @@ async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
     )
     async with GigeHead("head", settings) as head:
         await head.grab()
-        folder = f"/proc/{fakes.opened(LEFT)}/fd"
-        before = len(os.listdir(folder))
+        before = await descriptors(fakes.opened(LEFT))
         for _ in range(2):
             fakes.inject(RIGHT, fault, 1)
             with pytest.raises((ImagesDamaged, ReplyTimeout)):
                 await head.grab()
         await head.grab()
-        assert len(os.listdir(folder)) == before
+        assert await descriptors(fakes.opened(LEFT)) == before
 
 
 async def test_an_image_that_comes_late_is_nobodys(producer: Path, fakes: FakeCameras) -> None:
