@@ -6,8 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from cellctl.processes.antenna_module.calibrations import TOOL_TURN
 from cellctl.processes.antenna_module.record import keys
 from cellctl.records import RunStore
 from cellctl.records.entries import RunResult
@@ -121,3 +123,17 @@ def test_a_seat_that_comes_early_ends_with_the_module_out_of_its_socket(antenna:
     assert record.head.result is RunResult.BAD
     assert [phase.number for phase in record.phases].count(80) == 1
     assert [one.name for one in record.artefacts].count(keys.CURVE) == 1
+
+
+def test_the_marks_are_turned_over_camera_2_and_kept_as_a_calibration(antenna: OwnCell) -> None:
+    antenna.fake(seed=2).ready()
+    antenna.daemon().ready()
+    plc = antenna.plc("--mode", "maintenance", "--recipe", "207")
+    assert plc.end(300) == 0, plc.stdout
+    stored = json.loads((antenna.calibration / "tool_turn.json").read_text(encoding="utf-8"))
+    found = TOOL_TURN.result(stored["record"])
+    with antenna.control() as control:
+        true_mm = control.request("truth")["truth"]["flange_T_marks_mm_deg"][:2]
+    # An arm with RP 0.02 mm, eight looks: 2.3 µm per axis.
+    assert np.linalg.norm(found.offset_m) * 1e3 == pytest.approx(np.hypot(*true_mm), abs=0.01)
+    assert (antenna.calibration / "tool_turn.png").is_file()

@@ -6,10 +6,12 @@ from typing import Any
 
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
+from cellctl.calibration.solvers.tool.tool import ToolResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.robot import ControllerFault
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.tool_turn import ToolTurnResult
 from cellctl.processes.antenna_module.faults.calibration import (
     ArmMoved,
     FixedCameraMoved,
@@ -80,6 +82,25 @@ REFERENCE = CalibrationKind(
 """Where axis, marks and plate are; the settings say whether a run needs it. Whatever has moved
 stays where it is then, so all of these faults ask for a new one."""
 
+TOOL_TURN = CalibrationKind(
+    name="tool_turn",
+    parse=ToolTurnResult.from_record,
+    invalidated_by=frozenset({GripperMarksMoved}),
+    procedures=(207,),
+    required=False,
+)
+"""The gripper's marks beside the flange axis. Nothing is plugged by it: the frame of the tool drops
+out of every scheme. It says whether gripper and drawing are those of each other."""
+
+TOOL = CalibrationKind(
+    name="tool",
+    parse=ToolResult.from_record,
+    invalidated_by=frozenset({ControllerFault, GripperMarksMoved}),
+    procedures=(208,),
+    required=False,
+)
+"""The gripper's tip by touches, as good as a touch: for picking, and for jogging about the tip."""
+
 CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (
     CAMERA_1_INTRINSICS,
     CAMERA_2_INTRINSICS,
@@ -87,4 +108,6 @@ CALIBRATIONS: tuple[CalibrationKind[Any], ...] = (
     FIXED_CAMERA,
     REFERENCE,
     PLUG_CORRECTION,
+    TOOL_TURN,
+    TOOL,
 )

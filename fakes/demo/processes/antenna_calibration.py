@@ -31,5 +31,6 @@ PROCEDURES = (
     Procedure(203, "camera I on the flange", _board_on_table),
     Procedure(204, "camera II in the base frame", _board_on_flange),
     Procedure(205, "reference: axis, marks and plate", _put_away),
+    Procedure(207, "tool, by turning over camera II", _put_away),
     Procedure(206, "plug correction, taught", _stand_by, timeout_s=1200.0),
 )

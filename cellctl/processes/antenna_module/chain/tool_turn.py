@@ -3,13 +3,19 @@
 Only the scale of camera II enters: ``seen_k = centre + R(±angle_k) · offset``, linear in both.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
+from cellctl.calibration.checks import (
+    Checks,
+    LimitCheck,
+    all_passed,
+    checks_from_record,
+    evidence_to_record,
+)
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.faults.calibration import TurnInvalid
 
@@ -40,7 +46,9 @@ class ToolTurnResult:
     stops: int
     checks: Checks
     residuals_m: Array
-    """Seen less fitted, in the axes of the camera, shape (stops, 2)."""
+    """Seen less fitted, in the axes of the camera, shape (stops, 2); not in the record."""
+    seen_m: Array
+    """Where the feature was seen, shape (stops, 2); for the picture, not in the record."""
 
     method = "circle about the flange axis"
 
@@ -59,6 +67,23 @@ class ToolTurnResult:
             "residual_rms_mm": self.residual_rms_m / MM,
             "stops": self.stops,
         }
+
+    @classmethod
+    def from_record(cls, record: Mapping[str, Any]) -> "ToolTurnResult":
+        """The inverse of ``to_record``; raises ``ValueError`` for places that are none."""
+        axis, offset = (np.array(record[f"{name}_mm"], dtype=float) for name in ("axis", "offset"))
+        if axis.shape != (2,) or offset.shape != (2,):
+            raise ValueError("axis and offset have x and y each")
+        return cls(
+            axis_m=axis * MM,
+            offset_m=offset * MM,
+            sigma_m=float(record["sigma_mm"]) * MM,
+            residual_rms_m=float(record["residual_rms_mm"]) * MM,
+            stops=int(record["stops"]),
+            checks=checks_from_record(record["checks"]),
+            residuals_m=np.zeros((0, 2)),
+            seen_m=np.zeros((0, 2)),
+        )
 
 
 def calibrate_tool_turn(
@@ -94,7 +119,7 @@ def calibrate_tool_turn(
         LimitCheck("residual rms", rms / MM, residual_limit_m / MM, "mm"),
         LimitCheck("sigma of the offset", sigma / MM, sigma_limit_m / MM, "mm"),
     )
-    return ToolTurnResult(axis, offset, sigma, rms, len(stops), checks, residuals)
+    return ToolTurnResult(axis, offset, sigma, rms, len(stops), checks, residuals, seen)
 
 
 def _largest_gap(angles: Array) -> float:

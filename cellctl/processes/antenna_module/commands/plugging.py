@@ -142,13 +142,21 @@ def calibrate_plug(
         write_file(picture, taught_picture(correction))
 
 
-def calibrate_turn(file: InFile, out: OutFile = None) -> None:
+def calibrate_turn(
+    file: InFile,
+    out: OutFile = None,
+    picture: Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")] = None,
+) -> None:
     """Where a feature of the gripper lies beside the flange axis, from turns before camera II."""
     result = calibrate_tool_turn([entry.stop() for entry in read_input(file, TurnFile).turns])
     x, y = result.offset_m * 1e3
     _say(f"offset {x:.4f}, {y:.4f} mm, sigma {result.sigma_m * 1e6:.1f} µm")
     _show_checks(result.checks)
     _write(out, result.to_record())
+    if picture is not None:
+        from cellctl.processes.antenna_module.chain.turn_picture import turn_picture
+
+        write_file(picture, turn_picture(result))
     if not result.passed:
         raise typer.Exit(NOT_GOOD)
 

@@ -6,7 +6,7 @@ CalibrationError
 └── ReferenceMoved                                                    644      reference check
     ├── FixedCameraMoved, FlangeCameraMoved, GripperMarksMoved,
     └── ReferencePlateMoved, ArmMoved                                 645–649
-NobodyPlugged                                                         650      while teaching
+NobodyPlugged, NobodyTouched                                          650 651  at the panel
 """
 
 from cellctl.errors.calibration import CalibrationError
@@ -100,3 +100,12 @@ class NobodyPlugged(CalibrationError):
     text = "No plug was put in by hand"
     cause = "Nobody turned the key at the panel and jogged the plug into its socket in time."
     remedy = "Take the module out of the gripper, Reset, and start the teaching again."
+
+
+class NobodyTouched(CalibrationError):
+    """The arm waited for a touch of the tool's tip, and nobody jogged it."""
+
+    number = 651
+    text = "The tip was not brought to its point"
+    cause = "Nobody turned the key at the panel, jogged the tip to its point and turned it back."
+    remedy = "Reset, and start the calibration of the tool again with somebody at the panel."

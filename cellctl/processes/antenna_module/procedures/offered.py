@@ -15,6 +15,8 @@ from cellctl.processes.antenna_module.procedures.teach_plug import teach_plug_on
 from cellctl.processes.antenna_module.procedures.teach_reference import (
     teach_reference_on_cell,
 )
+from cellctl.processes.antenna_module.procedures.touch_tool import touch_tool_on_cell
+from cellctl.processes.antenna_module.procedures.turn_tool import turn_tool_on_cell
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
@@ -57,7 +59,11 @@ def antenna_procedures(
     if section is not None:
         teach = partial(teach_reference_on_cell, cell, recipes[0], section, services)
         cameras.append(procedure(205, "teach reference", teach))
-    return cameras + [
+    tool = [
+        procedure(207, "tool by turning", partial(turn_tool_on_cell, cell, recipes[0], services)),
+        procedure(208, "tool by touches", partial(touch_tool_on_cell, cell)),
+    ]
+    return [*cameras, *tool] + [
         Procedure(
             number,
             TEACH,

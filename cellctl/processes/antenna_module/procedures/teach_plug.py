@@ -12,7 +12,6 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM
-from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
 from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
@@ -21,6 +20,7 @@ from cellctl.processes.antenna_module.faults.calibration import NobodyPlugged
 from cellctl.processes.antenna_module.faults.plugging import ModuleMissing
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE_S, jogged_by_hand
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
@@ -41,9 +41,6 @@ SLOT = "1"
 _WAITING_M = 10e-3
 """Height of the tips over the socket's face while the arm waits for the operator."""
 _OVER_M = 20e-3
-PATIENCE_S = 900.0
-"""For the operator, each time."""
-_POLL_S = 0.1
 _LOOK_AGAIN_S = 2.0
 
 
@@ -82,7 +79,7 @@ async def _one_plug(run: PluggingRun, count: int) -> TaughtPlug:
     located = await _looked_at(run)
     await _wait_above(located)
     run.say("plug by hand: key to manual, jog until it sits, key back to remote")
-    await _plugged_by_hand(run)
+    await jogged_by_hand(run.cell.arm.robot, NobodyPlugged)
     await settle(run.cell.arm.guard)
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     await run.cell.gripper.open()
@@ -122,18 +119,3 @@ async def _wait_above(located: SocketLocated) -> None:
     await run.mover.to(raised(here, max(0.0, climb_m)))
     await run.mover.to(over)
     await run.mover.slowly_to(waiting)
-
-
-async def _plugged_by_hand(run: PluggingRun) -> None:
-    """Until the key was turned to manual and back; raises ``NobodyPlugged``."""
-    give_up_s = now_s() + PATIENCE_S
-    by_hand = False
-    while True:
-        state = run.cell.arm.robot.state()
-        if state.mode is not RobotMode.REMOTE:
-            by_hand = True
-        elif by_hand and state.ready and not state.moving:
-            return
-        if now_s() > give_up_s:
-            raise NobodyPlugged(f"nothing happened at the panel for {PATIENCE_S / 60:.0f} minutes")
-        await asyncio.sleep(_POLL_S)

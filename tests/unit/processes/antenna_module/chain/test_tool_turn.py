@@ -2,9 +2,13 @@
 
 import numpy as np
 import pytest
+from matplotlib.axes import Axes
 
+from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.calibrations import TOOL_TURN
 from cellctl.processes.antenna_module.chain.tool_turn import TurnStop, calibrate_tool_turn
+from cellctl.processes.antenna_module.chain.turn_picture import turn_picture
 from cellctl.processes.antenna_module.faults.calibration import TurnInvalid
 
 AXIS_M, OFFSET_M = np.array([3.1e-3, -1.7e-3]), np.array([0.4e-3, 0.9e-3])
@@ -60,3 +64,32 @@ def test_a_feature_that_does_not_turn_with_the_joint_is_refused() -> None:
 
 def test_noise_beyond_the_limit_does_not_pass() -> None:
     assert not calibrate_tool_turn(stops(np.arange(0.0, 360.0, 45.0), noise_m=60e-6)).passed
+
+
+def test_the_record_is_read_back() -> None:
+    result = calibrate_tool_turn(stops(np.arange(0.0, 360.0, 60.0), noise_m=5e-6))
+    again = TOOL_TURN.result(result.to_record())
+    assert again.to_record() == result.to_record()
+    np.testing.assert_allclose(again.offset_m, result.offset_m, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("broken", [None, [], [1.0], [1.0, 2.0, 3.0], "x"])
+def test_a_damaged_record_is_refused_by_name(broken: object) -> None:
+    record = calibrate_tool_turn(stops(np.arange(0.0, 360.0, 60.0))).to_record()
+    with pytest.raises(CalibrationRecordInvalid):
+        TOOL_TURN.result({**record, "offset_mm": broken})
+
+
+def test_the_picture_shows_every_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[tuple[float, ...]] = []
+    real = Axes.plot
+
+    def plot(self: Axes, x: object, y: object, *more: object, **how: object) -> object:
+        drawn.append(tuple(np.atleast_1d(np.asarray(x, dtype=float)).tolist()))
+        return real(self, x, y, *more, **how)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Axes, "plot", plot)
+    result = calibrate_tool_turn(stops(np.arange(0.0, 360.0, 60.0), noise_m=5e-6))
+    assert turn_picture(result).startswith(b"\x89PNG")
+    seen_mm = tuple((result.seen_m[:, 0] * 1e3).tolist())
+    assert any(values == pytest.approx(seen_mm) for values in drawn if len(values) == len(seen_mm))

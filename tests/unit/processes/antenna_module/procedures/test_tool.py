@@ -1,0 +1,191 @@
+"""Procedures 207 and 208: the tool by turning over camera II, and by touches at the panel."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform, Rotation
+
+from cellctl.calibration.solvers.tool.tool import ToolResult
+from cellctl.errors.calibration import PosesNotDiverse
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.interfaces import RobotMode
+from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL, TOOL_TURN
+from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
+from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
+from cellctl.processes.antenna_module.procedures import by_hand, touch_tool, turn_tool
+from cellctl.processes.antenna_module.procedures.offered import antenna_procedures
+from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.runtime.procedure import ProcedureContext
+from tests.unit.processes.antenna_module.steps.bench import Bench
+
+POINT_M = np.array([0.55, 0.1, 0.25])
+FLANGE_T_TIP = pose_from_xyzabc((2.0, -1.0, 205.0, 30.0, 0.0, 0.0))
+
+
+def touching() -> list[RigidTransform]:
+    """The tip on the point: tilted by 45° in four directions, at two turns 90° apart."""
+    poses = []
+    for turn in (0.0, 90.0):
+        for direction in (0.0, 90.0, 180.0, 270.0):
+            tilt = Rotation.from_euler("ZYZ", [direction, 45.0, turn - direction], degrees=True)
+            rotation = tilt * Rotation.from_euler("x", 180.0, degrees=True)
+            poses.append(_with_tip_at(rotation, POINT_M))
+    return poses
+
+
+def orienting() -> list[RigidTransform]:
+    """At the point, 50 mm along x of the tool, 50 mm to the side of its y."""
+    rotation = Rotation.from_euler("x", 180.0, degrees=True)
+    axes = (rotation * FLANGE_T_TIP.rotation).as_matrix()
+    return [
+        _with_tip_at(rotation, POINT_M + 0.05 * step)
+        for step in (np.zeros(3), axes[:, 0], axes[:, 1])
+    ]
+
+
+def _with_tip_at(rotation: Rotation, place_m: np.ndarray) -> RigidTransform:
+    return RigidTransform.from_components(
+        place_m - rotation.apply(FLANGE_T_TIP.translation), rotation
+    )
+
+
+@dataclass
+class Panel:
+    """An arm that somebody jogs from pose to pose, with the key to manual and back."""
+
+    poses: list[RigidTransform]
+    told: list[str] = field(default_factory=list)
+    asked: int = 0
+
+    def state(self) -> SimpleNamespace:
+        # Still on remote, then manual, then back on remote at the next place.
+        phase = self.asked % 3
+        self.asked += 1
+        mode = RobotMode.MANUAL if phase == 1 else RobotMode.REMOTE
+        pose = self.poses[min(self.asked // 3, len(self.poses)) - 1]
+        return SimpleNamespace(mode=mode, ready=True, moving=False, base_T_flange=pose)
+
+    async def progress(self, done: int, total: int, message: str) -> None:
+        self.told.append(f"{done}/{total} {message}")
+        self.asked = 3 * (done - 1)
+
+
+async def _still(_guard: object) -> None:
+    return
+
+
+async def _in_worker(job: Any, *arguments: object) -> Any:
+    return job(*arguments)
+
+
+async def touched(panel: Panel, monkeypatch: pytest.MonkeyPatch) -> Any:
+    monkeypatch.setattr(touch_tool, "settle", _still)
+    monkeypatch.setattr(by_hand, "_POLL_S", 0.0)
+    arm = SimpleNamespace(robot=panel, guard=None)
+    cell = SimpleNamespace(arm=arm, workers=SimpleNamespace(run=_in_worker))
+    return await touch_tool.touch_tool_on_cell(
+        cast(AntennaCell, cell), cast(ProcedureContext, panel)
+    )
+
+
+async def test_touches_give_place_and_axes_of_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
+    panel = Panel(touching() + orienting())
+    outcome = await touched(panel, monkeypatch)
+    assert (outcome.kind, outcome.passed) == (TOOL, True)
+    result: ToolResult = TOOL.result(outcome.record)
+    off = result.flange_T_tool.pose.inv() * FLANGE_T_TIP
+    assert np.linalg.norm(off.translation) < 1e-6
+    assert off.rotation.magnitude() < 1e-6
+    assert outcome.picture_png.startswith(b"\x89PNG")
+    assert panel.told[0] == "1/11 by hand: tip on the point, tilted anew,"
+    assert panel.told[-1] == "11/11 by hand: tip to the side of its y axis,"
+
+
+async def test_touches_in_one_orientation_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    with pytest.raises(PosesNotDiverse):
+        await touched(Panel(orienting() * 4), monkeypatch)
+
+
+async def test_nobody_at_the_panel_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(by_hand, "PATIENCE_S", 0.0)
+    panel = Panel(touching())
+    panel.state = lambda: SimpleNamespace(mode=RobotMode.REMOTE)  # type: ignore[method-assign]
+    with pytest.raises(NobodyTouched):
+        await touched(panel, monkeypatch)
+
+
+@dataclass
+class Turning:
+    """The marks as they are seen round the axis, camera II 0.4 mm beside where it is said to be."""
+
+    bench: Bench
+    marks_mm: tuple[float, float] = (0.15, -0.1)
+    homes: int = 0
+
+    def drive(self, *_of: object) -> "Turning":
+        return self
+
+    async def stop(self, angle_rad: float, _name: str) -> TurnStop:
+        over = pose_from_xyzabc((500.0, 100.0, 500.0, 20.0, 0.0, 180.0))
+        turn = RigidTransform.from_rotation(Rotation.from_euler("z", angle_rad))
+        self.bench.base_T_flange = over * turn
+        marks_m = self.bench.base_T_flange.rotation.apply(np.array([*self.marks_mm, 0.0]) * MM)
+        return TurnStop(angle_rad, marks_m[:2] + np.array([0.4e-3, 0.0]))
+
+    async def to_taught(self, pose: str) -> None:
+        assert pose == "home"
+        self.homes += 1
+
+
+async def turned(turning: Turning, monkeypatch: pytest.MonkeyPatch) -> Any:
+    async def facts(*_of: object, **_how: object) -> None:
+        return
+
+    async def left(_cell: object) -> None:
+        return
+
+    async def progress(*_how_far: object) -> None:
+        return
+
+    monkeypatch.setattr(turn_tool, "read_facts", facts)
+    monkeypatch.setattr(turn_tool, "leave_stations", left)
+    monkeypatch.setattr(turn_tool, "TurnDrive", turning.drive)
+    monkeypatch.setattr(turn_tool, "Mover", turning.drive)
+    run = turning.bench.run()
+    cell: Any = run.cell
+    cell.workers = SimpleNamespace(run=_in_worker)
+    return await turn_tool.turn_tool_on_cell(
+        cell, run.recipe, cast(Any, SimpleNamespace(calibrations=None)),
+        cast(ProcedureContext, SimpleNamespace(progress=progress)),
+    )  # fmt: skip
+
+
+async def test_turning_gives_the_marks_beside_the_axis(monkeypatch: pytest.MonkeyPatch) -> None:
+    turning = Turning(Bench())
+    outcome = await turned(turning, monkeypatch)
+    assert (outcome.kind, outcome.passed, turning.homes) == (TOOL_TURN, True, 1)
+    result = TOOL_TURN.result(outcome.record)
+    assert np.linalg.norm(result.offset_m) == pytest.approx(np.hypot(0.15, 0.1) * MM, abs=1e-9)
+    (beside,) = (check for check in result.checks if check.name == "marks beside their drawing")
+    # The camera's own error has dropped out.
+    assert beside.value == pytest.approx(np.hypot(0.15, 0.1), abs=1e-6)
+    assert outcome.picture_png.startswith(b"\x89PNG")
+
+
+async def test_marks_far_from_their_drawing_do_not_pass(monkeypatch: pytest.MonkeyPatch) -> None:
+    outcome = await turned(Turning(Bench(), marks_mm=(1.2, 0.0)), monkeypatch)
+    assert not outcome.passed
+
+
+def test_both_are_offered_and_production_does_without() -> None:
+    bench = Bench()
+    settings = SimpleNamespace(validity_days=30, reference=None)
+    cell: Any = SimpleNamespace(settings=settings)
+    numbers = [one.number for one in antenna_procedures(cell, [bench.recipe], cast(Any, None))]
+    assert {207, 208} <= set(numbers)
+    assert {TOOL, TOOL_TURN} <= set(CALIBRATIONS)
+    assert not TOOL.required
+    assert not TOOL_TURN.required
