@@ -157,3 +157,26 @@ class WayNotReached(RobotError):
         "See in the detail how far the arm would come. Check calibration and recipe; bring the "
         "arm to a taught pose by its panel, and teach the pose before this move anew if it recurs."
     )
+
+
+class ArmOffReference(RobotError):
+    """Targets on an arm are not where they were when its base frame was measured."""
+
+    number = 319
+    text = "Arm is no longer where its base frame was measured"
+    cause = (
+        "A joint was mastered anew or exchanged, the base of the arm or the large-field head was "
+        "moved, or a target on the flange was."
+    )
+    remedy = "Find what was moved, and measure the base frame and all boards again."
+    reaction = Reaction.STOP
+
+
+class ArmReferenceMissing(RobotError):
+    """There is nothing to compare an arm with."""
+
+    number = 320
+    text = "Arm cannot be compared with its reference"
+    cause = "The base frame was measured by an older version or offline, or targets are hidden."
+    remedy = "See to it that the targets on the flange are seen, or measure the base frame again."
+    reaction = Reaction.STOP

@@ -1,7 +1,7 @@
 """The base of a robot in the large-field head (paper 2.1.2, fig. 2)."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,8 +15,12 @@ from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker
+from cellctl.procedures.arm_reference import look_at_arm
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import SOLVE_S, VisionWorkers
+
+FLANGE_TARGETS = "F"
+"""Targets on the flange have names that begin so."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,8 +35,7 @@ class AxisTurns:
     """Speed of the turns as a share of rated joint speed."""
     frames: int
     """Exposures averaged at each stop."""
-    target_prefix: str = "F"
-    """Targets on the flange have names that begin so."""
+    target_prefix: str = FLANGE_TARGETS
 
 
 async def calibrate_base(
@@ -56,8 +59,12 @@ async def calibrate_base(
     a1_stops = await motions.turn(0)
     a2_stops = await motions.turn(1)
     await motions.move(turns.start_rad)
+    reference = await look_at_arm(
+        robot, tracker, frames=turns.frames, target_prefix=turns.target_prefix
+    )
     await go_home()
-    result = await workers.run_within(SOLVE_S, calibrate_base_frame, a1_stops, a2_stops, arm)
+    found = await workers.run_within(SOLVE_S, calibrate_base_frame, a1_stops, a2_stops, arm)
+    result = replace(found, reference=reference)
     return ProcedureOutcome(
         kind=kind,
         record=result.to_record(),
@@ -84,13 +91,16 @@ class _Turner:
         for number, joints_rad in enumerate(targets, start=1):
             await self.context.progress(number, len(targets), f"axis A{axis + 1}: stop")
             await self.move(joints_rad)
-            seen = await self.tracker.measure(self.turns.frames)
-            prefix = self.turns.target_prefix
             # The tracker also sees the targets of board and frame. They do not turn with the axis.
-            flange = tuple(target for target in seen if target.name.startswith(prefix))
-            # The angles that the robot reports, not those that were commanded: it may have stopped
-            # a little beside.
-            stops.append(AxisStop(self.robot.state().joints_rad, flange))
+            # And the angles that the robot reports, not those that were commanded: it may have
+            # stopped a little beside.
+            look = await look_at_arm(
+                self.robot,
+                self.tracker,
+                frames=self.turns.frames,
+                target_prefix=self.turns.target_prefix,
+            )
+            stops.append(AxisStop(look.joints_rad, look.targets))
         return stops
 
     async def move(self, joints_rad: Array) -> None:

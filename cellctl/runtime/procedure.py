@@ -55,7 +55,8 @@ class Procedure:
     """As the line sees it in its step register."""
     label: str
     run: Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
-    """Its result is None when the procedure waits for its counterpart, such as 104 for 105."""
+    """Its result is None when the procedure waits for its counterpart, such as 104 for 105, or only
+    checks something."""
     valid_for: timedelta
     """How long a result that passes stays valid."""
     contact: bool = False

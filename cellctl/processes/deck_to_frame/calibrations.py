@@ -12,7 +12,7 @@ from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.force import ForceLimitExceeded, SensorSaturated
-from cellctl.errors.robot import ControllerFault
+from cellctl.errors.robot import ArmOffReference, ControllerFault
 from cellctl.errors.vision import HeadsMoved
 from cellctl.processes.deck_to_frame.faults import CorrectionDiverging, MatingOverforce
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2
@@ -56,6 +56,8 @@ BASE_FRAME = CalibrationKind(
     name="base_frame",
     parse=BaseFrameResult.from_record,
     register="base_frame",
+    # The arm, its mastering or the large-field head is another one than it was measured with.
+    invalidated_by=frozenset({ArmOffReference}),
     procedures=(103,),
 )
 """Base of the main robot in the large-field head."""
@@ -72,6 +74,8 @@ BOARD_TRANSFER = CalibrationKind(
             CorrectionDiverging,
             # Nor do the heads agree with each other.
             HeadsMoved,
+            # The base that the boards were measured in is no longer there.
+            ArmOffReference,
             # There was contact where none was expected: the deck may have met a head.
             ForceLimitExceeded,
         }

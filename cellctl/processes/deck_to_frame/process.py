@@ -137,7 +137,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         return replay(record, read, calibrations)
 
     def procedures(self) -> Sequence[Procedure]:
-        """Calibration and commissioning, 101 to 108."""
+        """Calibration and commissioning, 101 to 109."""
         from cellctl.processes.deck_to_frame.procedures.offered import deck_procedures
 
         # The cell's measurements belong to its devices: they are offered once, with those of the

@@ -69,7 +69,7 @@ class MaintenanceJob(Job):
             except HeldMeanwhile:
                 _log.info("held meanwhile: the procedure begins again")
         if outcome is None:
-            _log.info("measured, waiting for its counterpart")
+            _log.info("ended with nothing to store")
             return
         await self._keep(outcome)
 

@@ -1,13 +1,18 @@
 """Procedure 103: the arm turns one axis at a time, and the solver finds the base."""
 
+from datetime import timedelta
+
 import numpy as np
 import pytest
 
 from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
+from cellctl.errors.calibration import CalibrationInvalidated
 from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.robot import ArmOffReference, ArmReferenceMissing
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
-from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME
+from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, BOARD_TRANSFER
+from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.unit.calibration.solvers.base_frame.test_base_frame import (
     C_T_BASE,
@@ -25,13 +30,15 @@ class Watching:
         self._main = rig.bench.cell.main
         self._rng = np.random.default_rng(0)
         self.frames: list[int] = []
+        self.mastered_beside_rad = np.zeros(6)
+        """By how much the arm really stands beside the joints that it reports."""
 
     async def serial_number(self) -> str:
         return "ET-7"
 
     async def measure(self, frames: int = 1) -> tuple[Target, ...]:
         self.frames.append(frames)
-        c_T_flange = C_T_BASE * flange(self._main.joints_rad)
+        c_T_flange = C_T_BASE * flange(self._main.joints_rad + self.mastered_beside_rad)
         places = [c_T_flange.apply(place) + self._rng.normal(0, SIGMA_M, 3) for place in RING]
         named = [Target(f"F{n}", place, SIGMA_M) for n, place in enumerate(places, 1)]
         return (*named, Target("P1", np.zeros(3), SIGMA_M))
@@ -69,7 +76,7 @@ async def test_the_base_is_found_and_the_arm_goes_home(
     np.testing.assert_allclose(np.delete(second, 1, axis=1), 0.0, atol=1e-9)
     for end in (home, home_again):
         np.testing.assert_allclose(end, main.poses_deg["home"], atol=1e-9)
-    assert watching.frames == [settings.tracker_frames] * 2 * stops
+    assert watching.frames == [settings.tracker_frames] * (2 * stops + 1)
     assert all(move.speed == main.speed_percent / 100 for move in rig.bench.cell.main.moves)
 
 
@@ -85,3 +92,50 @@ async def test_a_silent_head_ends_it(rig: ProcedureRig) -> None:
     with pytest.raises(ReplyTimeout):
         await rig.run(103)
     assert len(rig.bench.cell.main.moves) == 3, "home, middle of the arc, first stop"
+
+
+async def measured(rig: ProcedureRig) -> None:
+    """Procedure 103, with its result in the store."""
+    outcome = await rig.run(103)
+    rig.bench.calibrations.store(BASE_FRAME, outcome.record, "ET-7", timedelta(days=1), None)
+    rig.bench.cell.main.moves.clear()
+
+
+async def test_an_arm_that_nobody_has_touched_passes_its_check(
+    rig: ProcedureRig, watching: Watching
+) -> None:
+    await measured(rig)
+    assert await rig.procedures[109].run(rig.context) is None
+    assert "all targets within 0." in rig.told[-1].message
+    joints = np.degrees([move.target for move in rig.bench.cell.main.moves])
+    settings, main = rig.bench.settings, rig.bench.deck.main_config
+    np.testing.assert_allclose(joints[-2], settings.base_frame_joints_deg, atol=1e-9)
+    np.testing.assert_allclose(joints[-1], main.poses_deg["home"], atol=1e-9)
+
+
+@pytest.mark.parametrize("joint", range(1, 7))
+async def test_a_joint_that_was_mastered_anew_is_found_and_costs_what_rests_on_the_arm(
+    rig: ProcedureRig, watching: Watching, joint: int
+) -> None:
+    await measured(rig)
+    # A joint near the flange has a short lever: the ring of targets is all that shows its turn.
+    watching.mastered_beside_rad[joint - 1] = np.radians(0.02 if joint < 4 else 0.3)
+    with pytest.raises(ArmOffReference) as caught:
+        await rig.procedures[109].run(rig.context)
+    assert rig.bench.cell.main.moves, "the arm is home before anybody is told"
+    home = rig.bench.deck.main_config.poses_deg["home"]
+    np.testing.assert_allclose(np.degrees(rig.bench.cell.main.joints_rad), home, atol=1e-9)
+    await invalidate_after(caught.value, rig.bench.calibrations, rig.archive)
+    for kind in (BASE_FRAME, BOARD_TRANSFER):
+        with pytest.raises(CalibrationInvalidated, match="F319"):
+            rig.bench.calibrations.read(kind)
+
+
+async def test_a_base_frame_without_a_reference_cannot_be_checked(
+    rig: ProcedureRig, watching: Watching
+) -> None:
+    """As an older version has stored it; nothing is measured or voided then."""
+    with pytest.raises(ArmReferenceMissing, match="without one"):
+        await rig.procedures[109].run(rig.context)
+    assert not watching.frames
+    assert rig.bench.calibrations.read(BASE_FRAME).reference is None

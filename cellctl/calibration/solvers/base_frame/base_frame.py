@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.calibration.arm_reference import ArmReference
 from cellctl.calibration.checks import (
     Checks,
     LimitCheck,
@@ -69,6 +70,8 @@ class BaseFrameResult:
     checks: Checks
     warnings: tuple[str, ...]
     method: str = "joint fit of the A1 and A2 axes with commanded angles"
+    reference: ArmReference | None = None
+    """Targets in the middle of both arcs, to notice later that the arm was moved."""
     axes: tuple[AxisFit, AxisFit] | None = None
     """For the picture only, not in the record."""
 
@@ -79,7 +82,9 @@ class BaseFrameResult:
 
     def to_record(self) -> dict[str, Any]:
         """Plain data for the store."""
+        kept = {} if self.reference is None else {"reference": self.reference.to_record()}
         return {
+            **kept,
             **evidence_to_record(self.method, self.checks, self.warnings),
             "c_T_base": pose_to_record(self.c_T_base),
             "a1_mm": self.a1_m / MM,
@@ -92,6 +97,8 @@ class BaseFrameResult:
     def from_record(cls, record: Mapping[str, Any]) -> "BaseFrameResult":
         """The inverse of ``to_record``."""
         first, second = np.radians(record["arcs_deg"])
+        # Records of offline solutions, and of earlier versions, have none.
+        kept = record.get("reference")
         return cls(
             c_T_base=pose_from_record(record["c_T_base"]),
             a1_m=record["a1_mm"] * MM,
@@ -101,6 +108,7 @@ class BaseFrameResult:
             checks=checks_from_record(record["checks"]),
             warnings=tuple(record["warnings"]),
             method=str(record["method"]),
+            reference=ArmReference.from_record(kept) if kept is not None else None,
         )
 
 

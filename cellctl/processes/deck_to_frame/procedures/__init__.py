@@ -1,1 +1,1 @@
-"""Maintenance on this cell: 101 to 108. ``offered`` lists them with their devices."""
+"""Maintenance on this cell: 101 to 109. ``offered`` lists them with their devices."""

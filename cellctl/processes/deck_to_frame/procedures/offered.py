@@ -1,4 +1,4 @@
-"""Procedures 101 to 108: the generic ones with this process's devices, and its own."""
+"""Procedures 101 to 109: the generic ones with this process's devices, and its own."""
 
 from collections.abc import Awaitable, Callable, Sequence
 from datetime import timedelta
@@ -14,7 +14,8 @@ from cellctl.cell.free_moves import free_tolerance, guarded_section
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.config.robot_drivers import first_link_mm
 from cellctl.geometry.pose import MM
-from cellctl.procedures.base_frame import AxisTurns, calibrate_base
+from cellctl.procedures.arm_reference import check_arm_reference
+from cellctl.procedures.base_frame import FLANGE_TARGETS, AxisTurns, calibrate_base
 from cellctl.procedures.payload import identify_payload_on_cell
 from cellctl.procedures.stereo_head import calibrate_head
 from cellctl.procedures.stop_latency import measure_stop_latency_on_cell
@@ -65,6 +66,7 @@ def deck_procedures(
         procedure(106, "identify payload", on_cell.payload),
         procedure(107, "measure stop latency", on_cell.stop_latency),
         *_contact_stiffness(cell, services, valid_for),
+        procedure(109, "check main arm", on_cell.main_arm),
     )
 
 
@@ -136,6 +138,23 @@ class _OnCell:
                 turns=turns,
                 arm=arm,
                 kind=BASE_FRAME,
+                go_home=partial(main_to_home, cell),
+            )
+
+    async def main_arm(self, context: ProcedureContext) -> None:
+        """109: where 103 ended, so that the way there and home is that of 103."""
+        cell = self._cell
+        reference = self._services.calibrations.read(BASE_FRAME).reference
+        await clear_the_cell(cell, context.board)
+        async with guarded_section(cell.arm, free_tolerance(cell.arm)):
+            await check_arm_reference(
+                context,
+                cell.main,
+                cell.tracker,
+                reference,
+                speed_ratio=cell.main_config.speed_percent / 100,
+                frames=cell.settings.tracker_frames,
+                target_prefix=FLANGE_TARGETS,
                 go_home=partial(main_to_home, cell),
             )
 

@@ -1,4 +1,4 @@
-"""The moves of the procedures 101 to 107; 108 makes those of an assembly."""
+"""The moves of the procedures 101 to 107; 108 makes those of an assembly, 109 some of 103."""
 
 from collections.abc import Iterator
 from itertools import pairwise

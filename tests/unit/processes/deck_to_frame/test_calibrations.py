@@ -22,7 +22,8 @@ def test_every_kind_is_made_by_procedures_that_exist(rig: RunRig) -> None:
     services: Any = None  # procedures use them only when they run
     offered = deck_procedures(rig.bench.deck, services, WaitingPlacements())
     numbers = {number for kind in CALIBRATIONS for number in kind.procedures}
-    assert numbers == {procedure.step for procedure in offered}
+    only_checks = {109}
+    assert numbers | only_checks == {procedure.step for procedure in offered}
 
 
 @every_kind

@@ -1,0 +1,93 @@
+"""Targets on an arm at one place of its joints, kept to notice that the arm was moved since.
+
+Seen again at the same joints by the same head, every target is where it was, unless the base of the
+arm or the head was moved, a joint was mastered anew or exchanged, or a target was. Which of these
+it was needs no kinematics to tell, and none is used: whatever rests on the arm is wrong then.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cellctl.errors.robot import ArmOffReference, ArmReferenceMissing
+from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.target_tracker import Target
+
+LEAST_TARGETS = 3
+"""Fewer may all lie where a turn of the arm does not move them."""
+MOVED_M = 0.2e-3
+"""Less than this is no fault: the temperature of arm and floor moves a target so far."""
+_SIGMAS = 5.0
+"""Of a target's displacement. With six targets one check of 10 000 is a false alarm."""
+_REPEATABILITY_M = 2e-5
+"""Standard deviation of a coordinate of the arm, each time that it comes to the place."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArmReference:
+    """One look at the arm."""
+
+    joints_rad: Array
+    """Shape (6,)."""
+    targets: tuple[Target, ...]
+
+    def to_record(self) -> dict[str, Any]:
+        """Plain data, in mm and degrees."""
+        return {
+            "joints_deg": np.degrees(self.joints_rad).tolist(),
+            "targets": [
+                {
+                    "name": target.name,
+                    "position_mm": (target.position_m / MM).tolist(),
+                    "sigma_mm": target.sigma_m / MM,
+                }
+                for target in self.targets
+            ],
+        }
+
+    @classmethod
+    def from_record(cls, record: Mapping[str, Any]) -> "ArmReference":
+        """The inverse of ``to_record``."""
+        targets = (
+            Target(
+                str(entry["name"]),
+                np.array(entry["position_mm"], dtype=float) * MM,
+                float(entry["sigma_mm"]) * MM,
+            )
+            for entry in record["targets"]
+        )
+        return cls(np.radians(record["joints_deg"]), tuple(targets))
+
+
+def require_arm_at_reference(then: ArmReference, now: ArmReference) -> float:
+    """How far the target is from its place that is farthest, in m.
+
+    Raises ``ArmOffReference`` when one is farther than noise explains, and ``ArmReferenceMissing``
+    when fewer than three are seen again.
+    """
+    pairs = _pairs(then.targets, now.targets)
+    if len(pairs) < LEAST_TARGETS:
+        names = ", ".join(target.name for target, _ in pairs) or "none"
+        raise ArmReferenceMissing(f"of its targets these are seen again: {names}")
+    worst_m, worst_share, words = 0.0, 0.0, ""
+    for before, after in pairs:
+        off_m = float(np.linalg.norm(after.position_m - before.position_m))
+        sigma_m = float(
+            np.hypot(np.hypot(before.sigma_m, after.sigma_m), 2**0.5 * _REPEATABILITY_M)
+        )
+        limit_m = max(MOVED_M, _SIGMAS * sigma_m)
+        worst_m = max(worst_m, off_m)
+        # Written so that a place that is not a number is off.
+        if not off_m / limit_m <= max(1.0, worst_share):
+            worst_share = off_m / limit_m
+            words = f"{before.name} {off_m / MM:.3f} mm off, at most {limit_m / MM:.3f} mm"
+    if words:
+        raise ArmOffReference(words)
+    return worst_m
+
+
+def _pairs(then: Sequence[Target], now: Sequence[Target]) -> list[tuple[Target, Target]]:
+    seen = {target.name: target for target in now}
+    return [(target, seen[target.name]) for target in then if target.name in seen]

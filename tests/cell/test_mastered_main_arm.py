@@ -1,0 +1,31 @@
+"""A main arm that was mastered anew after its base frame was measured, on the whole fake cell."""
+
+import pytest
+
+from cellctl.packml.reject import RejectCode
+from fakes.demo.processes.deck_calibration import PROCEDURES
+from tests.cell.rigs.own_cell import OwnCell
+
+# Procedure 103 alone takes two minutes; the comparison has tests of its own.
+pytestmark = [pytest.mark.timeout(600), pytest.mark.long]
+
+TURNED_DEG = 0.03
+
+
+def test_a_main_arm_that_was_mastered_anew(own: OwnCell) -> None:
+    own.fake().ready()
+    own.daemon().ready()
+    base_frame = next(procedure for procedure in PROCEDURES if procedure.number == 103)
+    with own.control() as control:
+        base_frame.prepare(control)
+        for number in (103, 109):
+            plc = own.plc("--mode", "maintenance", "--recipe", str(number))
+            assert plc.end(400) == 0, (number, plc.stdout)
+            assert plc.messages[-1]["result"] == "good"
+        control.request("master", robot="main", joint=1, deg=TURNED_DEG)
+    moved = own.plc("--mode", "maintenance", "--recipe", "109")
+    assert moved.end(120) != 0
+    assert moved.messages[-1]["error_code"] == 319
+    again = own.plc("--serial", "AGAIN")
+    assert again.end(60) != 0
+    assert again.messages[-1]["reject_code"] == RejectCode.CALIBRATION_INVALID
