@@ -60,7 +60,7 @@ class CameraRack:
             self._pool(),
             options=self._look(),
             identity=f"fake-head;{camera.serial};1.0",
-            exposure_us=self._scenario.optics[camera.optics].exposure_us,
+            exposure_us=self._scenario.optics_of(name).exposure_us,
         )
         return _frame_device(name, port, server)
 
@@ -79,7 +79,7 @@ class CameraRack:
             port,
             take,
             identity=f"fake-camera;{camera.serial};1.0",
-            exposure_us=self._scenario.optics[camera.optics].exposure_us,
+            exposure_us=self._scenario.optics_of(name).exposure_us,
         )
         return _frame_device(name, port, server)
 

@@ -87,6 +87,10 @@ class Scenario(Section):
         """Stereo heads and single cameras by name."""
         return {**self.stereo_cameras, **self.cameras}
 
+    def optics_of(self, camera: str) -> Optics:
+        """Lens and sensor of a head or camera, nominally."""
+        return self.optics[self.all_cameras()[camera].optics]
+
     def device_names(self) -> list[str]:
         """Every device, kind by kind."""
         return [*self.robots, *(name for kind in self._listening() for name in kind)]

@@ -1,13 +1,14 @@
 """A demonstration whose images come through the fake GenTL producer, harvesters and `gige`."""
 
 import json
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from fakes.gentl.build import NoCompilerError, build_producer
+from fakes.gentl.build import NAME, NoCompilerError, build_producer
 from fakes.gentl.cameras import FakeCamera
 from fakes.gentl.shown import shown
 from fakes.scenario import Scenario
@@ -17,9 +18,15 @@ Cameras = Literal["gentl", "frame-server"]
 
 _SECTIONS = ("stereo_cameras", "cameras")
 _DRIVER, _REPLACED = "gige", "frame-server"
+_DRIVER_LINE = re.compile(rf'^driver *= *"{_REPLACED}"', re.MULTILINE)
+_SETTINGS_LINE = re.compile(r"^settings *= *\{[^\n]*\}", re.MULTILINE)
 _BETWEEN_TRIGGERS_S = 0.5
 """A real pair of cameras has 5 ms; fake cell, renderer and daemon share two processors."""
 _REPLY_TIMEOUT_S = 60.0
+
+
+class UnusualCellFile(RuntimeError):
+    """The cell file is not written so that its cameras can be replaced line by line."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,8 +45,8 @@ def way_of_images(
     """How images come, and a sentence for the user where there is a choice; None: as they did.
 
     Without a wish it is the producer, where this computer can build it. ``load`` reads the
-    scenario, ``folder`` takes what is made. Raises ``NoCompilerError`` for a wish that cannot be
-    met.
+    scenario, ``folder`` takes what is made. Raises ``NoCompilerError`` and ``UnusualCellFile`` for
+    a wish that cannot be met.
     """
     written = _read(cell)
     if not any(True for _ in _frame_servers(written)):
@@ -54,7 +61,7 @@ def way_of_images(
         )
     try:
         path = _prepared(written, cell.absolute(), scenario, folder.absolute())
-    except NoCompilerError as error:
+    except (NoCompilerError, UnusualCellFile) as error:
         if wanted is not None:
             raise
         reason = str(error).partition("\n")[0]
@@ -77,28 +84,42 @@ def _read(cell: Path) -> dict[str, Any]:
 
 def _prepared(written: dict[str, Any], cell: Path, scenario: Scenario, folder: Path) -> GentlPath:
     """The producer compiled, and the cell file written where its relative paths hold too."""
+    state, producer = folder / "cameras", folder / NAME
+    text = _with_gige_cameras(cell, written, scenario, producer)
     folder.mkdir(exist_ok=True)
-    state = folder / "cameras"
     # Named in the producer itself, so that every program that loads it finds the same cameras.
-    producer = build_producer(folder, f'-DSTATE_FILE="{state}"')
-    there = shown(scenario)
-    for name, section in _frame_servers(written):
+    build_producer(folder, f'-DSTATE_FILE="{state}"')
+    changed = _beside_the_same_files(cell, folder / "cell")
+    changed.write_text(text, encoding="utf-8")
+    return GentlPath(state, changed)
+
+
+def _with_gige_cameras(
+    cell: Path, written: dict[str, Any], scenario: Scenario, producer: Path
+) -> str:
+    """The text of a cell file with other cameras. Raises ``UnusualCellFile``."""
+    text, there = cell.read_text(encoding="utf-8"), shown(scenario)
+    for section, device in _frame_servers(written):
+        name = section.rpartition(".")[2]
         if name not in there:
             continue  # the daemon says that it does not answer
-        optics = scenario.optics[scenario.all_cameras()[name].optics]
-        section["driver"] = _DRIVER
-        section["settings"] = {
+        patience_s = device.get("settings", {}).get("reply_timeout_s", _REPLY_TIMEOUT_S)
+        device["driver"] = _DRIVER
+        device["settings"] = {
             **_chosen(there[name]),
             "producers": [str(producer)],
             "pixel_format": there[name][0].pixel_format,
-            "exposure_s": optics.exposure_us / 1e6,
+            "exposure_s": scenario.optics_of(name).exposure_us / 1e6,
             "connect_timeout_s": _REPLY_TIMEOUT_S,
-            "image_timeout_s": section.get("settings", {}).get("reply_timeout_s", _REPLY_TIMEOUT_S),
+            "image_timeout_s": patience_s,
             "tries": 1,
         }
-    changed = _beside_the_same_files(cell, folder / "cell")
-    changed.write_text(_toml_document(written), encoding="utf-8")
-    return GentlPath(state, changed)
+        text = _edited(text, section, device["settings"])
+    if tomllib.loads(text) != written:
+        raise UnusualCellFile(
+            f"{cell} does not have driver and settings of each camera in one line of its section"
+        )
+    return text
 
 
 def _beside_the_same_files(cell: Path, folder: Path) -> Path:
@@ -115,7 +136,7 @@ def _frame_servers(written: Mapping[str, Any]) -> Iterator[tuple[str, dict[str, 
     for section in _SECTIONS:
         for name, device in written.get(section, {}).items():
             if device.get("driver") == _REPLACED and device.get("simulated") is True:
-                yield name, device
+                yield f"{section}.{name}", device
 
 
 def _chosen(lenses: tuple[FakeCamera, ...]) -> dict[str, Any]:
@@ -127,28 +148,22 @@ def _chosen(lenses: tuple[FakeCamera, ...]) -> dict[str, Any]:
     return chosen if len(lenses) == 1 else chosen | {"max_difference_s": _BETWEEN_TRIGGERS_S}
 
 
-def _toml_document(written: Mapping[str, Any]) -> str:
-    """A line for each key of the top, a table for each device."""
-    lines = [f"{_toml(key)} = {_toml(value)}" for key, value in written.items() if not _deep(value)]
-    for section, devices in written.items():
-        if not _deep(devices):
-            continue
-        for name, keys in devices.items():
-            lines += ["", f"[{_toml(section)}.{_toml(name)}]"]
-            lines += [f"{_toml(key)} = {_toml(value)}" for key, value in keys.items()]
-    return "\n".join(lines) + "\n"
+def _edited(text: str, section: str, settings: Mapping[str, Any]) -> str:
+    """The text with another driver in one section; every other line stays where it is.
 
-
-def _deep(value: Any) -> bool:
-    return isinstance(value, dict) and all(isinstance(item, dict) for item in value.values())
+    So what the daemon says of a line of the cell file holds for the user's own file too.
+    """
+    header, begin, rest = text.partition(f"[{section}]\n")
+    body, end, after = rest.partition("\n[")
+    body = _DRIVER_LINE.sub(f'driver = "{_DRIVER}"', body, count=1)
+    body = _SETTINGS_LINE.sub(lambda _: f"settings = {_toml(settings)}", body, count=1)
+    return header + begin + body + end + after
 
 
 def _toml(value: Any) -> str:
     """A value in one line; strings, numbers and truth values are those of JSON."""
     if isinstance(value, dict):
-        return (
-            "{ " + ", ".join(f"{_toml(key)} = {_toml(item)}" for key, item in value.items()) + " }"
-        )
+        return "{ " + ", ".join(f"{_toml(key)} = {_toml(value[key])}" for key in value) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(map(_toml, value)) + "]"
     return json.dumps(value, ensure_ascii=False)

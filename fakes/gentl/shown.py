@@ -10,7 +10,7 @@ from fakes.sections import Camera, SingleCamera, StereoCamera
 def shown(scenario: Scenario) -> dict[str, tuple[FakeCamera, ...]]:
     """By the name of the device; of a head the left camera first."""
     return {
-        name: tuple(_lenses(name, camera, scenario.optics[camera.optics].image_px))
+        name: tuple(_lenses(name, camera, scenario.optics_of(name).image_px))
         for name, camera in scenario.all_cameras().items()
     }
 

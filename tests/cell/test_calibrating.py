@@ -1,4 +1,6 @@
-"""Every calibration from nothing, as a line runs them on the fake cell."""
+"""Every calibration from nothing, as `make demo-calibration` has a line run them."""
+
+import json
 
 import pytest
 
@@ -13,20 +15,20 @@ pytestmark = [pytest.mark.timeout(900), pytest.mark.long]
 
 
 def test_all_procedures_in_their_order_open_the_gate(own: OwnCell) -> None:
-    folder = own.folder / "calibration"
-    own.change(str(own.calibration), str(folder))
-    own.fake().ready()
-    daemon = own.daemon()
-    daemon.ready()
-    with own.control() as control:
-        for procedure in PROCEDURES:
-            procedure.prepare(control)
-            plc = own.plc("--mode", "maintenance", "--recipe", str(procedure.number))
-            assert plc.end(400) == 0, (procedure.title, plc.stdout)
-            assert plc.messages[-1]["result"] == "good", procedure.title
-    calibrations = CalibrationStore(folder, CALIBRATIONS)
+    own.change(str(own.calibration), str(own.folder / "nothing-yet"))
+    out = own.folder / "run"
+    demo = own.demo(out, "--calibrate")
+    assert demo.end(870) == 0, demo.stdout + demo.stderr
+    demo.nobody_left()
+    for procedure in PROCEDURES:
+        assert f"procedure {procedure.number}: {procedure.title}" in demo.stdout
+    calibrations = CalibrationStore(out / "calibration", CALIBRATIONS)
     assert calibrations.fault(CALIBRATIONS, PLANNED) is None
     kinds = [kind.for_recipe(1) for kind in CALIBRATIONS]
     found = calibrations.read_all(kinds, utc_now() + PLANNED)
     assert found.ids.keys() == {kind.name for kind in kinds}, "what commissioning measures too"
-    assert [entry for entry in daemon.log if entry.get("event") == "fault"] == []
+    heads = (found.serial_numbers["head_1"], found.serial_numbers["head_2"])
+    assert heads == ("FH-0001L+FH-0001R", "FH-0002L+FH-0002R"), "as the driver reads its cameras"
+    log = (out / "daemon.log").read_text(encoding="utf-8").splitlines()
+    entries = [json.loads(line) for line in log if line.startswith("{")]
+    assert [entry for entry in entries if entry.get("event") == "fault"] == []

@@ -27,7 +27,23 @@ def test_a_good_part_with_its_record(own: OwnCell) -> None:
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     _within_the_limits_of_the_mission(result)
     _record_is_complete(out, result)
+    assert _drivers_of_the_heads(out) == {"gige"}, "images through a GenTL producer"
     _commands_find_the_run(out / "store")
+
+
+@pytest.mark.long  # a whole job, of which the way of the images alone differs
+def test_a_good_part_with_images_of_frame_servers(own: OwnCell) -> None:
+    out = own.folder / "run"
+    demo = own.demo(out, "--cameras", "frame-server")
+    assert demo.end(280) == 0, demo.stdout + demo.stderr
+    demo.nobody_left()
+    _within_the_limits_of_the_mission(json.loads((out / "result.json").read_text("utf-8")))
+    assert _drivers_of_the_heads(out) == {"frame-server"}
+
+
+def _drivers_of_the_heads(out: Path) -> set[str]:
+    cell = json.loads((out / "report" / "cell.json").read_text(encoding="utf-8"))
+    return {head["driver"] for head in cell["stereo_cameras"].values()}
 
 
 @pytest.mark.long  # the wire tests run the same job files, one arm at a time

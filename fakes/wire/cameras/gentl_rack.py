@@ -49,7 +49,7 @@ class GentlRack:
             for lens in lenses:
                 self._file.inject(lens.serial, fault, amount)
 
-        usual_us = self._scenario.optics[self._scenario.all_cameras()[name].optics].exposure_us
+        usual_us = self._scenario.optics_of(name).exposure_us
         return GentlCamera(
             self._take(name), GentlFaults(at_producer), lenses=len(lenses), exposure_us=usual_us
         )

@@ -9,7 +9,7 @@ import pytest
 from cellctl.config.load import load_cell
 from fakes import scenario as scenarios
 from fakes.demo import gentl
-from fakes.demo.gentl import GentlPath, way_of_images
+from fakes.demo.gentl import GentlPath, UnusualCellFile, way_of_images
 from fakes.gentl.build import NAME, NoCompilerError
 from fakes.scenario import Scenario
 
@@ -57,6 +57,11 @@ def test_heads_are_pairs_of_gige_cameras(tmp_path: Path, built: list[tuple[str, 
     assert head.settings["producers"] == [str(tmp_path / "gentl" / NAME)]
     assert head.settings["exposure_s"] == pytest.approx(0.008)
     assert there.model_copy(update={"stereo_cameras": before.stereo_cameras}) == before
+    changed, shipped = (
+        file.read_text(encoding="utf-8").splitlines() for file in (path.cell, CONFIG / "deck.toml")
+    )
+    differ = [line for line, was in zip(changed, shipped, strict=True) if line != was]
+    assert len(differ) == 4, "driver and settings of two heads; all else keeps its line"
     before_head = before.stereo_cameras["head_1"]
     same = {"driver": before_head.driver, "settings": before_head.settings}
     assert head.model_copy(update=same) == before_head
@@ -87,6 +92,18 @@ def test_a_folder_beside_the_cell_file_has_no_link_to_itself(
     path = through_gentl(cell, deck, tmp_path / "run" / "gentl")
     links = {link.name for link in path.cell.parent.iterdir() if link.is_symlink()}
     assert links == {"features"}
+
+
+def test_a_cell_file_that_is_written_otherwise_keeps_its_frame_servers(tmp_path: Path) -> None:
+    text = (CONFIG / "deck.toml").read_text(encoding="utf-8")
+    settings = "settings = { host"
+    cell = tmp_path / "cell.toml"
+    cell.write_text(text.replace(settings, "settings.port = 1\nsettings.x = { host", 1))
+    path, said = way_of_images(None, cell, deck, tmp_path / "gentl")
+    assert path is None
+    assert "does not have driver and settings of each camera in one line" in said
+    with pytest.raises(UnusualCellFile):
+        way_of_images("gentl", cell, deck, tmp_path / "gentl")
 
 
 def test_without_a_compiler_it_says_that_frame_servers_stand_in(
