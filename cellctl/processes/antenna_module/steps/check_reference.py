@@ -9,8 +9,8 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.calibrations import REFERENCE
 from cellctl.processes.antenna_module.chain.reference_check import (
     ReferenceReading,
+    further_looks,
     furthest_m,
-    in_doubt,
     require_nothing_moved,
 )
 from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks
@@ -44,11 +44,12 @@ async def check_reference(ready: GripperEmpty) -> GripperEmpty:
 async def _check(run: PluggingRun, taught: TaughtReference, count: int) -> None:
     arm = run.facts.plug_cell.arm
     looks = await _looks(run, count, first=1)
-    # Few looks find what has moved, and take one time in ten for moved what has not: the noise of
-    # the arm. Twice as many tell both apart, and the good check stays short.
-    if in_doubt(taught.reading, looks.reading(arm)):
-        looks += await _looks(run, count, first=count + 1)
     now = looks.reading(arm)
+    # Few looks find what has moved, and take one time in five for moved what has not: the noise of
+    # the arm. More of them tell both apart, and the good check stays short.
+    while more := further_looks(taught.reading, now, first=count, taken=len(looks.turns)):
+        looks += await _looks(run, more, first=len(looks.turns) + 1)
+        now = looks.reading(arm)
     # Before the judgement: what moved is worth most where the check fails.
     await _record(run, taught.reading, now)
     warmed = require_nothing_moved(taught.reading, now, arm.drift_m)
