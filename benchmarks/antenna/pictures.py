@@ -47,6 +47,14 @@ class Conditions:
     """Contacts that are missing, at random."""
     bent_m: float = 0.0
     """By which one contact is bent, in any direction."""
+    blocked: int = 0
+    """Holes with something in them, at random."""
+    dirt: int = 0
+    """Specks on contacts and insulator."""
+    arc_deg: float | None = None
+    """Length of the lit arc of the ring; None for all of it."""
+    height_sigma_m: float = 0.0
+    """Stated for the plane, which is exact; it counts for what is refused as of another size."""
     turn_deg: float = 0.0
     marks: bool = False
     size_px: tuple[int, int] | None = None
@@ -64,7 +72,7 @@ class Trial:
     truth: RigidTransform
     """camera_T_connector of the best fit of the good contacts as they are: what mates."""
     faulty: tuple[str, ...]
-    """Contacts that are missing or bent."""
+    """Contacts that are missing, bent or blocked."""
 
 
 @cache
@@ -98,6 +106,7 @@ def trial(seed: int, conditions: Conditions) -> Trial:
     )
     names = [str(name) for name in rng.permutation(connector.contacts)]
     missing = tuple(names[: conditions.missing])
+    blocked = tuple(names[: conditions.blocked])
     bend = rng.uniform(0.0, 2.0 * np.pi)
     bent = (
         {
@@ -116,6 +125,8 @@ def trial(seed: int, conditions: Conditions) -> Trial:
         camera_T_connector=pose,
         missing=missing,
         bent_m=bent,
+        blocked=blocked,
+        dirt=conditions.dirt,
         tip=conditions.tip,
     )
     marks_pose = api.facing(
@@ -128,7 +139,9 @@ def trial(seed: int, conditions: Conditions) -> Trial:
     )
     look = api.ConnectorLook(
         lamps=api.Lamps(
-            one_sided=conditions.one_sided, azimuth_rad=float(rng.uniform(0.0, 2.0 * np.pi))
+            one_sided=conditions.one_sided,
+            azimuth_rad=float(rng.uniform(0.0, 2.0 * np.pi)),
+            arc_deg=conditions.arc_deg,
         ),
         wall_light=conditions.wall_light,
         sensor=replace(_sensor(), noise_grey=conditions.noise_grey),
@@ -137,7 +150,7 @@ def trial(seed: int, conditions: Conditions) -> Trial:
     shown = api.render(camera, bodies, look, pixels=conditions.pixels, seed=seed)
     # The renderer gives red, green, blue; files are blue, green, red.
     image = shown.image[:, :, ::-1] if conditions.pixels == "rgb" else shown.image
-    faulty = tuple(sorted({*missing, *bent}))
+    faulty = tuple(sorted({*missing, *bent, *blocked}))
     contacts = shown.connectors[conditions.name].contacts
     places = np.array([contacts[name].connector_m[:2] for name in connector.contacts])
     plane = RigidTransform.from_translation([0.0, 0.0, _DISTANCE_M])
@@ -150,8 +163,8 @@ def trial(seed: int, conditions: Conditions) -> Trial:
         plane=PlaneCalibration(
             single.id,
             facing_camera(plane),
-            0.0,  # the plane is exact here
-            0.0,
+            conditions.height_sigma_m,
+            0.0,  # the plane is parallel to the image
             ExpectedPlace(trained, 3e-3, float(np.radians(3.0))),
         ),
         connector=connector,

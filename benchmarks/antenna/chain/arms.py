@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.geometry.pose import Array
 from fakes.sections import Chain
 from fakes.world.arm import Links, forward, inverse, nominal_links, perturbed_links
+from fakes.world.flaws.transmission import Transmission
 
 CHAIN = Chain(d1=400.0, a1=0.0, a2=440.0, elbow=40.0, d4=440.0, d6=80.0)
 """Reach 0.9 m."""
@@ -27,6 +28,8 @@ class Grade:
     joint_rad: float
     absolute_error_m: float
     """Mean over the working volume, at the connector."""
+    ripple_rad: float = 0.0
+    """Amplitude by which the gears of every joint are off, periodic in the joint's angle."""
 
 
 def _grade(name: str, absolute_error_m: float) -> Grade:
@@ -37,6 +40,8 @@ def _grade(name: str, absolute_error_m: float) -> Grade:
 
 UNCALIBRATED = _grade("uncalibrated", 0.82e-3)
 FACTORY = _grade("factory", 0.26e-3)
+GEAR_MESH = replace(FACTORY, name="factory, gear mesh", ripple_rad=float(np.radians(5.0 / 3600.0)))
+"""The factory's arm with 5 arcsec in every joint: about 20 µm at the connector, over degrees."""
 TRACKER = _grade("tracker-calibrated", 0.105e-3)
 IDEAL = _grade("ideal kinematics", 0.0)
 
@@ -65,6 +70,7 @@ class DrawnArm:
 
     links: Links
     repeatability: Repeatability
+    transmission: Transmission
     nominal: Links = field(default_factory=lambda: nominal_links(CHAIN))
 
     @classmethod
@@ -73,7 +79,10 @@ class DrawnArm:
     ) -> "DrawnArm":
         """An arm of this grade."""
         links = perturbed_links(CHAIN, rng, grade.link_m, grade.link_rad, grade.joint_rad)
-        return cls(links, repeatability)
+        # Gears of their own chance: arms of one seed differ in nothing else.
+        (chance,) = rng.spawn(1)
+        gears = Transmission(chance, CHAIN, ripple_rad=grade.ripple_rad, sag_rad=0.0)
+        return cls(links, repeatability, gears)
 
     def joints(self, base_T_flange: RigidTransform) -> Array:
         """What the controller drives to for a commanded pose, rad."""
@@ -81,7 +90,7 @@ class DrawnArm:
 
     def mean_place(self, base_T_flange: RigidTransform) -> RigidTransform:
         """Where the flange stands on average when this pose was commanded."""
-        return forward(self.links, self.joints(base_T_flange))
+        return self._reached(self.joints(base_T_flange))
 
     def place(self, base_T_flange: RigidTransform, rng: np.random.Generator) -> RigidTransform:
         """Where one approach of a commanded pose ends."""
@@ -93,7 +102,7 @@ class DrawnArm:
         """Where the flange ends when the last joint alone has turned on from a commanded pose."""
         joints = self.joints(base_T_flange)
         joints[5] += angle_rad
-        return self._scattered(forward(self.links, joints), rng)
+        return self._scattered(self._reached(joints), rng)
 
     def reported(self, place: RigidTransform, rng: np.random.Generator) -> RigidTransform:
         """The pose that the controller reports while the flange is held at a place."""
@@ -103,6 +112,9 @@ class DrawnArm:
         for _ in range(3):
             commanded = commanded * self.mean_place(commanded).inv() * target
         return commanded
+
+    def _reached(self, joints_rad: Array) -> RigidTransform:
+        return forward(self.links, joints_rad + self.transmission.error(joints_rad))
 
     def _scattered(self, pose: RigidTransform, rng: np.random.Generator) -> RigidTransform:
         noise = self.repeatability

@@ -8,9 +8,9 @@ not met.
 import argparse
 import json
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
-from dataclasses import astuple
+from dataclasses import astuple, replace
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -20,6 +20,7 @@ from rich.table import Table
 
 from benchmarks.antenna.chain.arms import (
     FACTORY,
+    GEAR_MESH,
     IDEAL,
     RP_002,
     RP_005,
@@ -51,15 +52,20 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="few cells, and only what is demanded")
     parser.add_argument("--demanded", action="store_true", help="all cells, only what is demanded")
+    parser.add_argument(
+        "--only", nargs="+", choices=[*GROUPS, REFERENCE], help="parts of the campaign"
+    )
     parser.add_argument("--seed", type=int, default=1301, help="seed of the first cell")
     arguments = parser.parse_args()
     cells = QUICK_CELLS if arguments.quick else CELLS
     seeds = range(arguments.seed, arguments.seed + cells)
-    groups = demanded_rows() + ([] if arguments.quick or arguments.demanded else further_rows())
+    few = arguments.quick or arguments.demanded
+    chosen = arguments.only or [*(DEMANDED if few else GROUPS), REFERENCE]
+    groups = [rows for name in chosen if name in GROUPS for rows in GROUPS[name]()]
     console = Console(width=150)
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
         results = _draw(pool, groups, seeds, console)
-        reference = _reference(pool, seeds)
+        reference = _reference(pool, seeds) if REFERENCE in chosen else None
     demands = demands_met(results, reference, whole=not arguments.quick)
     console.print(_table(results))
     console.print(_demand_table(demands))
@@ -68,28 +74,41 @@ def main() -> int:
     return 0 if all(demand.met for demand in demands if demand.judged) else 1
 
 
-def demanded_rows() -> list[list[Row]]:
-    """What the demands are judged by; each list shares its cells."""
-    warm, cold = Conditions(kelvin=3.0), Conditions()
-    several = Conditions(kelvin=3.0, teachings=8, socket_looks=2)
-    compared = ("difference", "absolute")
-    return [
-        [Row(UNCALIBRATED, RP_002, warm), Row(UNCALIBRATED, RP_002, several, compared)],
-        [
-            Row(FACTORY, RP_002, warm),
-            Row(FACTORY, RP_002, several, compared),
-            Row(FACTORY, RP_002, cold),
-            Row(FACTORY, RP_002, warm, _ONLY, HAND_EYE_WRONG),
-        ],
-        [
-            Row(FACTORY, RP_005, warm),
-            Row(FACTORY, RP_005, Conditions(kelvin=3.0, socket_looks=4), _ONLY),
-        ],
+_COMPARED = ("difference", "absolute")
+_WARM, _COLD = Conditions(kelvin=3.0), Conditions()
+_SEVERAL = Conditions(kelvin=3.0, teachings=8, socket_looks=2)
+
+
+def uncalibrated_rows() -> list[list[Row]]:
+    """Each list of rows shares its cells."""
+    rows = [Row(UNCALIBRATED, RP_002, _WARM), Row(UNCALIBRATED, RP_002, _SEVERAL, _COMPARED)]
+    return [rows]
+
+
+def factory_rows() -> list[list[Row]]:
+    rows = [
+        Row(FACTORY, RP_002, _WARM),
+        Row(FACTORY, RP_002, _SEVERAL, _COMPARED),
+        Row(FACTORY, RP_002, _COLD),
+        Row(FACTORY, RP_002, _WARM, _ONLY, HAND_EYE_WRONG),
     ]
+    return [rows]
+
+
+def coarse_rows() -> list[list[Row]]:
+    """A robot that repeats to 0.05 mm."""
+    looks = Conditions(kelvin=3.0, socket_looks=4)
+    return [[Row(FACTORY, RP_005, _WARM), Row(FACTORY, RP_005, looks, _ONLY)]]
+
+
+def ripple_rows() -> list[list[Row]]:
+    """Gears whose error changes over degrees, where plugs were taught and 100 mm beside it."""
+    beside = replace(_SEVERAL, slot_m=0.1)
+    return [[Row(GEAR_MESH, RP_002, _SEVERAL, _COMPARED), Row(GEAR_MESH, RP_002, beside, _ONLY)]]
 
 
 def further_rows() -> list[list[Row]]:
-    """The rest of the table: other arms, and slots that were not taught."""
+    """Other arms, and slots that were not taught."""
     away = [Conditions(slot_m=distance) for distance in (0.0, 0.05, 0.1, 0.2)]
     grades: list[Grade] = [TRACKER, IDEAL]
     return [
@@ -100,6 +119,18 @@ def further_rows() -> list[list[Row]]:
             for grade in grades
         ),
     ]
+
+
+GROUPS: Mapping[str, Callable[[], list[list[Row]]]] = {
+    "uncalibrated": uncalibrated_rows,
+    "factory": factory_rows,
+    "rp-0.05": coarse_rows,
+    "gear-mesh": ripple_rows,
+    "further": further_rows,
+}
+DEMANDED = ("uncalibrated", "factory", "rp-0.05")
+"""What the demands are judged by."""
+REFERENCE = "reference"
 
 
 def _slots(grade: Grade, away: Sequence[Conditions]) -> list[Row]:

@@ -31,24 +31,31 @@ class Demand:
 
 
 def demands_met(
-    results: Mapping[str, Mapping[str, Drawn]], reference: ReferenceCounts, *, whole: bool
+    results: Mapping[str, Mapping[str, Drawn]], reference: ReferenceCounts | None, *, whole: bool
 ) -> list[Demand]:
-    """B6 to B10 and B14. A campaign that is not whole judges what few cells can tell."""
-    demands = [_b6(results[row]["difference"], row) for row in (UNCALIBRATED_WARM, FACTORY_WARM)]
-    demands.append(_b8(results))
-    for row, scheme in (
-        (UNCALIBRATED_WARM + SEVERAL, "difference"),
-        (FACTORY_WARM + SEVERAL, "difference"),
-        (FACTORY_RP_005, CLOSED),
-    ):
-        demands.append(_b9(row, scheme, results[row][scheme], whole=whole))
+    """B6 to B10 and B14, as far as their rows were drawn.
+
+    A campaign that is not whole judges what few cells can tell.
+    """
+    demands: list[Demand] = []
     for row in (UNCALIBRATED_WARM, FACTORY_WARM):
-        few = _b9(f"{row}, 1 look, 4 taught", "difference", results[row]["difference"], whole=whole)
-        demands.append(replace(few, judged=False))
-    demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50)))
-    demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75)))
-    demands.append(_b14(reference))
-    return demands
+        if row in results:
+            one_look = results[row]["difference"]
+            demands.append(_b6(one_look, row))
+            several = results[row + SEVERAL]["difference"]
+            demands.append(_b9(row + SEVERAL, "difference", several, whole=whole))
+            few = _b9(f"{row}, 1 look, 4 taught", "difference", one_look, whole=whole)
+            demands.append(replace(few, judged=False))
+    if FACTORY_WARM in results:
+        demands.append(_b8(results))
+        demands.append(_b10(results[FACTORY_WARM]["absolute"], "3 K", (0.20, 0.50)))
+        demands.append(_b10(results[FACTORY_COLD]["absolute"], "0 K", (0.60, 0.75)))
+    if FACTORY_RP_005 in results:
+        closed = results[FACTORY_RP_005][CLOSED]
+        demands.append(_b9(FACTORY_RP_005, CLOSED, closed, whole=whole))
+    if reference is not None:
+        demands.append(_b14(reference))
+    return sorted(demands, key=lambda demand: int(demand.number[1:]))
 
 
 def _b6(drawn: Drawn, row: str) -> Demand:

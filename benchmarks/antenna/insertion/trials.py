@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch
 from fakes.world.connector.contact_lot import MatingPair, MatingSizes, Mount, draw_peaks
-from fakes.world.connector.drawing import MICRO_D_15
+from fakes.world.connector.drawing import DRAWINGS, MICRO_D_15, ConnectorDrawing
 from fakes.world.connector.insertion import (
     PinState,
     PlugPlace,
@@ -22,11 +22,10 @@ from fakes.world.connector.insertion import (
     respond,
 )
 
-DRAWING = Path("config/connectors/micro-d-15-holes.toml")
-"""Of the socket: the wrench is in its axes."""
 RATE_HZ = 100.0
 LATENCY_S = 0.25
-START_M, END_M = -0.3e-3, 2.8e-3
+START_M, BEYOND_SEAT_M = -0.3e-3, 0.3e-3
+NEAR_SEAT_M = 0.5e-3
 SEATED_N = 15.0
 """Above what sliding takes: there the drive ends."""
 NOISE_N, NOISE_N_M = 0.05, 0.002
@@ -34,7 +33,27 @@ MEAN_OF = 3
 TRUE_POSITION_M = 5e-6
 """Of pins and of holes, per axis: with a play of 0.03 mm, contacts that scatter by twice as much
 touch the walls even in a plug that is placed without any error."""
-_HOLES_M = np.array(list(MICRO_D_15.positions_m("holes").values()))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kind:
+    """Connectors of one kind, as the fake world makes them and as the cell has them drawn."""
+
+    made: ConnectorDrawing
+    drawn: Connector
+    """The socket: the wrench is in its axes."""
+    holes_m: Array
+    limits: InsertionLimits
+
+    @classmethod
+    def of(cls, made: ConnectorDrawing) -> "Kind":
+        """Of one kind, with its shipped drawing."""
+        drawn = read_connector(Path("config/connectors") / f"{made.name}-holes.toml")
+        holes_m = np.array(list(made.positions_m("holes").values()))
+        return cls(made, drawn, holes_m, InsertionLimits.of(drawn))
+
+
+KINDS = {made.name: Kind.of(made) for made in DRAWINGS.values()}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +61,10 @@ class Fault:
     """What is wrong with a pair; nothing by default."""
 
     name: str = "good"
-    bend_m: float = 0.0
-    """Of one pin, in any direction."""
-    offset_m: float = 0.0
-    """Of the plug, in any direction."""
+    bend: float = 0.0
+    """Of one pin, in any direction, relative to the capture radius of the connector."""
+    offset: float = 0.0
+    """Of the plug, in any direction, relative to the same."""
     yaw_deg: float = 0.0
     seat_early_m: float = 0.0
     missing: bool = False
@@ -53,14 +72,15 @@ class Fault:
 
 GOOD = Fault()
 FAULTS = (
-    Fault("pin bent 0.15 mm", bend_m=0.15e-3),
-    Fault("pin bent 0.30 mm", bend_m=0.30e-3),
-    Fault("offset 0.10 mm", offset_m=0.10e-3),
-    Fault("offset 0.16 mm", offset_m=0.16e-3),
-    Fault("offset 0.30 mm", offset_m=0.30e-3),
+    Fault("pin bent, 0.75 of the capture radius", bend=0.75),
+    Fault("pin bent, 1.5", bend=1.5),
+    Fault("offset 0.5", offset=0.5),
+    Fault("offset 0.8", offset=0.8),
+    Fault("offset 1.5", offset=1.5),
     Fault("yaw 1°", yaw_deg=1.0),
     Fault("seat 0.3 mm early", seat_early_m=0.3e-3),
 )
+"""A micro-D takes pins within 0.20 mm: bent by 0.15 and 0.30 mm, off by 0.10, 0.16 and 0.30 mm."""
 MISSING = Fault("contact missing", missing=True)
 
 
@@ -68,6 +88,7 @@ MISSING = Fault("contact missing", missing=True)
 class InsertionOutcome:
     """How one insertion ended."""
 
+    connector: str
     fault: str
     caught: bool
     verdict: str
@@ -81,31 +102,39 @@ class InsertionOutcome:
     """From the first early contact to where the plug stood still; 0 without a trip in time."""
 
 
-def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> InsertionOutcome:
+def run_insertion(
+    fault: Fault, seed: int, *, in_steps: bool = False, name: str = MICRO_D_15.name
+) -> InsertionOutcome:
     """Drive, watch, stop, judge.
 
     In steps of the entry the step under way is finished whatever the force: so it is driven where a
     stop request may be missed.
     """
     rng = np.random.default_rng([seed, int(in_steps)])
-    pair, place = _draw(fault, rng)
+    kind = KINDS[name]
+    limits = kind.limits
+    pair, place = _draw(kind, fault, rng)
     drive = _Drive(pair, place, rng)
-    watch = InsertionWatch(_LIMITS, MEAN_OF)
+    watch = InsertionWatch(limits, MEAN_OF)
     stop_at = np.inf
     t_s, driven_m = 0.0, START_M
-    while driven_m < END_M:
+    while driven_m < kind.made.seat_m + BEYOND_SEAT_M:
         sample = drive.sample(t_s, driven_m)
-        speed_m_s = _LIMITS.at(driven_m).speed_m_s
+        speed_m_s = limits.at(driven_m).speed_m_s
         if stop_at == np.inf and watch.feed(sample) is not None:
-            stop_at = t_s + (_rest_of_step_s(driven_m, speed_m_s) if in_steps else LATENCY_S)
-        seated = sample.depth_m > 2e-3 and sample.axial_n > drive.sliding_n + SEATED_N
+            stop_at = t_s + (
+                _rest_of_step_s(driven_m, speed_m_s, limits.entry_step_m) if in_steps else LATENCY_S
+            )
+        near_seat = sample.depth_m > kind.made.seat_m - NEAR_SEAT_M
+        seated = near_seat and sample.axial_n > drive.sliding_n + SEATED_N
         if t_s >= stop_at or seated:
             break
         t_s, driven_m = t_s + 1 / RATE_HZ, driven_m + speed_m_s / RATE_HZ
     curve = drive.curve()
-    verdict = judge_insertion(curve, _CONNECTOR).verdict
+    verdict = judge_insertion(curve, kind.drawn).verdict
     stopped = watch.trip is not None
     return InsertionOutcome(
+        connector=name,
         fault=fault.name,
         caught=stopped or verdict is not InsertionVerdict.SEATED,
         verdict=verdict.value,
@@ -117,26 +146,24 @@ def run_insertion(fault: Fault, seed: int, *, in_steps: bool = False) -> Inserti
     )
 
 
-def _rest_of_step_s(driven_m: float, speed_m_s: float) -> float:
+def _rest_of_step_s(driven_m: float, speed_m_s: float, step_m: float) -> float:
     """Until the step under way is finished, whatever is asked for meanwhile."""
     done_m = driven_m - START_M
-    return float(
-        (np.ceil(done_m / _LIMITS.entry_step_m) * _LIMITS.entry_step_m - done_m) / speed_m_s
-    )
+    return float((np.ceil(done_m / step_m) * step_m - done_m) / speed_m_s)
 
 
-def _draw(fault: Fault, rng: np.random.Generator) -> tuple[MatingPair, PlugPlace]:
+def _draw(kind: Kind, fault: Fault, rng: np.random.Generator) -> tuple[MatingPair, PlugPlace]:
     """Placed as well as the chain places plugs, with pins as straight as good ones are."""
-    sizes = MatingSizes.of(MICRO_D_15)
+    sizes = MatingSizes.of(kind.made)
     sizes = replace(sizes, seat_m=sizes.seat_m - fault.seat_early_m)
-    pins = _HOLES_M + rng.normal(0, TRUE_POSITION_M, _HOLES_M.shape)
-    holes = _HOLES_M + rng.normal(0, TRUE_POSITION_M, _HOLES_M.shape)
+    pins = kind.holes_m + rng.normal(0, TRUE_POSITION_M, kind.holes_m.shape)
+    holes = kind.holes_m + rng.normal(0, TRUE_POSITION_M, kind.holes_m.shape)
     present = np.ones(len(pins))
     which = int(rng.integers(len(pins)))
-    pins[which] += fault.bend_m * _direction(rng)
+    pins[which] += fault.bend * sizes.capture_m * _direction(rng)
     present[which] = 0.0 if fault.missing else 1.0
     pair = MatingPair(sizes, pins, holes, draw_peaks(rng, len(pins)), present, np.zeros(len(pins)))
-    x, y = rng.normal(0, 13e-6, 2) + fault.offset_m * _direction(rng)
+    x, y = rng.normal(0, 13e-6, 2) + fault.offset * sizes.capture_m * _direction(rng)
     yaw = np.radians(rng.normal(0, 0.03) + fault.yaw_deg * rng.choice([-1, 1]))
     tilt = np.radians(rng.normal(0, 0.15, 2))
     return pair, PlugPlace(float(x), float(y), float(yaw), (float(tilt[0]), float(tilt[1])))
@@ -205,7 +232,3 @@ class _Drive:
             np.stack([one.force_n for one in samples]),
             np.stack([one.moment_n_m for one in samples]),
         )
-
-
-_CONNECTOR: Connector = read_connector(DRAWING)
-_LIMITS = InsertionLimits.of(_CONNECTOR)

@@ -36,7 +36,13 @@ class MatingSizes:
     @classmethod
     def of(cls, drawing: ConnectorDrawing) -> "MatingSizes":
         """As drawn."""
-        return cls(drawing.bore_play_m, drawing.capture_m, drawing.funnel_m)
+        return cls(
+            drawing.bore_play_m,
+            drawing.capture_m,
+            drawing.funnel_m,
+            spring_begin_m=drawing.spring_begin_m,
+            seat_m=drawing.seat_m,
+        )
 
     @property
     def funnel_slope(self) -> float:

@@ -40,6 +40,10 @@ class ConnectorDrawing:
     """Offset at the face up to which the funnel still takes a pin."""
     funnel_m: float
     """Depth of the funnel."""
+    spring_begin_m: float
+    """Depth at which the contact springs begin to open."""
+    seat_m: float
+    """Depth at which the shells meet."""
     insulator_m: tuple[float, float, float]
     """Long side, short side and height of the D-shaped insulator."""
     shell_m: float
@@ -76,6 +80,8 @@ MICRO_D_15: Final = ConnectorDrawing(
     bore_play_m=0.03e-3,
     capture_m=0.20e-3,
     funnel_m=0.25e-3,
+    spring_begin_m=0.5e-3,
+    seat_m=2.5e-3,
     insulator_m=(12.0e-3, 3.9e-3, 3.4e-3),
     shell_m=0.5e-3,
     shell_over_tips_m=0.6e-3,
@@ -92,6 +98,8 @@ D_SUB_15: Final = ConnectorDrawing(
     bore_play_m=0.03e-3,
     capture_m=0.30e-3,
     funnel_m=0.40e-3,
+    spring_begin_m=1.0e-3,
+    seat_m=4.5e-3,
     insulator_m=(24.0e-3, 7.6e-3, 5.6e-3),
     shell_m=0.5e-3,
     shell_over_tips_m=0.8e-3,

@@ -10,6 +10,7 @@ ConnectorError
 ├── MarksMissing                                                475      gripper marks
 ├── ConnectorUncertain                                          476      how well
 ├── PaperMethodRefused                                          477      the method of the paper
+├── LightFromOneSide                                            478      the lamp
 └── PixelsNotMeasurable                                         597      the form of the image
 """
 
@@ -179,6 +180,15 @@ class PaperMethodRefused(ConnectorError):
     text = "The paper's method did not find every contact"
     cause = "Mean and line through the contacts mean nothing unless all of them are there."
     remedy = "Use the default method, which names the contact; clean the connector."
+
+
+class LightFromOneSide(ConnectorError):
+    """The contacts are lit from one side, and would be measured towards the lamp."""
+
+    number = 478
+    text = "Connector is lit from one side"
+    cause = "Part of the ring light has failed or is covered, or daylight falls in from one side."
+    remedy = "Check the lamp and what shades it; the contacts must be lit alike from all sides."
 
 
 class PixelsNotMeasurable(ConnectorError):

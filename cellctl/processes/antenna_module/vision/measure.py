@@ -22,6 +22,7 @@ from cellctl.processes.antenna_module.vision.measurement import (
     ConnectorMeasurement,
     MeasuredMarks,
 )
+from cellctl.processes.antenna_module.vision.one_sided_light import require_light_from_all_sides
 from cellctl.processes.antenna_module.vision.pattern import (
     Candidates,
     Pattern,
@@ -76,6 +77,12 @@ def measure_connector(
     found = fit_pattern(image, rim_plane, pattern, placement, candidates.spots_m)
     if found is None or np.count_nonzero(found.fit.used) < least:
         raise WrongConnector(f"fewer than {least} contacts are clean and in their places")
+    rims = [
+        feature.circle
+        for feature, used in zip(found.features, found.fit.used, strict=True)
+        if used and feature.circle is not None
+    ]
+    require_light_from_all_sides(image, rim_plane, connector, rims)
     _require_scale(found.fit, plane, calibration)
     _require_certain(found.fit)
     contacts = contact_states(found, pattern, rim_plane)

@@ -4,12 +4,14 @@ The reference figures are those of a micro-D with 15 contacts.
 """
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from cellctl.processes.antenna_module.connector.connector import read_connector
 from fakes.world.connector.contact_lot import MatingPair, MatingSizes, Mount, draw_peaks
-from fakes.world.connector.drawing import MICRO_D_15
+from fakes.world.connector.drawing import DRAWINGS, MICRO_D_15
 from fakes.world.connector.insertion import (
     PinState,
     PlugPlace,
@@ -19,6 +21,7 @@ from fakes.world.connector.insertion import (
     respond,
 )
 
+CONNECTORS = Path("config/connectors")
 HOLES = np.array(list(MICRO_D_15.positions_m("holes").values()))
 PAIR = MatingPair(
     MatingSizes.of(MICRO_D_15), HOLES, HOLES, np.full(15, 1.6), np.ones(15), np.zeros(15)
@@ -114,6 +117,23 @@ def test_nominal_peak_and_seat() -> None:
     assert responses[-1].wrench[2] == pytest.approx(0.7 * 24.0)
     seated = respond(PAIR, Mount(), responses[-1].states, PlugPlace(depth_m=2.6e-3))
     assert seated.wrench[2] - responses[-1].wrench[2] > 10.0
+
+
+@pytest.mark.parametrize("name", list(DRAWINGS))
+def test_springs_and_seat_lie_where_the_shipped_drawing_says(name: str) -> None:
+    made, drawn = DRAWINGS[name], read_connector(CONNECTORS / f"{name}-holes.toml")
+    holes = np.array(list(made.positions_m("holes").values()))
+    np.testing.assert_allclose(holes, drawn.positions_m)
+    peaks = np.full(len(holes), 1.6)
+    pair = MatingPair(
+        MatingSizes.of(made), holes, holes, peaks, np.ones(len(holes)), np.zeros(len(holes))
+    )
+    spring_m, seat_m = drawn.spring_depth_m, drawn.seat_depth_m
+    depths = np.array([0.5 * spring_m, spring_m, spring_m + 0.4e-3, seat_m, seat_m + 0.1e-3])
+    forces = [one.wrench[2] for one in pushed(pair, Mount(), PlugPlace(), depths)]
+    sliding_n = 0.7 * peaks.sum()
+    assert forces == pytest.approx([0.0, 0.0, peaks.sum(), sliding_n, sliding_n + 50.0])
+    assert drawn.force_n[0] < peaks.sum() < drawn.force_n[1]
 
 
 def test_tilt_lowers_the_peak_a_little_and_makes_a_small_moment() -> None:

@@ -7,13 +7,20 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.pose import pose_error
+from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.vision.measure import measure_connector
+from cellctl.processes.antenna_module.vision.plane import PlaneCalibration, facing_camera
+from cellctl.vision.camera.single_camera import SingleCamera
+from cellctl.vision.camera.stereo_head import CameraModel
+from fakes.render.connectors import api
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.scene import AntennaBench
 from fakes.world.arm import inverse
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.connector.scene import SceneConnector, SceneMarks
 from fakes.world.frames import distance, from_written
-from fakes.world.scene import ScenePlate
+from fakes.world.scene import MonoTruth, ScenePlate
 from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at
 
 CONFIG = Path(__file__).parents[5] / "config"
@@ -168,6 +175,60 @@ def test_a_good_plug_goes_in_seats_and_stays(scenario: BenchScenario) -> None:
     assert 0.5 * peaks_n < tare_n - hands.force_z() < 1.2 * peaks_n
     hands.jaws(close=False)
     assert hands.world.truth_report()["module"] == "socket"
+
+
+def with_d_sub(scenario: BenchScenario) -> BenchScenario:
+    module = scenario.module.model_copy(update={"connector": "d-sub-15"})
+    return scenario.model_copy(update={"module": module})
+
+
+def test_a_d_sub_goes_in_as_deep_as_its_drawing_says_and_stays(scenario: BenchScenario) -> None:
+    hands = held(with_d_sub(scenario))
+    drawn = read_connector(CONFIG / "connectors" / "d-sub-15-holes.toml")
+    hands.true_flange_to(hands.plug_at(-0.3e-3))
+    for _ in range(round((0.3e-3 + drawn.seat_depth_m) / 0.3e-3)):
+        hands.joints_to(hands.arm.encoder_pose(hands.world.time_s) * _down(0.3e-3))
+    report = hands.world.truth_report()
+    assert set(report["pins"].values()) == {"inside"}
+    assert report["seated_depth_mm"] == pytest.approx(drawn.seat_depth_m * 1e3, abs=0.12)
+    assert report["seat_depth_mm"] == pytest.approx(drawn.seat_depth_m * 1e3)
+    hands.jaws(close=False)
+    assert hands.world.truth_report()["module"] == "socket"
+
+
+@pytest.mark.parametrize(
+    ("pose", "camera", "kind"),
+    [("inspect_plug", "camera_2", "pins"), ("socket_look", "camera_1", "holes")],
+)
+def test_a_d_sub_is_measured_in_what_the_cameras_see(
+    scenario: BenchScenario, pose: str, camera: str, kind: str
+) -> None:
+    world = bench_at(with_d_sub(scenario), pose, 3)
+    world.module.place = "gripper"
+    scene = world.camera_scene(camera)
+    body = next(one for one in scene.bodies if isinstance(one, SceneConnector))
+    assert (body.name, body.kind) == ("d-sub-15", kind)
+    optics = scene.optics
+    assert isinstance(optics, MonoTruth)
+    picture = api.render(optics, (body,), seed=1)
+    lens = optics.lens
+    matrix = np.array(
+        [
+            [lens.focal_px[0], 0.0, lens.centre_px[0]],
+            [0.0, lens.focal_px[1], lens.centre_px[1]],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+    model = SingleCamera(optics.image_size_px, CameraModel(matrix, np.array(lens.distortion)))
+    # z of the plane away from the camera, that of the connector towards it.
+    plane = PlaneCalibration(model.id, facing_camera(body.camera_T_connector), 2e-4, 2e-3, None)
+    drawn = read_connector(CONFIG / "connectors" / f"d-sub-15-{kind}.toml")
+    found = measure_connector(picture.image, model, plane, drawn)
+    assert all(contact.state == "ok" for contact in found.contacts)
+    shift, turn = pose_error(body.camera_T_connector, found.camera_T_connector.pose)
+    # Fifteen contacts with a true position of 10 µm; the rim of a hole appears a little deeper.
+    assert np.linalg.norm(shift[:2]) < 15e-6
+    assert abs(turn[2]) < np.radians(0.1)
 
 
 def test_an_offset_is_felt_before_the_springs(scenario: BenchScenario) -> None:
