@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Executor, ProcessPoolExecutor
 from dataclasses import astuple, replace
+from itertools import repeat
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from benchmarks.antenna.chain.arms import (
     UNCALIBRATED,
     Grade,
 )
+from benchmarks.antenna.chain.both_ways import BothWays, plugs_both_ways, together
 from benchmarks.antenna.chain.demands import Demand, demands_met
 from benchmarks.antenna.chain.drawn_cell import draw_cell
 from benchmarks.antenna.chain.reference import ReferenceCounts, count_reference_checks
@@ -38,6 +40,8 @@ WORKERS = 2
 CELLS, PLUGS_PER_CELL = 23, 13
 """299 plugs: without a miss they prove 99 % at a confidence of 95 %."""
 QUICK_CELLS = 3
+IMAGE_CELLS = 3
+"""A tenth and more of all plugs, with their teaching, are plugged with rendered images too."""
 REFERENCE_ROUNDS = 11
 """In each cell, with each of four devices moved: 1012 checks in 23 cells."""
 RESULT = Path("runs") / "campaign-antenna-chain.json"
@@ -53,20 +57,21 @@ def main() -> int:
     parser.add_argument("--quick", action="store_true", help="few cells, and only what is demanded")
     parser.add_argument("--demanded", action="store_true", help="all cells, only what is demanded")
     parser.add_argument(
-        "--only", nargs="+", choices=[*GROUPS, REFERENCE], help="parts of the campaign"
+        "--only", nargs="+", choices=[*GROUPS, REFERENCE, IMAGES], help="parts of the campaign"
     )
     parser.add_argument("--seed", type=int, default=1301, help="seed of the first cell")
     arguments = parser.parse_args()
     cells = QUICK_CELLS if arguments.quick else CELLS
     seeds = range(arguments.seed, arguments.seed + cells)
     few = arguments.quick or arguments.demanded
-    chosen = arguments.only or [*(DEMANDED if few else GROUPS), REFERENCE]
+    chosen = arguments.only or [*(DEMANDED if few else GROUPS), REFERENCE, IMAGES]
     groups = [rows for name in chosen if name in GROUPS for rows in GROUPS[name]()]
     console = Console(width=150)
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
         results = _draw(pool, groups, seeds, console)
         reference = _reference(pool, seeds) if REFERENCE in chosen else None
-    demands = demands_met(results, reference, whole=not arguments.quick)
+        images = _images(pool, seeds[:IMAGE_CELLS]) if IMAGES in chosen else None
+    demands = demands_met(results, reference, images, whole=not arguments.quick)
     console.print(_table(results))
     console.print(_demand_table(demands))
     RESULT.parent.mkdir(exist_ok=True)
@@ -130,7 +135,7 @@ GROUPS: Mapping[str, Callable[[], list[list[Row]]]] = {
 }
 DEMANDED = ("uncalibrated", "factory", "rp-0.05")
 """What the demands are judged by."""
-REFERENCE = "reference"
+REFERENCE, IMAGES = "reference", "images"
 
 
 def _slots(grade: Grade, away: Sequence[Conditions]) -> list[Row]:
@@ -151,6 +156,10 @@ def _draw(
 def _reference(pool: Executor, seeds: Sequence[int]) -> ReferenceCounts:
     each = list(pool.map(_reference_of, seeds))
     return ReferenceCounts(*(sum(column) for column in zip(*map(astuple, each), strict=True)))
+
+
+def _images(pool: Executor, seeds: Sequence[int]) -> BothWays:
+    return together(list(pool.map(plugs_both_ways, seeds, repeat(PLUGS_PER_CELL))))
 
 
 def _reference_of(seed: int) -> ReferenceCounts:

@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from benchmarks.antenna.chain.both_ways import BothWays
 from benchmarks.antenna.chain.reference import ReferenceCounts
-from benchmarks.antenna.chain.rows import CLOSED, Drawn
+from benchmarks.antenna.chain.rows import CLOSED, TOLERANCE_M, Drawn
 
 UNCALIBRATED_WARM = "uncalibrated, RP 0.02, 3 K"
 FACTORY_WARM = "factory, RP 0.02, 3 K"
@@ -31,7 +32,11 @@ class Demand:
 
 
 def demands_met(
-    results: Mapping[str, Mapping[str, Drawn]], reference: ReferenceCounts | None, *, whole: bool
+    results: Mapping[str, Mapping[str, Drawn]],
+    reference: ReferenceCounts | None,
+    images: BothWays | None,
+    *,
+    whole: bool,
 ) -> list[Demand]:
     """B6 to B10 and B14, as far as their rows were drawn.
 
@@ -53,6 +58,8 @@ def demands_met(
     if FACTORY_RP_005 in results:
         closed = results[FACTORY_RP_005][CLOSED]
         demands.append(_b9(FACTORY_RP_005, CLOSED, closed, whole=whole))
+    if images is not None:
+        demands.append(_b9_images(images))
     if reference is not None:
         demands.append(_b14(reference))
     return sorted(demands, key=lambda demand: int(demand.number[1:]))
@@ -94,6 +101,18 @@ def _b9(row: str, scheme: str, drawn: Drawn, *, whole: bool) -> Demand:
         f"{drawn.within} of {plugs}, rms {drawn.rms_m * 1e6:.1f} µm, "
         f"worst {drawn.worst_m.max() * 1e6:.0f} µm",
         drawn.within == plugs and drawn.rms_m <= limit_m,
+    )
+
+
+def _b9_images(both: BothWays) -> Demand:
+    plugs, within = len(both.images), int((both.worst_m <= TOLERANCE_M).sum())
+    return Demand(
+        "B9",
+        f"{FACTORY_WARM}{SEVERAL}, with rendered images",
+        f"{plugs} of {plugs} within 50 µm; ≤ 3 µm rms from the same plugs with drawn looks",
+        f"{within} of {plugs}, worst {both.worst_m.max() * 1e6:.0f} µm; "
+        f"{both.change_m * 1e6:.2f} µm",
+        within == plugs and both.change_m <= 3e-6,
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from benchmarks.antenna.chain.arms import DrawnArm, Grade, Repeatability
-from benchmarks.antenna.chain.optics import PLANE_SIGMA_M, WORKING_DISTANCE_M, DrawnOptics
+from benchmarks.antenna.chain.optics import PLANE_SIGMA_M, WORKING_DISTANCE_M, DrawnOptics, Optics
 from cellctl.calibration.boards.board_in_camera import board_in_camera
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
@@ -21,6 +21,8 @@ CORNERS_PX = 0.1
 CONTACT_PX = 0.03
 HAND_EYE_POSES = 20
 MARKS_M = np.array([[25.0, 18.0, 0], [-25.0, 18.0, 0], [25.0, -18.0, 0], [-25.0, -18.0, 0]]) * 1e-3
+PLATE_M = MARKS_M.copy()
+"""Dots of the plate, seen from either side."""
 _BOARD_M = np.array([[x, y, 0.0] for y in range(8) for x in range(11)]) * 5e-3 - [25e-3, 17.5e-3, 0]
 
 DOWN = Rotation.from_euler("y", 180, degrees=True)
@@ -67,8 +69,8 @@ class DrawnCell:
     """The truth of one cell, and what its calibrations found."""
 
     arm: DrawnArm
-    optics1: DrawnOptics
-    optics2: DrawnOptics
+    optics1: Optics
+    optics2: Optics
     mounting: Mounting
     flange_T_cam1: UncertainPose
     base_T_cam2: UncertainPose

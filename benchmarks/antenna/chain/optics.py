@@ -6,6 +6,7 @@ add to it is measured by the benchmarks of the vision.
 """
 
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -32,6 +33,21 @@ class Intrinsics:
         """Camera matrix, shape (3, 3)."""
         u, v = self.centre_px
         return np.array([[self.focal_px, 0.0, u], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
+
+
+class Optics(Protocol):
+    """One camera of a drawn cell."""
+
+    def look(
+        self,
+        camera_T_object: RigidTransform,
+        points_m: Array,
+        believed_plane: RigidTransform,
+        noise_px: float,
+        rng: np.random.Generator,
+    ) -> UncertainPose:
+        """camera_T_object from one image, see ``DrawnOptics``."""
+        ...
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -10,6 +10,7 @@ from benchmarks.antenna.chain.drawn_cell import (
     FLANGE_T_PLUG,
     LEVER_M,
     MARKS_M,
+    PLATE_M,
     PLUG_STATION,
     SOCKET,
     DrawnCell,
@@ -115,7 +116,7 @@ def _marks_in_camera_2(cell: DrawnCell, angle_rad: float, rng: np.random.Generat
 
 def _plate_in_camera_2(cell: DrawnCell, rng: np.random.Generator) -> Array:
     plate = cell.mounting.base_T_cam2.inv() * cell.mounting.base_T_plate
-    seen = cell.optics2.look(plate, MARKS_M, cell.cam2_T_plane(), CONTACT_PX, rng)
+    seen = cell.optics2.look(plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX, rng)
     return np.asarray((cell.base_T_cam2.pose * seen.pose).translation[:2])
 
 
@@ -123,7 +124,7 @@ def _plate_in_camera_1(cell: DrawnCell, rng: np.random.Generator) -> Array:
     commanded = PLUG_STATION * SOCKET.inv() * base_T_flange_over_socket()
     base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
     plate = base_T_cam1.inv() * cell.mounting.base_T_plate
-    seen = cell.optics1.look(plate, MARKS_M, cell.cam1_T_plane, CONTACT_PX, rng)
+    seen = cell.optics1.look(plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX, rng)
     return np.asarray((commanded * cell.flange_T_cam1.pose * seen.pose).translation[:2])
 
 

@@ -13,6 +13,7 @@ from benchmarks.antenna.chain.drawn_cell import (
     FLANGE_T_MARKS,
     FLANGE_T_PLUG,
     MARKS_M,
+    PLATE_M,
     PLUG_STATION,
     SOCKET,
     DrawnCell,
@@ -203,10 +204,10 @@ def _see_plate(cell: DrawnCell, rng: np.random.Generator) -> PlateLook:
     commanded = PLUG_STATION * SOCKET.inv() * base_T_flange_over_socket()
     base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
     plate = cell.mounting.base_T_plate
-    by_1 = cell.optics1.look(base_T_cam1.inv() * plate, MARKS_M, cell.cam1_T_plane, CONTACT_PX, rng)
+    by_1 = cell.optics1.look(base_T_cam1.inv() * plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX, rng)
     base_T_cam2 = cell.mounting.base_T_cam2
     by_2 = cell.optics2.look(
-        base_T_cam2.inv() * plate, MARKS_M, cell.cam2_T_plane(), CONTACT_PX, rng
+        base_T_cam2.inv() * plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX, rng
     )
     return PlateLook(Look(*_common(cell.arm, commanded, "camera 1")), by_1, by_2, "camera 2")
 
