@@ -63,7 +63,7 @@ campaign-faults: venv
 campaign-tornado: venv
 	$(BIN)/python -m benchmarks.tornado
 
-# Takes half an hour; QUICK=1 draws few cells and insertions, in about a minute each.
+# Takes half an hour; QUICK=1 draws few cells and insertions, in a few minutes each.
 campaign-antenna: venv
 	$(BIN)/python -m benchmarks.antenna.chain.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.antenna.insertion.campaign $(if $(QUICK),--quick)
