@@ -55,7 +55,7 @@ class CommandRefused(LocalError):
     number = 715
     text = "The cell refuses the command"
     cause = "See the detail; the codes are the line PLC's, docs/register-map.md."
-    remedy = "Look at `cellctl status`."
+    remedy = "Give one of the permitted commands; `cellctl status` says why the others are refused."
     reaction = Reaction.WARN
 
 

@@ -37,6 +37,7 @@ class AsyncRunStore:
         except BaseException:
             self._thread.shutdown()
             raise
+        self.path = path.absolute()
         self._images = coding_thread()
         self._keeping: set[asyncio.Task[None]] = set()
         self.fault: RecordNotWritten | None = None

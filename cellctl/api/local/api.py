@@ -41,8 +41,8 @@ def local_api(
     """
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
-    reporter = Reporter(cell, unit, arbiter, store)
     view = LiveView(cell, unit, arbiter)
+    reporter = Reporter(cell, unit, arbiter, store, view)
 
     async def describe() -> dict[str, Any]:
         return {**await reporter.description(), "registers": registers()}
@@ -50,6 +50,6 @@ def local_api(
     feed = LiveFeed(view, describe)
     # The terminal is given the way to submit a command and nothing else of the arbiter, so that it
     # cannot pass by the validation.
-    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter, view.look)
+    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter, view)
     server = LocalServer(SocketFile(path, settings.group), terminal.handle, feed.follow)
     return LocalApiParts(server, feed)

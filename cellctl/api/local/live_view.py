@@ -58,6 +58,16 @@ class LiveView:
             self._slow_s = -math.inf  # what is permitted has changed as well
         return self.decision
 
+    def permitted(self) -> tuple[str, ...]:
+        """Names of the commands that would be taken now."""
+        machine, alive = self._unit.machine, self._arbiter.line_alive
+        codes = permitted(machine, self._unit.factory, line_alive=alive)
+        return tuple(name for name, code in codes.items() if not code)
+
+    def procedures(self) -> tuple[tuple[int, str], ...]:
+        """Numbers and names of this cell's procedures."""
+        return tuple((one.number, one.label) for one in self._unit.factory.procedures.values())
+
     def snapshot(self, status: CellStatus) -> Object:
         """The message ``snapshot``; ``status`` is what the line is shown at the same moment."""
         decision, time_s = self.look(), now_s()

@@ -140,6 +140,10 @@ class Refused(Message):
     """Reject code, the same as the line's ``reject_code``."""
     text: str
     state: str
+    permitted: tuple[str, ...] = ()
+    """Names of the commands that would be taken now."""
+    known: tuple[str, ...] = ()
+    """Recipes or procedures of this cell, where the one that was named is none of them."""
 
 
 class Failed(Message):

@@ -20,6 +20,29 @@ class FaultReport(StrictModel):
     """Text of the fault, with the facts of this occurrence where they are known."""
     cause: str
     remedy: str
+    since: datetime | None = None
+    """When an alarm came, UTC; a latched fault is on the list of alarms, which has its time."""
+
+
+class AxisReport(StrictModel):
+    """One component of a pose error or of a wrench; None where there is none."""
+
+    axis: str
+    unit: str
+    value: float | None
+    limit: float | None = None
+
+
+class ForceReport(StrictModel):
+    """What a force sensor feels now, the payload's weight removed."""
+
+    sensor: str
+    age_s: float | None
+    """Of the newest sample; None before the first."""
+    compensated: bool
+    """Otherwise the weight is still in it, and no wrench is shown."""
+    limit_n: float | None
+    wrench: tuple[AxisReport, ...]
 
 
 class CalibrationReport(StrictModel):
@@ -62,6 +85,11 @@ class StatusReport(StrictModel):
     hold_requested: bool
     step: str
     iteration: int
+    errors: tuple[AxisReport, ...]
+    """Of the pose, from target to part, as measured last, with their thresholds."""
+    forces: tuple[ForceReport, ...]
+    permitted: dict[str, str]
+    """By name of the command: empty if it would be taken now, else why it would be refused."""
     faults: tuple[FaultReport, ...]
     """Latched ones, the first is what stopped the cell."""
     alarms: tuple[FaultReport, ...]
@@ -77,3 +105,5 @@ class StatusReport(StrictModel):
     good_parts: int
     records: str
     """The fault of the run store; empty when it is well."""
+    data_dir: str
+    """Folder of the run store."""

@@ -1,9 +1,18 @@
 """Compiles the status of the cell for operators, in words; changes nothing."""
 
 import asyncio
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.api.local.live_view import LiveView
+from cellctl.api.local.report import (
+    AxisReport,
+    CalibrationReport,
+    FaultReport,
+    ForceReport,
+    RunReport,
+    StatusReport,
+)
 from cellctl.calibration.store.inventory import inventory
 from cellctl.cell.devices import Cell
 from cellctl.cell.robot_reports import listen
@@ -15,6 +24,7 @@ from cellctl.errors.local import MessageMalformed
 from cellctl.known_faults import known_fault
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
+from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.unit import UnitController
 
 
@@ -22,12 +32,18 @@ class Reporter:
     """Reads machine, devices and records; files and store in threads of their own."""
 
     def __init__(
-        self, cell: Cell, unit: UnitController, arbiter: CommandArbiter, store: AsyncRunStore
+        self,
+        cell: Cell,
+        unit: UnitController,
+        arbiter: CommandArbiter,
+        store: AsyncRunStore,
+        view: LiveView,
     ) -> None:
         self._cell = cell
         self._unit = unit
         self._arbiter = arbiter
         self._store = store
+        self._view = view
 
     async def robot(self, name: str, seconds: float) -> dict[str, dict[str, Any]]:
         """What a robot says for so long; raises ``MessageMalformed`` and what its state raises."""
@@ -43,9 +59,10 @@ class Reporter:
         # First what needs waiting, then everything else in one turn of the loop: state, step and
         # faults of one report belong to one moment.
         calibrations = await asyncio.to_thread(self._calibrations)
-        texts, last_run, records = await self._from_store()
+        last_run, records = await self._from_store()
         unit, machine = self._unit, self._unit.machine
         shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts)
+        live = self._view.snapshot(shown)
         trips = [guard.trip for guard in self._cell.guards.values() if guard.trip is not None]
         alive = self._arbiter.line_alive
         return StatusReport(
@@ -61,21 +78,25 @@ class Reporter:
             hold_requested=shown.hold_requested,
             step=shown.step_label,
             iteration=shown.iteration,
+            errors=_axes(live["errors"]),
+            forces=tuple(_force(force) for force in live["forces"]),
+            permitted={name: one["reason"] for name, one in live["permitted"].items()},
             faults=tuple(_fault(fault) for fault in machine.faults),
-            alarms=tuple(_alarm(n, texts.get(n, "")) for n in unit.alarms.numbers),
+            alarms=tuple(_alarm(alarm) for alarm in unit.alarms.active),
             guard_trip="; ".join(f"{trip.reason.value}: {trip.detail}" for trip in trips),
-            links=self._links(),
+            links=live["links"],
             calibrations=calibrations,
             result=unit.jobs.result.name.lower(),
             last_run=last_run,
             good_parts=unit.parts,
             records=records,
+            data_dir=str(self._store.path),
         )
 
     async def description(self) -> dict[str, Any]:
         """What pages show besides the live values: calibrations, lists to choose from, records."""
         calibrations = await asyncio.to_thread(self._calibrations)
-        _, last_run, records = await self._from_store()
+        last_run, records = await self._from_store()
         procedures = self._unit.factory.procedures.values()
         return {
             "calibrations": [item.model_dump(mode="json") for item in calibrations],
@@ -85,14 +106,13 @@ class Reporter:
             "records": records,
         }
 
-    async def _from_store(self) -> tuple[dict[int, str], RunReport | None, str]:
-        """Texts of the alarms, the newest run, and what is wrong with the store."""
+    async def _from_store(self) -> tuple[RunReport | None, str]:
+        """The newest run, and what is wrong with the store."""
         try:
-            alarms = await self._store.do(RunStore.active_alarms)
             heads = await self._store.do(RunStore.runs, 1)
         except CellError as error:
             # A store that fails must not keep the operator from seeing the state and the faults.
-            return {}, None, str(error)
+            return None, str(error)
         runs = [
             RunReport(
                 number=head.number,
@@ -104,18 +124,7 @@ class Reporter:
             )
             for head in heads
         ]
-        texts = {alarm.number: alarm.text for alarm in alarms}
-        return texts, next(iter(runs), None), str(self._store.fault or "")
-
-    def _links(self) -> dict[str, str]:
-        found = {}
-        for name, check in self._cell.health_checks().items():
-            found[name] = ""
-            try:
-                check()
-            except CellError as error:
-                found[name] = str(error)
-        return found
+        return next(iter(runs), None), str(self._store.fault or "")
 
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
         return tuple(
@@ -133,12 +142,27 @@ def _fault(error: CellError) -> FaultReport:
     return FaultReport(number=error.number, text=str(error), cause=error.cause, remedy=error.remedy)
 
 
-def _alarm(number: int, text: str) -> FaultReport:
+def _alarm(alarm: ActiveAlarm) -> FaultReport:
     # The alarm may come from an older store or from a process that is not installed any longer.
-    known = known_fault(number) or CellError
+    known = known_fault(alarm.number) or CellError
     return FaultReport(
-        number=number,
-        text=text or f"F{number:03d} {known.text}",
+        number=alarm.number,
+        text=alarm.text,
         cause=known.cause,
         remedy=known.remedy,
+        since=alarm.since,
+    )
+
+
+def _axes(entries: Iterable[Mapping[str, Any]]) -> tuple[AxisReport, ...]:
+    return tuple(AxisReport(**entry) for entry in entries)
+
+
+def _force(force: Mapping[str, Any]) -> ForceReport:
+    return ForceReport(
+        sensor=force["sensor"],
+        age_s=force["age_s"],
+        compensated=force["compensated"],
+        limit_n=force["limit_n"],
+        wrench=_axes(force["wrench"]),
     )

@@ -1,9 +1,10 @@
 """Turns the requests of operators into commands, which are validated like those of the line PLC."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from cellctl import log
+from cellctl.api.local.live_view import LiveView
 from cellctl.api.local.messages import (
     AcknowledgeCommand,
     Answer,
@@ -65,15 +66,15 @@ class Terminal:
         machine: PackMLMachine,
         submit: Submit,
         reporter: Reporter,
-        decision: Callable[[], int],
+        view: LiveView,
     ) -> None:
-        """``decision``: count of what a person decides upon, see ``LiveView``."""
         self._config = config
         self._machine = machine
         self._submit = submit
         self._reporter = reporter
+        self._view = view
         self._users = Users()
-        self._desk = PageDesk(config.local_api.page_user, self._users, decision, self._obey)
+        self._desk = PageDesk(config.local_api.page_user, self._users, view.look, self._obey)
 
     async def handle(self, request: Request, uid: int) -> Answer:
         """Answer a request of the user with this number.
@@ -111,7 +112,16 @@ class Terminal:
         _log.info("local command", who=command.who, cmd=name, reject=code.text)
         if code is RejectCode.NONE:
             return Taken(state=state)
-        return Refused(code=code, text=code.text, state=state)
+        known = self._known(command.unit_mode) if code is RejectCode.RECIPE_UNKNOWN else ()
+        return Refused(
+            code=code, text=code.text, state=state, permitted=self._view.permitted(), known=known
+        )
+
+    def _known(self, mode: int) -> tuple[str, ...]:
+        """What a Start in this mode could have named."""
+        if mode == Mode.MAINTENANCE:
+            return tuple(f"{number} {label}" for number, label in self._view.procedures())
+        return tuple(f"{recipe.id} {recipe.name}" for recipe in self._config.recipes)
 
     def _command(self, request: CommandRequest) -> UnitCommand:
         """The command that a request means, given now."""

@@ -2,7 +2,7 @@
 
 import socket
 import time
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from cellctl.api.local.messages import (
@@ -60,7 +60,7 @@ class DaemonClient:
         """Have a command obeyed; raises ``CommandRefused`` with the reason."""
         answer = self._ask(request)
         if isinstance(answer, Refused):
-            raise CommandRefused(f"0x{answer.code:X} {answer.text} (state {answer.state})")
+            raise CommandRefused("; ".join(_refusal(answer)))
 
     def settled(
         self, states: Collection[str] = (), timeout_s: float | None = SETTLE_S
@@ -98,3 +98,11 @@ class DaemonClient:
         if isinstance(answer, Failed):
             raise MessageMalformed(answer.text)
         return answer
+
+
+def _refusal(answer: Refused) -> Iterator[str]:
+    yield f"0x{answer.code:X} {answer.text} (state {answer.state})"
+    if answer.known:
+        yield f"this cell has {', '.join(answer.known)}"
+    if answer.permitted:
+        yield f"permitted now: {', '.join(answer.permitted)}"

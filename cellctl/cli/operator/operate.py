@@ -2,12 +2,12 @@
 
 from collections.abc import Collection
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from cellctl.api.local.messages import (
-    CommandRequest,
     ModeCommand,
     PlainCommand,
     PlainName,
@@ -19,6 +19,7 @@ from cellctl.api.local.report import StatusReport
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.errors.local import CommandMissedItsGoal
+from cellctl.errors.records import StoreUnavailable
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
 _ENDED = ("COMPLETED", "STOPPED", "ABORTED", "HELD")
@@ -126,18 +127,41 @@ def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None
     _tell(_arrived(client.settled(), goal))
 
 
-def _begin(client: DaemonClient, request: CommandRequest, *, wait: bool) -> None:
+def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wait: bool) -> None:
     """Give the command and wait; interrupting the wait does not end the run."""
     client.command(request)
+    steps = isinstance(request, StartCommand) and request.single_step
     # "Taken" only means that the command is being executed. Starting may still fail, and the
-    # operator must see that from the exit code.
-    report = _arrived(client.settled(), _BEGUN)
-    if wait:
+    # operator must see that from the exit code. A run step by step holds before its first step.
+    report = _arrived(client.settled(), (*_BEGUN, "HELD") if steps else _BEGUN)
+    if wait and not (steps and report.state == "HELD"):
         # Without a time-out, because nobody knows how long a person keeps a run on hold.
-        report = _arrived(client.settled(_ENDED, timeout_s=None), ("COMPLETED",))
-        if report.result != "good":
-            raise CommandMissedItsGoal(f"the result is {report.result}")
+        goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
+        report = _arrived(client.settled(_ENDED, timeout_s=None), goal)
     _tell(report)
+    if report.state == "HELD":
+        typer.echo(
+            "held before the next step: `cellctl unhold` carries it out, `cellctl stop` ends it all"
+        )
+    elif wait:
+        _show_result(report, dry_run=isinstance(request, StartCommand) and request.dry_run)
+
+
+def _show_result(report: StatusReport, *, dry_run: bool) -> None:
+    """What `cellctl runs show` says of the run; raises ``CommandMissedItsGoal`` if not good."""
+    # Only a run that is shown needs the run store and what it loads.
+    from cellctl.cli.runs import show
+
+    if report.last_run is not None:
+        try:
+            show(report.last_run.number, Path(report.data_dir))
+        except StoreUnavailable as error:
+            typer.echo(f"run {report.last_run.number} cannot be shown: {error}", err=True)
+    if dry_run:
+        # It makes no part, so its result is not good, and nothing is wrong with it.
+        typer.echo("the dry run has ended before the first step in contact")
+    elif report.result != "good":
+        raise CommandMissedItsGoal(f"the result is {report.result}")
 
 
 def _arrived(report: StatusReport, goal: Collection[str]) -> StatusReport:

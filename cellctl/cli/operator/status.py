@@ -9,8 +9,9 @@ from rich.live import Live
 
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
-from cellctl.cli.operator.status_screen import screen
+from cellctl.cli.operator.status_screen import last_seen, screen
 from cellctl.clock import utc_now
+from cellctl.errors.local import DaemonNotReached
 
 _PERIOD_S = 1.0
 
@@ -36,10 +37,17 @@ def status(
 
 
 def _follow(client: DaemonClient) -> None:
-    with Live(screen(client.status(), utc_now()), auto_refresh=False) as live:
+    report, seen = client.status(), utc_now()
+    with Live(screen(report, seen), auto_refresh=False) as live:
         try:
             while True:
                 time.sleep(_PERIOD_S)
-                live.update(screen(client.status(), utc_now()), refresh=True)
+                try:
+                    report, seen = client.status(), utc_now()
+                    live.update(screen(report, seen), refresh=True)
+                # The operator must not be left with a screen that looks alive. A daemon that is
+                # started again is shown again.
+                except DaemonNotReached as away:
+                    live.update(last_seen(report, seen, away), refresh=True)
         except KeyboardInterrupt:
             return

@@ -6,7 +6,14 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from cellctl.api.local.report import CalibrationReport, FaultReport, StatusReport
+from cellctl.api.local.report import (
+    AxisReport,
+    CalibrationReport,
+    FaultReport,
+    ForceReport,
+    StatusReport,
+)
+from cellctl.errors import CellError
 
 _COLOURS = {
     "ABORTED": "bold red",
@@ -16,6 +23,13 @@ _COLOURS = {
     "EXECUTE": "bold green",
     "IDLE": "green",
     "COMPLETED": "green",
+}
+_NEXT = {
+    "ABORTED": "remove the cause of the fault, then `cellctl clear`",
+    "STOPPED": "`cellctl reset`: robots are released, and one that stands in the station lifts off",
+    "IDLE": "`cellctl start --serial SERIAL`, or `cellctl procedure NUMBER`",
+    "COMPLETED": "take the part out, then `cellctl reset`",
+    "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
 _CONTROL = {
     "line": "line PLC; here only Stop, Abort, Hold, Clear and alarms",
@@ -34,6 +48,15 @@ def screen(report: StatusReport, now: datetime) -> RenderableType:
     return Group(*parts, _calibrations(report, now))
 
 
+def last_seen(report: StatusReport, seen: datetime, away: CellError) -> RenderableType:
+    """In place of the screen while the daemon does not answer; nothing in it is of now."""
+    text = Text(f"{away}\n", style="bold red")
+    text.append(f"remedy: {away.remedy}\n", style="default")
+    last = f"{report.state.capitalize()}, mode {report.mode.capitalize()}, {_step(report)}"
+    text.append(f"last seen at {seen:%H:%M:%S} UTC: {last}", style="dim")
+    return text
+
+
 def _head(report: StatusReport) -> Table:
     table = Table.grid(padding=(0, 2))
     for name, value in _rows(report):
@@ -47,18 +70,66 @@ def _rows(report: StatusReport) -> list[tuple[str, Text]]:
         state.append(f", on its way to {report.state_requested.capitalize()}")
     if report.ready:
         state.append(", ready to start")
-    step = report.step + (f", pass {report.iteration}" if report.iteration else "")
     rows = [
         ("cell", Text(report.cell + (" (simulated)" if report.simulated else ""))),
         ("state", state),
         ("mode", Text(report.mode.capitalize())),
         ("control", Text(_CONTROL[report.control])),
-        ("step", Text(step or "–")),
+        ("step", Text(_step(report))),
+        ("next", Text(_next(report))),
+        ("permitted", Text(", ".join(n for n, why in report.permitted.items() if not why) or "–")),
+        *_measured(report),
         ("last run", Text(_last_run(report))),
         ("guard", _well(report.guard_trip and f"stop requested: {report.guard_trip}")),
         ("links", _links(report)),
     ]
     return [*rows, ("records", _well(report.records))] if report.records else rows
+
+
+def _step(report: StatusReport) -> str:
+    if not report.step:
+        return "–"
+    return report.step + (f", pass {report.iteration}" if report.iteration else "")
+
+
+def _next(report: StatusReport) -> str:
+    """What an operator does now, in words."""
+    if report.state != report.state_requested:
+        return "wait"
+    refused = report.permitted.get("start", "")
+    if report.state == "IDLE" and refused:
+        return f"Start is refused: {refused}"
+    return _NEXT.get(report.state, "wait; `cellctl hold` pauses at the next safe point")
+
+
+def _measured(report: StatusReport) -> list[tuple[str, Text]]:
+    """Errors of the pose against their thresholds, and what the force sensors feel."""
+    rows = []
+    if any(axis.value is not None for axis in report.errors):
+        rows.append(("errors", Text(", ").join(_axis(axis) for axis in report.errors)))
+    for force in report.forces:
+        rows.append((f"force {force.sensor}".strip(), _force(force)))
+    return rows
+
+
+def _axis(axis: AxisReport) -> Text:
+    if axis.value is None:
+        return Text(f"{axis.axis} –")
+    limit = f" of ±{axis.limit:g}" if axis.limit is not None else ""
+    beyond = axis.limit is not None and abs(axis.value) > axis.limit
+    colour = "red" if beyond else "default"
+    return Text(f"{axis.axis} {axis.value:.4f}{limit} {axis.unit}", style=colour)
+
+
+def _force(force: ForceReport) -> Text:
+    if force.age_s is None:
+        return Text("no sample", style="red")
+    if not force.compensated:
+        return Text("the payload's weight is not removed yet", style="yellow")
+    felt = ", ".join(
+        f"{one.axis} {one.value:.1f} {one.unit}" for one in force.wrench if one.value is not None
+    )
+    return Text(felt + (f"; limit {force.limit_n:g} N" if force.limit_n is not None else ""))
 
 
 def _links(report: StatusReport) -> Text:
@@ -81,7 +152,8 @@ def _last_run(report: StatusReport) -> str:
 
 
 def _fault(fault: FaultReport, kind: str, colour: str) -> Text:
-    text = Text(f"{kind} {fault.text}\n", style=colour)
+    since = f", since {fault.since:%Y-%m-%d %H:%M:%S} UTC" if fault.since is not None else ""
+    text = Text(f"{kind} {fault.text}{since}\n", style=colour)
     text.append(f"  cause:  {fault.cause}\n", style="default")
     text.append(f"  remedy: {fault.remedy}", style="default")
     return text

@@ -36,6 +36,9 @@ AT_REST: dict[str, Any] = {
     "hold_requested": False,
     "step": "",
     "iteration": 0,
+    "errors": (),
+    "forces": (),
+    "permitted": {"reset": "", "start": "command not allowed in this state"},
     "faults": (),
     "alarms": (),
     "guard_trip": "",
@@ -45,6 +48,7 @@ AT_REST: dict[str, Any] = {
     "last_run": None,
     "good_parts": 0,
     "records": "",
+    "data_dir": "runs/absent",
 }
 
 

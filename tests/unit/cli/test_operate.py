@@ -1,5 +1,6 @@
 """Operator commands against a daemon, and every one of them that the documents show."""
 
+import contextlib
 import io
 import json
 import os
@@ -9,8 +10,9 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 from rich.console import Console
@@ -23,7 +25,14 @@ from cellctl.api.local.messages import (
     Refused,
     StartCommand,
 )
-from cellctl.api.local.report import CalibrationReport, FaultReport, RunReport, StatusReport
+from cellctl.api.local.report import (
+    AxisReport,
+    CalibrationReport,
+    FaultReport,
+    ForceReport,
+    RunReport,
+    StatusReport,
+)
 from cellctl.api.local.socket_file import default_path
 from cellctl.cli import nearest_cell
 from cellctl.cli.commands import whole_app
@@ -37,10 +46,19 @@ from cellctl.errors.local import (
     DaemonNotReached,
     MessageMalformed,
 )
+from cellctl.records import RunStore
 from tests.unit.cli.agreeable import AT_REST, Agreeable, listening
+from tests.unit.records.sample import good_run
 
 DOCS = Path(__file__).parents[3] / "docs"
 OPERATOR = "status|clear|reset|start|procedure|hold|unhold|stop|abort|mode|alarms"
+ALARM = FaultReport(
+    number=501,
+    text="F501 silent",
+    cause="Cable.",
+    remedy="Look.",
+    since=datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC),
+)
 FAULT = FaultReport(number=202, text="F202 lost: aux_1", cause="Cable.", remedy="Find out why.")
 
 
@@ -110,6 +128,52 @@ def test_a_refusal_is_a_numbered_fault_with_its_reason(daemon: Agreeable) -> Non
     assert "0x10B the line PLC is in control (state STOPPED)" in str(done.exception)
 
 
+def test_a_refusal_names_what_there_is_and_what_is_permitted(daemon: Agreeable) -> None:
+    daemon.refusal = Refused(
+        code=0x102,
+        text="no recipe",
+        state="IDLE",
+        permitted=("start", "stop"),
+        known=("1 panel", "2 deck"),
+    )
+    text = str(cellctl("start", "--serial", "S").exception)
+    assert "this cell has 1 panel, 2 deck" in text
+    assert "permitted now: start, stop" in text
+
+
+def test_a_run_step_by_step_holds_where_it_should(daemon: Agreeable) -> None:
+    daemon.leads_to["start"] = "HELD"
+    assert fault_of(cellctl("start", "--serial", "S", "--wait")) is CommandMissedItsGoal
+    for wait in ((), ("--wait",)):
+        done = cellctl("start", "--serial", "S", "--single-step", *wait)
+        assert done.exit_code == 0, done.output
+        assert "`cellctl unhold` carries it out" in done.output
+
+
+def test_a_dry_run_ends_as_one(daemon: Agreeable) -> None:
+    daemon.shows["result"] = "bad"
+    done = cellctl("start", "--serial", "S", "--dry-run", "--wait")
+    assert done.exit_code == 0, done.output
+    assert "dry run has ended" in done.output
+    daemon.leads_to["start"] = "ABORTED"
+    assert fault_of(cellctl("start", "--serial", "S", "--dry-run", "--wait")) is (
+        CommandMissedItsGoal
+    )
+
+
+def test_the_end_of_a_run_is_shown_as_its_record(daemon: Agreeable, tmp_path: Path) -> None:
+    store = RunStore(tmp_path / "store")
+    number = good_run(store)
+    store.close()
+    daemon.shows["data_dir"] = str(tmp_path / "store")
+    daemon.shows["last_run"] = RunReport(
+        number=number, serial="S", recipe="r", mode="production", started=utc_now(), result="good"
+    )
+    done = cellctl("start", "--serial", "S", "--wait")
+    assert done.exit_code == 0, done.output
+    assert cellctl("runs", "show", str(number), "--data-dir", str(store.path)).output in done.output
+
+
 def test_a_reset_that_ends_in_aborted_failed(daemon: Agreeable) -> None:
     daemon.leads_to["reset"] = "ABORTED"
     daemon.shows["faults"] = (FAULT,)
@@ -163,6 +227,29 @@ def test_status_is_followed_until_it_is_interrupted(
     assert "Stopped" in done.output
 
 
+def test_a_daemon_that_dies_is_not_shown_as_if_it_lived(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("CELLCTL_SOCKET", str(tmp_path / "s"))
+    with contextlib.ExitStack() as alive:
+        alive.enter_context(listening(tmp_path / "s", Agreeable()))
+        naps = iter((alive.close, None))
+
+        def nap(_s: float) -> None:
+            end = next(naps)
+            if end is None:
+                raise KeyboardInterrupt
+            end()
+
+        monkeypatch.setattr(time, "sleep", nap)
+        done = cellctl("status", "--watch")
+    assert done.exit_code == 0, done.output
+    final = done.output[done.output.rindex("F714") :]
+    assert "last seen at" in final
+    assert "Stopped" in final
+    assert "good" not in final, "nothing of it is said to be well"
+
+
 def test_alarms_are_listed_with_their_remedy(daemon: Agreeable) -> None:
     assert "no alarms" in cellctl("alarms").output
     daemon.shows["alarms"] = (FAULT,)
@@ -180,8 +267,22 @@ def test_the_screen_says_what_matters() -> None:
         "line_alive": True,
         "step": "compensate",
         "iteration": 2,
+        "errors": (
+            AxisReport(axis="x", unit="mm", value=0.0711, limit=0.05),
+            AxisReport(axis="rz", unit="°", value=None, limit=0.005),
+        ),
+        "forces": (
+            ForceReport(
+                sensor="force",
+                age_s=0.001,
+                compensated=True,
+                limit_n=50.0,
+                wrench=(AxisReport(axis="Fz", unit="N", value=-12.34),),
+            ),
+        ),
+        "permitted": {"stop": "", "start": "not now"},
         "faults": (FAULT,),
-        "alarms": (FAULT,),
+        "alarms": (FAULT, ALARM),
         "guard_trip": "raw limit: Fz 60 N",
         "links": {"robots.main": "F207 too old", "guard": ""},
         "calibrations": (
@@ -207,12 +308,37 @@ def test_the_screen_says_what_matters() -> None:
         "robots.main: F207 too old",
         "line PLC alive",
         "Find out why.",
+        "x 0.0711 of ±0.05 mm, rz –",
+        "Fz -12.3 N; limit 50 N",
+        "F501 silent, since 2026-03-04 05:06:07 UTC",
         "5 d",
         "F632 missing",
     ):
         assert words in text, words
+    assert re.search(r"permitted +stop", text)
     assert text.count("F202") == 1, "a latched fault is not shown again as an alarm"
-    assert len(text.splitlines()) <= 24
+    assert len(text.splitlines()) <= 30
+
+
+@pytest.mark.parametrize(
+    ("shows", "words"),
+    [
+        ({"state": "ABORTED"}, "`cellctl clear`"),
+        ({"state": "STOPPED"}, "`cellctl reset`"),
+        ({"state": "IDLE", "permitted": {"start": ""}}, "`cellctl start --serial SERIAL`"),
+        ({"state": "IDLE", "permitted": {"start": "a calibration"}}, "refused: a calibration"),
+        ({"state": "EXECUTE"}, "`cellctl hold`"),
+        ({"state": "HELD"}, "`cellctl unhold`"),
+        ({"state": "COMPLETED"}, "`cellctl reset`"),
+        ({"state": "CLEARING", "state_requested": "STOPPED"}, "wait"),
+    ],
+)
+def test_the_screen_says_what_to_do_next(shows: dict[str, Any], words: str) -> None:
+    there = AT_REST | {"state_requested": shows["state"]} | shows
+    console = Console(width=120, record=True, file=io.StringIO())
+    console.print(screen(StatusReport(**there), utc_now()))
+    (line,) = [line for line in console.export_text().splitlines() if line.startswith("next")]
+    assert words in line
 
 
 def documented() -> list[str]:

@@ -38,12 +38,12 @@ UID = os.getuid()
 class Page:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
-        self.reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive)
         self.view = LiveView(cell, rig.unit, rig.arbiter)
+        self.reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self.view)
         self._keys = 0
         self._rig = rig
         self._terminal = Terminal(
-            cell.config, rig.unit.machine, rig.arbiter.submit, self.reporter, self.view.look
+            cell.config, rig.unit.machine, rig.arbiter.submit, self.reporter, self.view
         )
 
     def wanted(self, command: CommandRequest, **by: Any) -> PageCommand:

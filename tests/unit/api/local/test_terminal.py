@@ -45,10 +45,10 @@ ME = f"terminal:{pwd.getpwuid(UID).pw_name}"
 class Operator:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
-        reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive)
         self._view = LiveView(cell, rig.unit, rig.arbiter)
+        reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self._view)
         self._terminal = Terminal(
-            cell.config, rig.unit.machine, rig.arbiter.submit, reporter, self._view.look
+            cell.config, rig.unit.machine, rig.arbiter.submit, reporter, self._view
         )
 
     async def ask(self, request: Request, uid: int = UID) -> Taken | Refused:
@@ -109,8 +109,9 @@ async def test_refusals_have_the_lines_codes(
     rig: DaemonRig, operator: Operator, request_: Request, code: RejectCode
 ) -> None:
     await rig.idle()
-    refused = Refused(code=code, text=code.text, state="IDLE")
-    assert await operator.ask(request_) == refused
+    answer = await operator.ask(request_)
+    assert isinstance(answer, Refused)
+    assert (answer.code, answer.text, answer.state) == (code, code.text, "IDLE")
     assert rig.unit.machine.state is State.IDLE
 
 
@@ -177,7 +178,7 @@ async def test_what_is_broken_is_said_and_not_raised(
     rig.bench.cell.aux_2.faults["state"] = StaleData("2 s")
     rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
     (rig.bench.calibrations.path / "head_1.json").unlink()
-    monkeypatch.setattr(RunStore, "active_alarms", gone)
+    monkeypatch.setattr(RunStore, "runs", gone)
     report = await operator.status()
     assert "F207" in report.links["robots.aux_2"]
     assert report.links["robots.main"] == ""
@@ -185,6 +186,30 @@ async def test_what_is_broken_is_said_and_not_raised(
     assert "disk gone" in report.records
     assert "F632" in report.calibrations[0].problem
     assert [item.problem for item in report.calibrations[1:5]] == [""] * 4
+
+
+async def test_a_refusal_names_what_the_cell_has(rig: DaemonRig, operator: Operator) -> None:
+    await rig.idle()
+    answer = await operator.ask(StartCommand(serial="S", recipe="unknown"))
+    assert isinstance(answer, Refused)
+    assert answer.known == tuple(f"{one.id} {one.name}" for one in rig.bench.as_cell.config.recipes)
+    assert {"start", "procedure", "stop"} <= {*answer.permitted}
+    assert "unhold" not in answer.permitted
+    answer = await operator.ask(ProcedureCommand(number=9999, serial="P"))
+    assert isinstance(answer, Refused)
+    assert any(name.startswith("101 ") for name in answer.known)
+
+
+async def test_the_status_has_forces_and_what_is_permitted(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    report = await operator.status()
+    assert report.permitted["reset"] == ""
+    assert report.permitted["unhold"] == RejectCode.COMMAND_NOT_ALLOWED.text
+    (force,) = report.forces
+    assert force.compensated
+    assert [axis.axis for axis in force.wrench] == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
+    assert report.data_dir == str(rig.archive.path)
 
 
 async def test_an_expired_calibration_is_called_so(rig: DaemonRig, operator: Operator) -> None:
