@@ -71,6 +71,8 @@ class AntennaSettings(Section):
     """From the flange to the board that hangs on it, along z of the flange."""
     taught_plugs: Annotated[int, Field(ge=4, le=50)] = 8
     """Plugs of one teaching."""
+    checked_plugs: Annotated[int, Field(ge=0, le=10)] = 2
+    """Further plugs after them, which the correction must agree with."""
     reference: ReferenceSection | None = None
     """None in a cell without a plate: nobody notices there what moves after the calibration."""
     validity_days: Annotated[int, Field(ge=1, le=3650)] = 30

@@ -20,6 +20,7 @@ from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
 from cellctl.processes.antenna_module.chain.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.taught_check import checked_with
 from cellctl.processes.antenna_module.chain.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.tool_turn import calibrate_tool_turn
 from cellctl.processes.antenna_module.commands.trial_file import (
@@ -130,6 +131,8 @@ def calibrate_plug(
         _scheme(file, data.scheme),
         range_m=data.range_mm * 1e-3,
     )
+    checked = _valued(file, data.checked)
+    correction = checked_with(correction, checked, data.cell(), _scheme(file, data.scheme))
     for slot in correction.slots:
         x, y, z = slot.socket_T_plug.pose.translation * 1e3
         _say(f"slot {slot.name}: {x:.4f}, {y:.4f}, {z:.4f} mm from {slot.plugs} plugs")
@@ -140,6 +143,8 @@ def calibrate_plug(
         from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
 
         write_file(picture, taught_picture(correction))
+    if not correction.passed:
+        raise typer.Exit(NOT_GOOD)
 
 
 def calibrate_turn(

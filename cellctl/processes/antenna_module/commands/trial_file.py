@@ -107,11 +107,17 @@ class TaughtEntry(InputFile):
     plugged_base_T_flange: InputPose
     """Read while the plug sat in its socket."""
 
+    def plug(self, unnamed: str) -> TaughtPlug:
+        """Input of the solver; ``unnamed`` is its name where the file gives none."""
+        return TaughtPlug(self.name or unnamed, looks_of(self.looks), self.plugged_base_T_flange)
+
 
 class TeachFile(CellEntries):
     """Plugs of one or more slots."""
 
     plugs: tuple[TaughtEntry, ...]
+    checked_plugs: tuple[TaughtEntry, ...] = ()
+    """Plugs that the correction is not taught with but checked with."""
     range_mm: float = Field(default=200.0, gt=0, le=1000)
     """How far from a taught slot the correction may be used."""
 
@@ -119,11 +125,15 @@ class TeachFile(CellEntries):
         """The plugs of each slot; raises ``ValueError`` like ``looks_of``."""
         slots: dict[str, list[TaughtPlug]] = {}
         for number, entry in enumerate(self.plugs, start=1):
-            plug = TaughtPlug(
-                entry.name or f"plug {number}", looks_of(entry.looks), entry.plugged_base_T_flange
-            )
-            slots.setdefault(entry.slot, []).append(plug)
+            slots.setdefault(entry.slot, []).append(entry.plug(f"plug {number}"))
         return slots
+
+    def checked(self) -> list[TaughtPlug]:
+        """The plugs to check with; raises ``ValueError`` like ``looks_of``."""
+        return [
+            entry.plug(f"checked plug {number}")
+            for number, entry in enumerate(self.checked_plugs, start=1)
+        ]
 
 
 F = TypeVar("F", bound=CellEntries)
@@ -152,8 +162,8 @@ def read_cell_file(path: Path, model: type[F]) -> F:
 
 def _looks_in(content: dict[str, Any]) -> list[list[dict[str, Any]]]:
     """The lists of looks of a trial or of a teaching, as far as they are such."""
-    plugs = content.get("plugs")
-    holders = [content, *(plugs if isinstance(plugs, list) else [])]
+    plugs = [content.get(key) for key in ("plugs", "checked_plugs")]
+    holders = [content, *(one for some in plugs if isinstance(some, list) for one in some)]
     lists = [holder.get("looks") for holder in holders if isinstance(holder, dict)]
     return [
         [look for look in looks if isinstance(look, dict)]

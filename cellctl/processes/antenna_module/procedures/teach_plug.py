@@ -13,6 +13,7 @@ from cellctl.cell.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
+from cellctl.processes.antenna_module.chain.taught_check import checked_with
 from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
 from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.facts import read_facts
@@ -47,7 +48,9 @@ _LOOK_AGAIN_S = 2.0
 async def teach_plug_on_cell(
     cell: AntennaCell, recipe: AntennaRecipe, services: CellServices, context: ProcedureContext
 ) -> ProcedureOutcome:
-    """Teach as many plugs as the settings say; everything goes into a run of its own.
+    """Teach as many plugs as the settings say, then check the correction with further ones.
+
+    Everything goes into a run of its own.
 
     Raises ``TeachScatter``, ``NobodyPlugged``, and what the steps raise.
     """
@@ -56,12 +59,17 @@ async def teach_plug_on_cell(
     recorder = RunRecorder(services.store, number)
     opened = RunContext(recorder, context.safe_point)
     plugs: list[TaughtPlug] = []
-    total = cell.settings.taught_plugs
+    taught = cell.settings.taught_plugs
+    total = taught + cell.settings.checked_plugs
     for count in range(1, total + 1):
         await context.progress(count, total, "plug")
         run = PluggingRun.of(facts, services, opened, prefix=f"plug-{count}/", keep_images=False)
-        plugs.append(await _one_plug(run, count))
-    correction = teach_plug({SLOT: plugs}, facts.plug_cell, facts.scheme)
+        name = f"plug {count}" if count <= taught else f"checked plug {count - taught}"
+        plugs.append(await _one_plug(run, name))
+        if count == taught:
+            # Before anybody plugs for a check of something that is refused anyway.
+            correction = teach_plug({SLOT: plugs}, facts.plug_cell, facts.scheme)
+    correction = checked_with(correction, plugs[taught:], facts.plug_cell, facts.scheme)
     picture = await cell.workers.run(taught_picture, correction)
     await recorder.artefact(keys.TAUGHT_PICTURE, picture, "image/png")
     return ProcedureOutcome(
@@ -74,7 +82,7 @@ async def teach_plug_on_cell(
     )
 
 
-async def _one_plug(run: PluggingRun, count: int) -> TaughtPlug:
+async def _one_plug(run: PluggingRun, name: str) -> TaughtPlug:
     await move_to_start(run)
     located = await _looked_at(run)
     await _wait_above(located)
@@ -84,7 +92,7 @@ async def _one_plug(run: PluggingRun, count: int) -> TaughtPlug:
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     await run.cell.gripper.open()
     await run.mover.slowly_to(raised(base_T_flange, run.recipe.grip_approach_mm * MM))
-    return TaughtPlug(f"plug {count}", located.looks, base_T_flange)
+    return TaughtPlug(name, located.looks, base_T_flange)
 
 
 async def _looked_at(run: PluggingRun) -> SocketLocated:

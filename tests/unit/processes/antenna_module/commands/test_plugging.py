@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import typer
+from scipy.spatial.transform import RigidTransform
 from typer.testing import CliRunner
 
 from cellctl.calibration.pose_record import pose_to_record
@@ -130,6 +131,24 @@ def written(folder: Path, content: Json) -> str:
     path = folder / "in.json"
     path.write_text(json.dumps(content))
     return str(path)
+
+
+def test_a_correction_is_checked_with_plugs_that_it_was_not_taught_with(tmp_path: Path) -> None:
+    content = teach_content()
+    further = content["plugs"].pop()
+    good = run("plug", "--in", written(tmp_path, {**content, "checked_plugs": [further]}))
+    assert good.exit_code == 1, "three plugs are too few"
+    content["plugs"].append(further)
+    checked = {key: value for key, value in further.items() if key != "name"}
+    good = run("plug", "--in", written(tmp_path, {**content, "checked_plugs": [checked]}))
+    assert good.exit_code == 0, good.output
+    assert "checked plug 1: offset" in good.output
+    aside = RigidTransform.from_translation([2e-4, 0.0, 0.0])
+    moved = mm(aside * exact.taught_plugs()[-1].base_T_flange)
+    wrong = {**checked, "plugged_base_T_flange": moved}
+    bad = run("plug", "--in", written(tmp_path, {**content, "checked_plugs": [wrong]}))
+    assert bad.exit_code == 3
+    assert "FAIL  checked plug 1: offset" in bad.output
 
 
 def trial_content(correction: Json) -> Json:
