@@ -12,6 +12,7 @@ from typing import Any, Self
 
 from pydantic import Field, field_validator, model_validator
 
+from fakes.appearance import Rendering
 from fakes.imperfections import CATALOGUE, check_scales, scale_written
 from fakes.sections import (
     Camera,
@@ -22,7 +23,6 @@ from fakes.sections import (
     JobController,
     Optics,
     Pose,
-    Rendering,
     Robot,
     Section,
     SingleCamera,

@@ -25,7 +25,7 @@ CELL = (
     Listed("check", _CELL, "Check a cell file; exit code 1, with every error and what is allowed."),
     Listed("run", _CELL, "Run the cell until SIGTERM or Ctrl-C."),
     Listed("demo", _CELL, "Start a fake cell, daemon and line PLC and run one job."),
-    Listed("robot", _CELL, "Connect to one robot without the daemon, and print what it says."),
+    Listed("robot", _CELL, "Listen to one robot and print what it says. Moves nothing."),
     Listed("teach", _CELL, "Capture taught poses; the arm is moved by hand or pendant."),
     Listed("grab", _CELL, "Save images as PNG, each exposure with a JSON file; moves nothing."),
     Listed("focus", _CELL, "Show sharpness, light, overlap and what is found, live."),

@@ -39,7 +39,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 @dataclass(frozen=True, slots=True)
 class Overrides:
-    """What the command line says in place of the cell file; None leaves the cell file's word."""
+    """What the command line says in place of the cell file; None means as the cell file says."""
 
     data_dir: Path | None = None
     calibration_dir: Path | None = None

@@ -9,7 +9,7 @@ from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBe
 
 
 @dataclass(frozen=True, slots=True)
-class Provenance:
+class TaughtWith:
     """Base: every field is a string, those with a default are empty where it is not known."""
 
     what: ClassVar[str]
@@ -45,7 +45,7 @@ class Provenance:
 
 
 @dataclass(frozen=True, slots=True)
-class MadeWith(Provenance):
+class MadeWith(TaughtWith):
     """What a correction belongs to; another one of any of these makes it worthless."""
 
     what: ClassVar[str] = "correction"
@@ -83,7 +83,7 @@ class MadeWith(Provenance):
 
 
 @dataclass(frozen=True, slots=True)
-class ReferenceMadeWith(Provenance):
+class ReferenceMadeWith(TaughtWith):
     """What the places of a reference were computed with; they do not compare without it."""
 
     what: ClassVar[str] = "reference"
