@@ -120,7 +120,7 @@ def test_a_seat_that_comes_early_ends_with_the_module_out_of_its_socket(antenna:
         record = store.run(1)
     finally:
         store.close()
-    assert record.head.result is RunResult.BAD
+    assert record.head.result == RunResult.BAD
     assert [phase.number for phase in record.phases].count(80) == 1
     assert [one.name for one in record.artefacts].count(keys.CURVE) == 1
 
