@@ -13,9 +13,10 @@ from tests.wire.gige.conftest import LEFT, camera
 
 
 def session(producer: Path, what: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """`producer_session` in a process of its own."""
+    """`producer_session`, or `cell_session` for "cell", in a process of its own."""
+    module = "cell_session" if what == "cell" else "producer_session"
     return subprocess.run(
-        [sys.executable, "-m", "tests.wire.gige.producer_session", str(producer), what],
+        [sys.executable, "-m", f"tests.wire.gige.{module}", str(producer), what],
         capture_output=True,
         text=True,
         check=False,
@@ -35,7 +36,7 @@ def test_faults_leave_the_producer_usable(producer: Path) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("what", ["good", "faults"])
+@pytest.mark.parametrize("what", ["good", "faults", "cell"])
 def test_under_sanitizers(tmp_path: Path, what: str) -> None:
     producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined")
     # The C++ library too: the sanitizer looks for its exceptions before Python loads anything.
