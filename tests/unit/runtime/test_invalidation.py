@@ -9,7 +9,7 @@ from cellctl.calibration.store.kind import kinds_invalidated_by
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationInvalidated
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld, SensorSaturated, SensorSilent
-from cellctl.errors.robot import ControllerFault, HeadMoved, MotionAborted
+from cellctl.errors.robot import ArmOffReference, ControllerFault, HeadMoved, MotionAborted
 from cellctl.errors.vision import HeadsMoved, ResidualsTooLarge
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.processes.deck_to_frame.faults import CorrectionDiverging, MatingOverforce
@@ -23,6 +23,7 @@ HOUR = timedelta(hours=1)
 # Written out from what may have been moved, bent or proved wrong, not derived from the kinds.
 AGREED: dict[type[CellError], set[str]] = {
     ControllerFault: {"board_transfer", "payload"},
+    ArmOffReference: {"base_frame", "board_transfer"},
     HeadsMoved: {"board_transfer"},
     CorrectionDiverging: {"board_transfer"},
     SensorSaturated: {"payload"},
