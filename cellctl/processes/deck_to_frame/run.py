@@ -87,12 +87,12 @@ class AssemblyRun:
 
     @property
     def target_M_T_D(self) -> RigidTransform:
-        """Equation 5."""
+        """Pose of the deck in the frame at the stand-off (eq. 5)."""
         return target_M_T_D(self.recipe.deck_thickness_mm * MM, self.recipe.stand_off_mm * MM)
 
     @property
     def thresholds(self) -> Thresholds:
-        """Equation 16."""
+        """Errors of the pose below which the deck may be mated (eq. 16)."""
         settings = self.recipe.pose_correction
         return Thresholds(settings.threshold_mm * MM, float(np.radians(settings.threshold_deg)))
 
