@@ -1,6 +1,5 @@
 """`cellctl audit`: who did what, from the audit log of the run store."""
 
-import json
 from dataclasses import asdict
 from typing import Annotated
 
@@ -8,6 +7,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.plain_json import as_plain
 from cellctl.cli.run_store import DataDir, opened_store
 from cellctl.records.entries import AuditEntry
 
@@ -27,8 +27,7 @@ def audit(
         entry for entry in reversed(log) if who in entry.actor and action in ("", entry.action)
     ][:limit]
     if as_json:
-        plain = [asdict(entry) | {"time": entry.time.isoformat()} for entry in found]
-        typer.echo(json.dumps(plain, indent=2, ensure_ascii=False, default=str))
+        typer.echo(as_plain([asdict(entry) for entry in found]))
     elif found:
         Console().print(_table(found))
     else:

@@ -127,6 +127,12 @@ def _runs(app: typer.Typer) -> None:
     app.add_typer(runs.app, name="runs", rich_help_panel=_RECORDS)
 
 
+def _calibrations(app: typer.Typer) -> None:
+    from cellctl.cli import calibrations
+
+    app.add_typer(calibrations.app, name="calibrations", rich_help_panel=_RECORDS)
+
+
 def _replay(app: typer.Typer) -> None:
     from cellctl.cli.replay import replay
 
@@ -183,6 +189,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "grab": _grab,
     "focus": _focus,
     "runs": _runs,
+    "calibrations": _calibrations,
     "replay": _replay,
     "faults": _faults,
     "audit": _audit,

@@ -32,6 +32,7 @@ CELL = (
 )
 FILES = (
     Listed("runs", _RECORDS, "Look into the run store."),
+    Listed("calibrations", _RECORDS, "Look into the calibrations of the run store."),
     Listed("replay", _RECORDS, "Compute every measurement of a run anew from its recordings."),
     Listed("faults", _RECORDS, "All faults, installed packages' included; or one in words."),
     Listed("audit", _RECORDS, "Who did what: commands, gauges, acknowledgements."),

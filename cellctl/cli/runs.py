@@ -1,6 +1,7 @@
 """`cellctl runs`: look into the run store; enter what a person measured."""
 
 from collections.abc import Sequence, Set
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -8,8 +9,10 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.plain_json import as_plain
 from cellctl.cli.run_report import report
 from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.cli.trend import trend
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
@@ -18,10 +21,14 @@ from cellctl.records.seals import LedgerHead
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
 
+AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 Run = Annotated[int, typer.Argument(help="Number of the run.", min=1)]
 
 HASH_DIGITS = 64
 _COLOURS = {"good": "green", None: "yellow"}
+
+
+app.command("trend")(trend)
 
 
 @app.command("list")
@@ -29,6 +36,8 @@ def list_runs(
     data_dir: DataDir = None,
     serial: Annotated[str | None, typer.Option(help="Only this serial number.")] = None,
     limit: Annotated[int, typer.Option(help="How many, newest first.", min=1)] = 20,
+    *,
+    as_json: AsJson = False,
 ) -> None:
     """The newest runs."""
     with opened_store(data_dir) as store:
@@ -40,6 +49,9 @@ def list_runs(
             if head.result == RunResult.GOOD
             and part_verdict(store.run(head.number)) != RunResult.GOOD
         }
+    if as_json:
+        typer.echo(as_plain([asdict(head) | {"spoilt": head.number in spoilt} for head in runs]))
+        return
     if not runs:
         typer.echo("no runs")
         return
@@ -47,10 +59,13 @@ def list_runs(
 
 
 @app.command()
-def show(run: Run, data_dir: DataDir = None) -> None:
+def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None:
     """One run in figures."""
     with opened_store(data_dir) as store:
         record = store.run(run)
+    if as_json:
+        typer.echo(as_plain(asdict(record)))
+        return
     console = Console()
     console.print(_table([record.head]))
     if record.head.fault:

@@ -29,6 +29,7 @@ from cellctl.records.database.schema import (
     ArtefactRow,
     AuditRow,
     CalibrationRow,
+    FigureRow,
     GaugeRow,
     PhaseRow,
     RunRow,
@@ -47,6 +48,7 @@ from cellctl.records.entries import (
 from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
+from cellctl.records.trend import Sample
 
 _LINE_SEQ = "line_seq"
 
@@ -278,6 +280,19 @@ class RunStore:
             query = query.where(RunRow.serial == serial)
         with self._database.read() as session:
             return [to_entry(row, RunHead) for row in session.scalars(query)]
+
+    def figure_keys(self) -> list[str]:
+        """Keys of all figures that any run has."""
+        with self._database.read() as session:
+            return list(session.scalars(select(FigureRow.key).distinct().order_by(FigureRow.key)))
+
+    def figure_history(
+        self, key: str, recipe_id: int | None = None, limit: int = 200
+    ) -> tuple[list[Sample], str]:
+        """The newest known value of a figure in each of the newest finished runs of Production, the
+        oldest first, and its unit; runs of schema 1 have none."""
+        with self._database.read() as session:
+            return reading.figure_history(session, key, recipe_id, limit)
 
     def run(self, number: int) -> RunRecord:
         """One run with everything; raises ``RunUnknown``."""

@@ -26,6 +26,7 @@ from cellctl.records.database.schema import (
 )
 from cellctl.records.database.sealed import RUN
 from cellctl.records.entries import (
+    PRODUCTION,
     Alarm,
     Artefact,
     Document,
@@ -38,8 +39,37 @@ from cellctl.records.entries import (
     RunRecord,
 )
 from cellctl.records.seals import Seal
+from cellctl.records.trend import Sample
 
 T = TypeVar("T")
+
+
+def figure_history(
+    session: Session, key: str, recipe_id: int | None, limit: int
+) -> tuple[list[Sample], str]:
+    """See ``RunStore.figure_history``."""
+    # A further attempt of a run replaces what an earlier one has found: the last row counts.
+    last = (
+        select(func.max(FigureRow.id))
+        .where(FigureRow.key == key, FigureRow.value.is_not(None))
+        .group_by(FigureRow.run)
+    )
+    query = (
+        select(RunRow, FigureRow)
+        .join(FigureRow, FigureRow.run == RunRow.number)
+        .where(FigureRow.id.in_(last), RunRow.ended.is_not(None))
+        .where(func.lower(RunRow.mode) == PRODUCTION)
+        .order_by(RunRow.number.desc())
+        .limit(limit)
+    )
+    if recipe_id is not None:
+        query = query.where(RunRow.recipe_id == recipe_id)
+    found = [(run, figure) for run, figure in session.execute(query).all()][::-1]
+    samples = [
+        Sample(run.number, run.started, figure.value, figure.lower, figure.upper)
+        for run, figure in found
+    ]
+    return samples, found[-1][1].unit if found else ""
 
 
 def read_run(session: Session, number: int) -> RunRecord:

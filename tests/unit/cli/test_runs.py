@@ -1,5 +1,6 @@
 """`cellctl runs`: what an operator sees of the store and enters into it."""
 
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -31,6 +32,14 @@ def folder(store: RunStore) -> str:
     good_run(store)
     start(store, "SAT-0043")
     return str(store.path)
+
+
+def test_programs_get_lists_and_runs(runner: CliRunner, folder: str) -> None:
+    listed = json.loads(runner.invoke(app, ["list", "--json", "--data-dir", folder]).stdout)
+    assert [(one["number"], one["result"]) for one in listed] == [(2, None), (1, "good")]
+    shown = json.loads(runner.invoke(app, ["show", "1", "--json", "--data-dir", folder]).stdout)
+    assert shown["head"]["serial"] == "SAT-0042"
+    assert shown["figures"]
 
 
 def test_runs_are_listed_newest_first(runner: CliRunner, folder: str) -> None:

@@ -1,0 +1,77 @@
+"""`cellctl calibrations`: history, figures and verdicts from the run store."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from cellctl.calibration.store.envelope import read_stored
+from cellctl.cli.calibrations import app
+from cellctl.records import RunStore
+
+SHIPPED = Path(__file__).parents[3] / "config" / "demo-calibration"
+RUNNER = CliRunner(env={"COLUMNS": "200", "NO_COLOR": "1"})
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[RunStore]:
+    store = RunStore(tmp_path / "runs")
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def folder(store: RunStore) -> str:
+    """Two years of one head, the second calibration void, and a payload."""
+    head = read_stored(SHIPPED, "head_1")
+    check = head.record["checks"][0]
+    worse = {**check, "value": 7.0, "passed": False}
+    record = {**head.record, "checks": [worse, *head.record["checks"][1:]]}
+    newer = replace(head, made=head.made + timedelta(days=365), record=record)
+    for stored in (head, newer, read_stored(SHIPPED, "payload")):
+        store.add_calibration(stored)
+    store.invalidate_calibration(newer, "collision")
+    return str(store.path)
+
+
+def asked(*words: str) -> Result:
+    return RUNNER.invoke(app, list(words))
+
+
+def test_the_newest_of_each_kind_is_listed(folder: str) -> None:
+    done = asked("list", "--data-dir", folder)
+    assert done.exit_code == 0, done.output
+    (head,) = [line for line in done.stdout.splitlines() if line.startswith(" head_1")]
+    assert "failed" in head
+    assert "void since" in head
+    assert "collision" in head
+    assert "payload" in done.stdout
+
+
+def test_a_kind_is_shown_with_its_figures_over_the_years(folder: str) -> None:
+    done = asked("show", "head_1", "--data-dir", folder)
+    assert done.exit_code == 0, done.output
+    years = read_stored(SHIPPED, "head_1").made.year
+    assert done.stdout.index(f"{years}-") < done.stdout.index(f"{years + 1}-"), "oldest first"
+    (views,) = [line for line in done.stdout.splitlines() if line.strip().startswith("views")]
+    assert views.split() == ["views", "24", "7", "beyond", "≥", "8"]
+
+
+def test_programs_get_everything(folder: str) -> None:
+    found = json.loads(asked("show", "head_1", "--json", "--data-dir", folder).stdout)
+    assert [one["invalidated_reason"] for one in found] == [None, "collision"]
+    assert found[0]["record"]["image_size"]
+    listed = json.loads(asked("list", "--json", "--data-dir", folder).stdout)
+    assert [one["kind"] for one in listed] == ["head_1", "payload"]
+
+
+def test_what_is_not_there_is_said(store: RunStore) -> None:
+    folder = str(store.path)
+    assert "no calibrations" in asked("list", "--data-dir", folder).stdout
+    done = asked("show", "head_9", "--data-dir", folder)
+    assert done.exit_code == 1
+    assert "head_9" in done.stderr
