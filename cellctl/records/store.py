@@ -14,27 +14,7 @@ from sqlalchemy import select
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.records.artefacts import ArtefactFolder
-from cellctl.records.database import ledger, reading, sealed
-from cellctl.records.database.rows import (
-    active_alarm_rows,
-    close,
-    open_phase,
-    open_run,
-    to_entry,
-    to_row,
-)
-from cellctl.records.database.schema import (
-    SCHEMA_VERSION,
-    AlarmRow,
-    ArtefactRow,
-    AuditRow,
-    CalibrationRow,
-    FigureRow,
-    GaugeRow,
-    PhaseRow,
-    RunRow,
-    ValueRow,
-)
+from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.sessions import Database
 from cellctl.records.entries import (
     Alarm,
@@ -78,10 +58,11 @@ class RunStore:
         """
         self._ownership.take()
         with self._database.write() as session:
-            rows = session.scalars(select(RunRow).where(RunRow.ended.is_(None))).all()
-            for row in rows:
-                close(session, row, RunResult.INTERRUPTED, None, None)
-            return [row.number for row in rows]
+            still_open = select(schema.RunRow).where(schema.RunRow.ended.is_(None))
+            found = session.scalars(still_open).all()
+            for row in found:
+                rows.close(session, row, RunResult.INTERRUPTED, None, None)
+            return [row.number for row in found]
 
     def start_run(
         self,
@@ -99,9 +80,9 @@ class RunStore:
         operator: str = "",
     ) -> int:
         """Open a run, before anything moves; its number."""
-        row = RunRow(
+        row = schema.RunRow(
             process=process,
-            record_schema=SCHEMA_VERSION,
+            record_schema=schema.SCHEMA_VERSION,
             serial=serial,
             recipe_id=recipe_id,
             recipe_name=recipe_name,
@@ -123,26 +104,26 @@ class RunStore:
     def add(self, run: int, *details: RunDetail) -> None:
         """Figures, poses, passes and documents of the phase that a run is in; all or none."""
         with self._database.write() as session:
-            open_run(session, run)
-            phase = open_phase(session, run)
+            rows.open_run(session, run)
+            phase = rows.open_phase(session, run)
             phase_id = None if phase is None else phase.id
-            session.add_all(to_row(entry, run, phase_id) for entry in details)
+            session.add_all(rows.to_row(entry, run, phase_id) for entry in details)
 
     def begin_phase(self, run: int, number: int, label: str) -> None:
         """End the phase that a run is in, if there is one, and begin another."""
         now = utc_now()
         with self._database.write() as session:
-            open_run(session, run)
-            before = open_phase(session, run)
+            rows.open_run(session, run)
+            before = rows.open_phase(session, run)
             if before is not None:
                 before.ended = now
-            session.add(PhaseRow(run=run, number=number, label=label, began=now))
+            session.add(schema.PhaseRow(run=run, number=number, label=label, began=now))
 
     def add_artefact(self, run: int, name: str, data: bytes, media_type: str) -> str:
         """A file of the run; its SHA-256. The bytes are on the disk before the row is."""
         # In this order a power cut leaves a file without a row at worst, no row without its file.
         sha256 = self.artefacts.put(data)
-        row = ArtefactRow(
+        row = schema.ArtefactRow(
             run=run,
             time=utc_now(),
             name=name,
@@ -151,7 +132,7 @@ class RunStore:
             media_type=media_type,
         )
         with self._database.write() as session:
-            open_run(session, run)
+            rows.open_run(session, run)
             session.add(row)
         return sha256
 
@@ -165,7 +146,7 @@ class RunStore:
     ) -> None:
         """Close and seal; raises ``RunClosed`` the second time."""
         with self._database.write() as session:
-            close(session, open_run(session, run), RunResult(result), fault_number, fault)
+            rows.close(session, rows.open_run(session, run), RunResult(result), fault_number, fault)
 
     def set_gauge(
         self, run: int, hole: str, diameter_mm: float, source: str, gauge_id: str = ""
@@ -175,7 +156,7 @@ class RunStore:
         Raises ``ValueRefused``, ``GaugeRefused`` or ``RunUnknown``.
         """
         require_plausible(hole, diameter_mm, source)
-        row = GaugeRow(
+        row = schema.GaugeRow(
             run=run,
             time=utc_now(),
             hole=hole,
@@ -190,7 +171,7 @@ class RunStore:
 
     def add_alarm(self, run: int | None, number: int, text: str) -> int:
         """A fault or warning; stays active until acknowledged, over restarts too."""
-        row = AlarmRow(run=run, time=utc_now(), number=number, text=text)
+        row = schema.AlarmRow(run=run, time=utc_now(), number=number, text=text)
         with self._database.write() as session:
             session.add(row)
             ledger.seal(session, sealed.ALARM, row, row.time)
@@ -199,21 +180,22 @@ class RunStore:
     def acknowledge_alarms(self, number: int, who: str) -> int:
         """Acknowledge every active alarm with a fault number; how many there were."""
         with self._database.write() as session:
-            rows = session.scalars(active_alarm_rows().where(AlarmRow.number == number)).all()
-            for row in rows:
+            active = rows.active_alarm_rows().where(schema.AlarmRow.number == number)
+            found = session.scalars(active).all()
+            for row in found:
                 now = utc_now()
                 row.acknowledged, row.acknowledged_by = now, who
                 ledger.seal(session, sealed.ACKNOWLEDGEMENT, row, now)
-            return len(rows)
+            return len(found)
 
     def active_alarms(self) -> list[Alarm]:
         """Alarms nobody has acknowledged, the oldest first."""
         with self._database.read() as session:
-            return [to_entry(row, Alarm) for row in session.scalars(active_alarm_rows())]
+            return [rows.to_entry(row, Alarm) for row in session.scalars(rows.active_alarm_rows())]
 
     def add_calibration(self, stored: StoredCalibration) -> None:
         """Keep a calibration for good; the same one again is no change."""
-        row = CalibrationRow(
+        row = schema.CalibrationRow(
             id=stored.id,
             kind=stored.kind,
             serial_number=stored.serial_number,
@@ -223,7 +205,7 @@ class RunStore:
             record=stored.record,
         )
         with self._database.write() as session:
-            if session.get(CalibrationRow, stored.id) is None:
+            if session.get(schema.CalibrationRow, stored.id) is None:
                 session.add(row)
                 ledger.seal(session, sealed.CALIBRATION, row, utc_now())
 
@@ -231,7 +213,7 @@ class RunStore:
         """Note that a calibration is worthless from now on; the first reason stays."""
         self.add_calibration(stored)
         with self._database.write() as session:
-            row = session.get_one(CalibrationRow, stored.id)
+            row = session.get_one(schema.CalibrationRow, stored.id)
             if row.invalidated is None:
                 now = utc_now()
                 row.invalidated, row.invalidated_reason = now, reason
@@ -244,13 +226,13 @@ class RunStore:
 
     def calibrations(self) -> list[Calibration]:
         """Every calibration that was ever stored, newest first."""
-        query = select(CalibrationRow).order_by(CalibrationRow.made.desc())
+        query = select(schema.CalibrationRow).order_by(schema.CalibrationRow.made.desc())
         with self._database.read() as session:
-            return [to_entry(row, Calibration) for row in session.scalars(query)]
+            return [rows.to_entry(row, Calibration) for row in session.scalars(query)]
 
     def audit(self, actor: str, action: str, detail: Mapping[str, Any] | None = None) -> None:
         """Append to the audit log."""
-        row = AuditRow(time=utc_now(), actor=actor, action=action, detail=detail or {})
+        row = schema.AuditRow(time=utc_now(), actor=actor, action=action, detail=detail or {})
         with self._database.write() as session:
             session.add(row)
             ledger.seal(session, sealed.AUDIT, row, row.time)
@@ -258,39 +240,38 @@ class RunStore:
     def audit_log(self) -> list[AuditEntry]:
         """Every entry of the audit log, oldest first."""
         with self._database.read() as session:
-            rows = session.scalars(select(AuditRow).order_by(AuditRow.id))
-            return [to_entry(row, AuditEntry) for row in rows]
+            found = session.scalars(select(schema.AuditRow).order_by(schema.AuditRow.id))
+            return [rows.to_entry(row, AuditEntry) for row in found]
 
     def note_line_seq(self, seq: int) -> None:
         """Remember the last command number of the line, before the command is obeyed."""
         with self._database.write() as session:
-            row = session.merge(ValueRow(name=_LINE_SEQ, value=seq))
+            row = session.merge(schema.ValueRow(name=_LINE_SEQ, value=seq))
             ledger.seal(session, sealed.VALUE, row, utc_now())
 
     def line_seq(self) -> int | None:
         """The last command number of the line before this start."""
         with self._database.read() as session:
-            row = session.get(ValueRow, _LINE_SEQ)
+            row = session.get(schema.ValueRow, _LINE_SEQ)
             return None if row is None else row.value
 
     def runs(self, limit: int = 50, serial: str | None = None) -> list[RunHead]:
         """The newest runs, newest first; of one serial number if given."""
-        query = select(RunRow).order_by(RunRow.number.desc()).limit(limit)
+        query = select(schema.RunRow).order_by(schema.RunRow.number.desc()).limit(limit)
         if serial is not None:
-            query = query.where(RunRow.serial == serial)
+            query = query.where(schema.RunRow.serial == serial)
         with self._database.read() as session:
-            return [to_entry(row, RunHead) for row in session.scalars(query)]
+            return [rows.to_entry(row, RunHead) for row in session.scalars(query)]
 
     def figure_keys(self) -> list[str]:
         """Keys of all figures that any run has."""
         with self._database.read() as session:
-            return list(session.scalars(select(FigureRow.key).distinct().order_by(FigureRow.key)))
+            return reading.figure_keys(session)
 
     def figure_history(
         self, key: str, recipe_id: int | None = None, limit: int = 200
     ) -> tuple[list[Sample], str]:
-        """The newest known value of a figure in each of the newest finished runs of Production, the
-        oldest first, and its unit; runs of schema 1 have none."""
+        """A figure in each of the newest finished runs of Production, oldest first; its unit."""
         with self._database.read() as session:
             return reading.figure_history(session, key, recipe_id, limit)
 

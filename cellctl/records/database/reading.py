@@ -44,10 +44,18 @@ from cellctl.records.trend import Sample
 T = TypeVar("T")
 
 
+def figure_keys(session: Session) -> list[str]:
+    """Keys of all figures that any run has."""
+    return list(session.scalars(select(FigureRow.key).distinct().order_by(FigureRow.key)))
+
+
 def figure_history(
     session: Session, key: str, recipe_id: int | None, limit: int
 ) -> tuple[list[Sample], str]:
-    """See ``RunStore.figure_history``."""
+    """The newest known value of each finished run of Production, the oldest first, and the unit.
+
+    Runs of schema 1 have none: their figures stand in other tables.
+    """
     # A further attempt of a run replaces what an earlier one has found: the last row counts.
     last = (
         select(func.max(FigureRow.id))
@@ -68,6 +76,7 @@ def figure_history(
     samples = [
         Sample(run.number, run.started, figure.value, figure.lower, figure.upper)
         for run, figure in found
+        if figure.value is not None
     ]
     return samples, found[-1][1].unit if found else ""
 
