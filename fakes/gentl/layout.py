@@ -12,22 +12,32 @@ _COLOURED: Final = 3
 """Dimensions of an image with channels."""
 
 
-def laid_out(pixels: NDArray[np.uint8], pixel_format: Format) -> bytes:
+def laid_out(pixels: NDArray[np.uint8], pixel_format: Format) -> NDArray[np.uint8]:
     """An image, (height, width) or with three channels, as a camera of this format delivers it.
+
+    Bytes in one row; no copy of an image that has this format already.
 
     What is rendered has 8 bits: deeper formats have zeros below them. Width and height are even.
     """
     if pixel_format == "RGB8":
-        return _coloured(pixels).tobytes()
+        return _row(_coloured(pixels))
     if pixel_format == "BayerRG8":
-        return _mosaic(_coloured(pixels)).tobytes()
-    grey = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY) if pixels.ndim == _COLOURED else pixels
+        return _row(_mosaic(_coloured(pixels)))
+    grey = pixels if pixels.ndim < _COLOURED else _grey(pixels)
     if pixel_format == "Mono8":
-        return grey.tobytes()
+        return _row(grey)
     if pixel_format == "Mono12":
-        return (grey.astype("<u2") << 4).tobytes()
+        return _row((grey.astype("<u2") << 4).view(np.uint8))
     pairs = grey.reshape(-1, 2)
-    return np.insert(pairs, 1, 0, axis=1).astype(np.uint8).tobytes()  # low nibbles in the middle
+    return _row(np.insert(pairs, 1, 0, axis=1))  # low nibbles in the middle
+
+
+def _row(values: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.ascontiguousarray(values).reshape(-1)
+
+
+def _grey(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
 
 
 def _coloured(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -11,8 +11,8 @@ from fakes.gentl.layout import laid_out
 WIDTH, HEIGHT = 12, 6
 
 
-def read(data: bytes, pixel_format: Format) -> NDArray[np.uint8] | NDArray[np.uint16]:
-    pixels, _ = decoded(np.frombuffer(data, np.uint8), pixel_format, WIDTH, HEIGHT)
+def read(data: NDArray[np.uint8], pixel_format: Format) -> NDArray[np.uint8] | NDArray[np.uint16]:
+    pixels, _ = decoded(data, pixel_format, WIDTH, HEIGHT)
     return pixels
 
 
