@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean
 
 venv: $(VENV)/.installed
@@ -40,6 +40,11 @@ demo-insertion: venv
 
 demo-calibration: venv
 	$(BIN)/cellctl demo --calibrate --seed $(SEED)
+
+# The fake GenTL producer in FOLDER, for other programs; tests and demo compile their own.
+FOLDER ?= .
+producer: venv
+	$(BIN)/python -m fakes.gentl.build $(FOLDER)
 
 # RUN is the folder that demo-calibration has written; see docs/decisions/0004.
 ship-demo-calibration: venv

@@ -1,7 +1,11 @@
-"""Compiles the fake GenTL producer with the compiler of the system."""
+"""Compiles the fake GenTL producer with the compiler of the system.
+
+`python -m fakes.gentl.build FOLDER` does the same.
+"""
 
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 SOURCES = Path(__file__).parent / "producer"
@@ -38,3 +42,7 @@ def build_producer(folder: Path, *options: str, **descriptions: Path) -> Path:
     if built.returncode:
         raise NoCompilerError(built.stderr)
     return target
+
+
+if __name__ == "__main__":
+    print(build_producer(Path(sys.argv[1])))

@@ -88,6 +88,8 @@ typedef struct camera {
     camera_state *state;
     uint8_t registers[REGISTER_BYTES];
     bool is_open, stream_open, acquiring, stream_running, ending, event_killed, event_registered;
+    bool loss_registered;
+    volatile bool loss_told, loss_killed; /* of the event that says that the camera is lost */
     int exposures; /* the socket where the fake cell exposes, -1 for none */
     uint32_t triggers, starts, line_seen, losses_seen;
     uint64_t frame_id, order, delivered, last_time_ns;

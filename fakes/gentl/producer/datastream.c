@@ -156,6 +156,8 @@ static size_t in_place(camera *self, place where) {
     return count;
 }
 
+size_t stream_filled(camera *self) { return in_place(self, OUTPUT); }
+
 GC_API DSGetInfo(DS_HANDLE stream, int32_t what, INFO_DATATYPE *type, void *out, size_t *size) {
     camera *self = stream_of(stream);
     if (!self) return fail(GC_ERR_INVALID_HANDLE, "no open stream");
@@ -255,65 +257,3 @@ GC_API DSGetNumFlows(void) { return fail(GC_ERR_NOT_IMPLEMENTED, "flows"); }
 GC_API DSGetFlowInfo(void) { return fail(GC_ERR_NOT_IMPLEMENTED, "flows"); }
 GC_API DSGetNumBufferSegments(void) { return fail(GC_ERR_NOT_IMPLEMENTED, "segments"); }
 GC_API DSGetBufferSegmentInfo(void) { return fail(GC_ERR_NOT_IMPLEMENTED, "segments"); }
-
-/* -- events -------------------------------------------------------------------------------------------- */
-GC_API GCRegisterEvent(EVENTSRC_HANDLE source, int32_t type, EVENT_HANDLE *event) {
-    camera *self = stream_of(source);
-    if (!self || type != EVENT_NEW_BUFFER) return fail(GC_ERR_NOT_IMPLEMENTED, "events of full buffers only");
-    if (self->event_registered) return fail(GC_ERR_RESOURCE_IN_USE, "registered already");
-    self->event_registered = true;
-    *event = &event_handles[self->index];
-    return GC_ERR_SUCCESS;
-}
-
-GC_API GCUnregisterEvent(EVENTSRC_HANDLE source, int32_t type) {
-    camera *self = of_handle(source, stream_handles);
-    if (!self || type != EVENT_NEW_BUFFER) return fail(GC_ERR_INVALID_HANDLE, "no such event");
-    self->event_registered = false;
-    return GC_ERR_SUCCESS;
-}
-
-GC_API EventGetData(EVENT_HANDLE event, void *out, size_t *size, uint64_t timeout_ms) {
-    camera *self = of_handle(event, event_handles);
-    if (!self) return fail(GC_ERR_INVALID_HANDLE, "no event");
-    frame_buffer *buffer;
-    GC_ERROR error = stream_next(self, timeout_ms, &buffer);
-    if (error) return fail(error, "no image");
-    EVENT_NEW_BUFFER_DATA data = {buffer, buffer->user};
-    return answer(INFO_BUFFER, &data, sizeof data, NULL, out, size);
-}
-
-GC_API EventGetDataInfo(EVENT_HANDLE event, const void *in, size_t in_size, int32_t what, INFO_DATATYPE *type, void *out,
-                        size_t *size) {
-    (void)event, (void)in, (void)in_size, (void)what, (void)type, (void)out, (void)size;
-    return fail(GC_ERR_NOT_IMPLEMENTED, "information about event data");
-}
-
-GC_API EventGetInfo(EVENT_HANDLE event, int32_t what, INFO_DATATYPE *type, void *out, size_t *size) {
-    camera *self = of_handle(event, event_handles);
-    if (!self) return fail(GC_ERR_INVALID_HANDLE, "no event");
-    switch (what) {
-        case EVENT_EVENT_TYPE: return answer_i32(EVENT_NEW_BUFFER, type, out, size);
-        case EVENT_NUM_IN_QUEUE: return answer_size(in_place(self, OUTPUT), type, out, size);
-        case EVENT_NUM_FIRED: return answer_u64(self->delivered, type, out, size);
-        case EVENT_SIZE_MAX:
-        case EVENT_INFO_DATA_SIZE_MAX: return answer_size(sizeof(EVENT_NEW_BUFFER_DATA), type, out, size);
-        default: return fail(GC_ERR_NOT_AVAILABLE, "information about an event");
-    }
-}
-
-GC_API EventFlush(EVENT_HANDLE event) {
-    camera *self = of_handle(event, event_handles);
-    return self ? DSFlushQueue(&stream_handles[self->index], ACQ_QUEUE_OUTPUT_DISCARD)
-                : fail(GC_ERR_INVALID_HANDLE, "no event");
-}
-
-GC_API EventKill(EVENT_HANDLE event) {
-    camera *self = of_handle(event, event_handles);
-    if (!self) return fail(GC_ERR_INVALID_HANDLE, "no event");
-    pthread_mutex_lock(&self->mutex);
-    self->event_killed = true;
-    pthread_cond_broadcast(&self->changed);
-    pthread_mutex_unlock(&self->mutex);
-    return GC_ERR_SUCCESS;
-}

@@ -11,7 +11,8 @@
 
 camera cameras[MAX_CAMERAS];
 char system_handle, interface_handle;
-char device_handles[MAX_CAMERAS], port_handles[MAX_CAMERAS], stream_handles[MAX_CAMERAS], event_handles[MAX_CAMERAS];
+char device_handles[MAX_CAMERAS], port_handles[MAX_CAMERAS], stream_handles[MAX_CAMERAS], event_handles[MAX_CAMERAS],
+    loss_handles[MAX_CAMERAS];
 
 static shared_state *state;
 static bool initialised, system_open;

@@ -1,4 +1,4 @@
-"""A session with the fake producer through harvesters: `good` and `faults` of its arguments.
+"""A session with the fake producer through harvesters: `good`, `faults` or `loss` by its argument.
 
 A program of its own, because it runs under sanitizers, which are loaded before Python is.
 """
@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 from genicam import genapi, gentl
+from harvesters.core import Harvester
 
 from drivers.camera.gige.delivered import delivered
 from drivers.camera.gige.producers import Producers
@@ -124,8 +125,35 @@ def faults(producer: Path, fakes: FakeCameras) -> None:
         assert np.array_equal(data.reshape(height, width), expected_image(1, 64, 48, "Mono8"))
 
 
+def loss(producer: Path, fakes: FakeCameras) -> None:
+    """The event of the device module that says, once, that its camera is lost."""
+    harvester = Harvester()
+    harvester.add_file(str(producer))
+    harvester.update()
+    device = harvester.device_info_list[0].module.create_device()
+    device.open(gentl.DEVICE_ACCESS_FLAGS_LIST.DEVICE_ACCESS_EXCLUSIVE)
+    event = gentl.EventManagerModule(device.register_event(gentl.EVENT_TYPE_LIST.EVENT_MODULE))
+    assert not told(event, 50)
+    fakes.inject(LEFT, "lost")
+    fakes.inject(LEFT, "lost", 0)
+    assert told(event, 5000)
+    assert not told(event, 50)
+    event.unregister_event()
+    device.close()
+    harvester.reset()
+
+
+def told(event: Any, timeout_ms: int) -> bool:
+    """Whether the event has come within the time."""
+    try:
+        event.update_event_data(timeout_ms)
+    except gentl.TimeoutException:
+        return False
+    return True
+
+
 def main(producer: Path, what: str) -> None:
-    """Run one of both; the log of harvesters goes to the standard error stream."""
+    """Run one of the three; the log of harvesters goes to the standard error stream."""
     logger = logging.getLogger("harvesters.core")
     logger.setLevel(logging.WARNING)
     for handler in logger.handlers:
@@ -136,7 +164,7 @@ def main(producer: Path, what: str) -> None:
         if what == "good":
             good(producer)
         else:
-            faults(producer, fakes)
+            {"faults": faults, "loss": loss}[what](producer, fakes)
         assert (fakes.opened(LEFT), fakes.buffers(LEFT)) == (0, 0)
     print("clean")
 

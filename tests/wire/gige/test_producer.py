@@ -9,7 +9,7 @@ import pytest
 
 from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import FakeCameras
-from tests.wire.gige.conftest import LEFT, camera
+from tests.wire.gige.conftest import LEFT, camera, descriptors
 
 
 def session(producer: Path, what: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -30,13 +30,14 @@ def test_harvesters_has_nothing_to_warn_of(producer: Path) -> None:
     assert (done.stdout, done.stderr) == ("clean\n", "")
 
 
-def test_faults_leave_the_producer_usable(producer: Path) -> None:
-    done = session(producer, "faults")
+@pytest.mark.parametrize("what", ["faults", "loss"])
+def test_faults_leave_the_producer_usable(producer: Path, what: str) -> None:
+    done = session(producer, what)
     assert done.stdout == "clean\n", done.stderr
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("what", ["good", "faults", "cell"])
+@pytest.mark.parametrize("what", ["good", "faults", "loss", "cell"])
 def test_under_sanitizers(tmp_path: Path, what: str) -> None:
     producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined")
     # The C++ library too: the sanitizer looks for its exceptions before Python loads anything.
@@ -45,8 +46,9 @@ def test_under_sanitizers(tmp_path: Path, what: str) -> None:
         producer,
         what,
         LD_PRELOAD=preloaded,
-        # Leaks are those of Python and of the standard's libraries: only the producer is looked at.
-        ASAN_OPTIONS="detect_leaks=0",
+        # Leaks are those of Python and of the standard's libraries, and genicam mixes new[] with
+        # delete in its events: only the producer is looked at, which is in C and knows neither.
+        ASAN_OPTIONS="detect_leaks=0:alloc_dealloc_mismatch=0",
         UBSAN_OPTIONS="halt_on_error=1",
     )
     assert done.stdout.endswith("clean\n"), done.stderr
@@ -82,14 +84,18 @@ async def test_many_images_leave_nothing(producer: Path, fakes: FakeCameras) -> 
             await eye.grab()
             if number == 200:
                 child = fakes.opened(LEFT)
-                before = _kept(child)
-        after = _kept(child)
+                before = await _kept(child)
+        after = await _kept(child)
     assert after[0] <= before[0], "descriptors of the library's process"
     assert after[1] <= before[1] + 2000, "its memory, kB"
 
 
-def _kept(process: int) -> tuple[int, int]:
+async def _kept(process: int) -> tuple[int, int]:
     """Open descriptors and resident memory (kB)."""
+    return await descriptors(process), _resident_kb(process)
+
+
+def _resident_kb(process: int) -> int:
     status = Path(f"/proc/{process}/status").read_text(encoding="ascii")
     memory = next(line for line in status.splitlines() if line.startswith("VmRSS"))
-    return len(os.listdir(f"/proc/{process}/fd")), int(memory.split()[1])
+    return int(memory.split()[1])
