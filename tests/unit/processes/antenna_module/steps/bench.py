@@ -5,7 +5,7 @@ that show what is true, a gripper, a force sensor that feels the module. Tests s
 import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -56,6 +56,13 @@ PLAY = pose_from_xyzabc((0.3, -0.2, 0.0, 0.4, 0.0, 0.0))
 _G_M_S2 = 9.80665
 
 
+@cache
+def _shipped() -> tuple[AntennaRecipe, Drawings]:
+    """Recipe and drawings of the fake cell; both are frozen."""
+    (recipe,) = antenna_recipes(load_cell(CONFIG / "antenna.toml"))
+    return recipe, read_drawings(recipe, CONFIG)
+
+
 @dataclass
 class Bench:
     """The cell; a test changes its truth before a step."""
@@ -82,8 +89,7 @@ class Bench:
     """What else the force sensor feels while the module is held."""
 
     def __post_init__(self) -> None:
-        (self.recipe,) = antenna_recipes(load_cell(CONFIG / "antenna.toml"))
-        self.drawings: Drawings = read_drawings(self.recipe, CONFIG)
+        self.recipe, self.drawings = _shipped()
         self.base_T_connector = nominal(self.recipe.base_T_tray_plug) * pose_from_xyzabc(
             (0.6, -0.4, 0.03, 0.5, 0.0, 0.0)
         )
