@@ -64,7 +64,9 @@ class KinematicMotions(ContactMotions):
 
     def __init__(self, task: SearchTask, truth: Truth, rng: np.random.Generator) -> None:
         self.task, self.truth, self._rng = task, truth, rng
-        self._touch_speed = search_parameters(task).touch_speed.value
+        parameters = search_parameters(task)
+        self._touch_speed = parameters.touch_speed.value
+        self._sink_speed = parameters.sink_speed.value
         self.time_s = 0.0
         self.touches = 0
         self.position_m: Array = np.array([0.0, 0.0, -5e-3])
@@ -116,12 +118,13 @@ class KinematicMotions(ContactMotions):
         self, force_n: float, hold_s: float, until: Condition | None = None
     ) -> ContactMotion:
         samples: list[ContactSample] = []
-        depth_m = self._depth_m()
+        rests_m = self._depth_m()
         end_s = self.time_s + hold_s
         while self.time_s < end_s:
             self.time_s += TICK_S
-            self.position_m[2] = depth_m
-            samples.append(self._sample(force_n))
+            sunk_m = self.position_m[2] + self._sink_speed * TICK_S
+            self.position_m[2] = min(rests_m, sunk_m)
+            samples.append(self._sample(force_n if sunk_m >= rests_m else 0.0))
             if until is not None and until(samples[-1]):
                 return ContactMotion(Ended.CONDITION, tuple(samples))
         return ContactMotion(Ended.TIME, tuple(samples))
@@ -140,7 +143,7 @@ class KinematicMotions(ContactMotions):
         depths = self._depths_m(offsets, ticks)
         heights = self._noise(len(ticks)) + depths
         lost = self._unsupported(offsets)
-        begin_s = self.time_s
+        begin_s, begin_m = self.time_s, float(self.position_m[2])
         stop = len(ticks) - 1
         ended = Ended.TRAVEL
         for index in _worth_asking(depths, lost, flat=not np.any(self.rotation_rad)):
@@ -152,7 +155,8 @@ class KinematicMotions(ContactMotions):
                 ended = Ended.CONDITION
                 break
         self.time_s = begin_s + (stop + 1) * TICK_S
-        self.position_m = np.array([*ticks[stop], heights[stop]])
+        sunk_m = self._sunk_m(begin_m, heights[: stop + 1], lost[: stop + 1])
+        self.position_m = np.array([*ticks[stop], sunk_m])
         self._wander_m = wander[stop]
         return self._ended(ended, press_n)
 
@@ -166,7 +170,12 @@ class KinematicMotions(ContactMotions):
         self._turned(task_rotation_tip_rad, speed_rad_s)
         return self._ended(Ended.TRAVEL, float(hold_force_n[2]))
 
-    async def comply(self, press_n: float, hold_s: float) -> ContactMotion:
+    async def comply(
+        self,
+        press_n: float,
+        hold_s: float,
+        until: Condition | None = None,  # noqa: ARG002 - the peg stays where it stands here
+    ) -> ContactMotion:
         self.time_s += hold_s
         return self._ended(Ended.TIME, press_n)
 
@@ -231,6 +240,14 @@ class KinematicMotions(ContactMotions):
         dips = tilted_dip_m(offsets, leaning, fit.peg_radius_m, fit.clearance_m, relative_rad)
         flat = face - fit.peg_radius_m * np.sin(relative_rad)
         return np.asarray(flat + (0.0 if self.truth.absent else 1.0) * dips)
+
+    def _sunk_m(self, begin_m: float, heights: Array, lost: NDArray[np.bool_]) -> float:
+        """Depth at the end of a slide: a peg that nothing carries sinks slowly."""
+        carried = np.flatnonzero(~lost)
+        last = int(carried[-1]) if len(carried) else -1
+        from_m = float(heights[last]) if len(carried) else begin_m
+        sunk_m = from_m + self._sink_speed * TICK_S * (len(lost) - 1 - last)
+        return min(float(heights[-1]), sunk_m)
 
     def _unsupported(self, offsets: Array) -> NDArray[np.bool_]:
         if np.any(self.rotation_rad) or self.truth.absent:

@@ -116,7 +116,9 @@ class ContactMotions(ABC):
         """Turn about the tip to an attitude while forces (3,) are held; zero means stiff."""
 
     @abstractmethod
-    async def comply(self, press_n: float, hold_s: float) -> ContactMotion:
+    async def comply(
+        self, press_n: float, hold_s: float, until: Condition | None = None
+    ) -> ContactMotion:
         """Null the forces in the plane and the moments while pressed; the tip moves freely."""
 
     @abstractmethod

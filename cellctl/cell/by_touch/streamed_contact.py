@@ -148,14 +148,16 @@ class StreamedContact(ContactMotions):
         end = _first(_when(until), _arrived(path))
         return await self._run(path, lambda _sample: speed, end, speed, press)
 
-    async def comply(self, press_n: float, hold_s: float) -> ContactMotion:
-        """See ``ContactMotions``; raises ``ContactLost``."""
+    async def comply(
+        self, press_n: float, hold_s: float, until: Condition | None = None
+    ) -> ContactMotion:
+        """See ``ContactMotions``; raises ``ContactLost`` unless a condition waits for that."""
         self._pressed_n = press_n
         push = np.array([0.0, 0.0, press_n, 0.0, 0.0, 0.0])
         axes = (X, Y, Z, TILT_X, TILT_Y, YAW)
-        return await self._hold(
-            giving_way(self._loop, push, axes, contact_must_stay=press_n > 0), hold_s, None
-        )
+        must_stay = press_n > 0 and until is None
+        press = giving_way(self._loop, push, axes, contact_must_stay=must_stay)
+        return await self._hold(press, hold_s, until)
 
     async def feed(
         self, depth_m: float, force_limit_n: float, until: Condition | None = None

@@ -17,6 +17,8 @@ _TOUCH_N = 8.0
 _FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
 _SIDE_N = 5.0
+_LONGER, _SETTLE_S = 1.5, 0.5
+"""A motion that only a force drives may take so much longer than its way at full speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,9 @@ class SearchParameters:
     tilted_dip: Derived
     dip_threshold: Derived
     wall_threshold: Derived
+    sink_speed: Derived
+    entry_time: Derived
+    give_way_time: Derived
 
     def to_record(self) -> list[dict[str, Any]]:
         """Formula and inputs of all of them."""
@@ -49,17 +54,22 @@ def search_parameters(task: SearchTask) -> SearchParameters:
     """All parameters of a task."""
     fit, cell = task.fit, task.cell
     radius_m, catch_m = fit.peg_radius_m, fit.catch_radius_m
+    entry_m = fit.entry_depth_m
     press_n = min(_TOUCH_N, task.limits.search_n)
     stiffness, dead_s = cell.stiffness_n_m, cell.dead_time_s
     loop = {"k": stiffness, "θ": dead_s, "t_det": DETECTION_S}
     tilt_rad = min(max(max(0.4e-3, 28 * cell.height_sigma_m) / radius_m, radians(4)), radians(12))
     heights = {"r": radius_m, "σ_z": cell.height_sigma_m}
     dip_m = radius_m * tilt_rad
+    touch_m_s = touch_speed_m_s(stiffness, dead_s, press_n)
+    sink_m_s = min(press_n / (1.5 * cell.loop_n_s_m), touch_m_s)
+    yield_m_s = min(press_n / (4.5 * cell.loop_n_s_m), touch_m_s)
+    pressed = {"F": press_n, "k": stiffness, "θ": dead_s, "v_t": touch_m_s}
     return SearchParameters(
         Derived("press", press_n, "N", "min(8 N, F_search)", {"F_search": task.limits.search_n}),
         Derived(
             "touch speed",
-            touch_speed_m_s(stiffness, dead_s, press_n),
+            touch_m_s,
             "m/s",
             "min(3 mm/s, ΔF / (k (θ + t_det)))",
             {"ΔF": press_n, **loop},
@@ -95,5 +105,21 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "N",
             "μ F_z + 3 σ_F",
             {"μ": cell.friction, "F_z": press_n, "σ_F": cell.force_sigma_n},
+        ),
+        # A press moves the arm at F / S only, with S for the axes that one contact loads.
+        Derived("sink speed", sink_m_s, "m/s", "min(F / (1.5 k θ), v_t)", pressed),
+        Derived(
+            "entry time",
+            _LONGER * entry_m / sink_m_s + _SETTLE_S,
+            "s",
+            "1.5 z_e / v_s + 0.5 s",
+            {"z_e": entry_m, "v_s": sink_m_s},
+        ),
+        Derived(
+            "give-way time",
+            _LONGER * catch_m / yield_m_s + _SETTLE_S,
+            "s",
+            "1.5 C / min(F / (4.5 k θ), v_t) + 0.5 s",
+            {"C": catch_m, **pressed},
         ),
     )

@@ -19,9 +19,10 @@ Array = NDArray[np.float64]
 UPRIGHT = np.zeros(3)
 _LIFT_M = 0.3e-3
 _FREE_M_S = 20e-3
-_PRESS_S = 1.0
 _ENTERED_S = 0.1
-_GIVE_WAY_S = 1.0
+_STANDS_S = 1.0
+_SINKS_M = 0.05e-3
+"""A peg that is carried and goes no deeper than this stands."""
 _DIP_M = 0.1e-3
 """Lower than this beneath the face an upright peg stands on no face."""
 _LOST_RATIO = 0.3
@@ -107,7 +108,7 @@ class TouchProbe:
             way_m,
             self.press_n,
             speed_m_s,
-            lambda sample: until(sample) or sample.time_s > self.deadline_s,
+            lambda sample: until(sample) or self._late(sample),
             self.task.limits.search_n,
         )
         self.still_in_time(motion.last)
@@ -115,17 +116,35 @@ class TouchProbe:
 
     async def enters(self) -> bool:
         """Press; True when the peg stays below the depth of entry."""
-        depth_m = self.task.fit.entry_depth_m
-        pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
-        if pressed.ended is not Ended.CONDITION and _stands_lower(pressed.last):
-            # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
-            await self.motions.comply(self.press_n, _GIVE_WAY_S)
-            pressed = await self.motions.press(self.press_n, _PRESS_S, held(depth_m))
-        entered = pressed.ended is Ended.CONDITION
-        stands = Felt.EDGE if _stands_lower(pressed.last) else Felt.FACE
-        self.trace.note(pressed.last, Felt.ENTRY if entered else stands)
-        self.still_in_time(pressed.last)
+        last, entered = await self._sinks()
+        if not entered and _stands_lower(last):
+            # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in. That
+            # nothing carries it then is what is hoped for.
+            lost = LostSupport(self.press_n)
+            await self.motions.comply(
+                self.press_n,
+                self.parameters.give_way_time.value,
+                lambda sample: lost(sample) or self._late(sample),
+            )
+            last, entered = await self._sinks()
+        stands = Felt.EDGE if _stands_lower(last) else Felt.FACE
+        self.trace.note(last, Felt.ENTRY if entered else stands)
+        self.still_in_time(last)
         return entered
+
+    async def _sinks(self) -> tuple[ContactSample, bool]:
+        """Press until the peg is in, or something carries it; the end, and whether it is in."""
+        entered, stands = held(self.task.fit.entry_depth_m), Stands(self.press_n)
+        found = False
+
+        def condition(sample: ContactSample) -> bool:
+            nonlocal found
+            found = entered(sample)
+            return found or stands(sample) or self._late(sample)
+
+        hold_s = self.parameters.entry_time.value
+        pressed = await self.motions.press(self.press_n, hold_s, condition)
+        return pressed.last, found
 
     async def look_round(self, centre_m: Array, radius_m: float = _LOCAL_RADIUS_M) -> bool:
         """Touch down upright and search a small spiral; True when the peg has entered."""
@@ -165,8 +184,11 @@ class TouchProbe:
 
     def still_in_time(self, sample: ContactSample) -> None:
         """Raises ``SearchGaveUp`` past the deadline."""
-        if sample.time_s > self.deadline_s:
+        if self._late(sample):
             raise SearchGaveUp(f"within {self.task.search_limit_s:.0f} s")
+
+    def _late(self, sample: ContactSample) -> bool:
+        return sample.time_s > self.deadline_s
 
 
 Stop = Callable[[ContactSample], bool]
@@ -177,7 +199,11 @@ def _never(_sample: ContactSample) -> bool:
 
 
 def _stands_lower(sample: ContactSample) -> bool:
-    return float(sample.task_position_tip_m[2]) > _DIP_M
+    return _depth_m(sample) > _DIP_M
+
+
+def _depth_m(sample: ContactSample) -> float:
+    return float(sample.task_position_tip_m[2])
 
 
 def held(depth_m: float) -> Stop:
@@ -192,6 +218,23 @@ def held(depth_m: float) -> Stop:
         return sample.time_s - since[0] >= _ENTERED_S
 
     return condition
+
+
+class Stands:
+    """Holds once something has carried the peg for a while, and it has gone no deeper."""
+
+    def __init__(self, press_n: float) -> None:
+        self._least_n = _LOST_RATIO * press_n
+        self._begin: ContactSample | None = None
+
+    def __call__(self, sample: ContactSample) -> bool:
+        """The condition of a press."""
+        if abs(sample.force_n[2]) < self._least_n:
+            self._begin = None
+            return False
+        if self._begin is None or _depth_m(sample) - _depth_m(self._begin) > _SINKS_M:
+            self._begin = sample
+        return sample.time_s - self._begin.time_s >= _STANDS_S
 
 
 class LostSupport:

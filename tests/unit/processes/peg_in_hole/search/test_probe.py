@@ -1,0 +1,68 @@
+"""A press over the hole, on streamed contact with an elastic part."""
+
+import asyncio
+
+import numpy as np
+import pytest
+
+from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
+from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
+from tests.unit.cell.by_touch.elastic_world import ElasticWorld, Hole, Part, contact, wall
+from tests.unit.processes.peg_in_hole.tasks import pin
+
+CLEARANCE_M = 0.05e-3
+NEVER_S = 1e9
+
+
+def probe_in(world: ElasticWorld, stiffness_n_m: float, chamfer_mm: float) -> TouchProbe:
+    theta_s = world.dead_time_s
+    task = pin(0.05, chamfer_mm=chamfer_mm, stiffness_n_m=stiffness_n_m, dead_time_s=theta_s)
+    motions = contact(world, LoopFigures(stiffness_n_m, theta_s))
+    hole_map = HoleMap(2e-3, task.fit.catch_radius_m)
+    return TouchProbe(motions, task, search_parameters(task), hole_map, NEVER_S)
+
+
+def standing_in(part: Part, *, at_m: tuple[float, float, float]) -> ElasticWorld:
+    tip = np.array([*at_m, 0.0, 0.0, 0.0])
+    return ElasticWorld(
+        part, period_s=8e-3, delay_ticks=1, lag_s=5e-3, sigma_n=0.2, sigma_nm=0.005, tip=tip
+    )
+
+
+def hole(stiffness_n_m: float, chamfer_mm: float) -> Hole:
+    chamfer_m = max(chamfer_mm, 1e-3) * 1e-3
+    return Hole(stiffness_n_m, clearance_m=CLEARANCE_M, chamfer_m=chamfer_m, depth_m=12e-3)
+
+
+@pytest.mark.parametrize("chamfer_mm", [0.0, 0.5])
+@pytest.mark.parametrize("stiffness_n_m", [1e5, 2e5, 1e6])
+@pytest.mark.parametrize("depth_mm", [-0.02, 0.0, 0.2])
+def test_a_peg_free_over_its_hole_enters_however_stiff_the_cell_is(
+    stiffness_n_m: float, chamfer_mm: float, depth_mm: float
+) -> None:
+    world = standing_in(hole(stiffness_n_m, chamfer_mm), at_m=(0, 0, depth_mm * 1e-3))
+    probe = probe_in(world, stiffness_n_m, chamfer_mm)
+    begun_s = world.now_s
+    assert asyncio.run(probe.enters())
+    assert world.tip[2] >= probe.task.fit.entry_depth_m
+    assert probe.trace.points[-1].felt is Felt.ENTRY
+    assert world.now_s - begun_s < probe.parameters.entry_time.value
+
+
+@pytest.mark.parametrize("stiffness_n_m", [1e5, 1e6])
+def test_a_peg_on_the_chamfer_slides_in_when_it_is_let_go(stiffness_n_m: float) -> None:
+    # The contact is lost where the chamfer ends, which is the way in and no fault.
+    world = standing_in(hole(stiffness_n_m, 0.5), at_m=(0.25e-3, 0.0, 0.3e-3))
+    assert asyncio.run(probe_in(world, stiffness_n_m, 0.5).enters())
+
+
+@pytest.mark.parametrize("stiffness_n_m", [1e5, 1e6])
+def test_a_peg_that_the_face_carries_is_not_pressed_for_longer(stiffness_n_m: float) -> None:
+    world = standing_in(wall(stiffness_n_m), at_m=(0.0, 0.0, -0.02e-3))
+    probe = probe_in(world, stiffness_n_m, 0.5)
+    begun_s = world.now_s
+    assert not asyncio.run(probe.enters())
+    assert probe.trace.points[-1].felt is Felt.FACE
+    assert world.now_s - begun_s < 2.0
