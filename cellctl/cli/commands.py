@@ -109,6 +109,12 @@ def _teach(app: typer.Typer) -> None:
     app.command("teach", rich_help_panel=_CELL)(teach)
 
 
+def _service_limits(app: typer.Typer) -> None:
+    from cellctl.cli.commissioning.service_limits import limits
+
+    app.command("service-limits", rich_help_panel=_CELL)(limits)
+
+
 def _grab(app: typer.Typer) -> None:
     from cellctl.cli.cameras.grab import grab
 
@@ -186,6 +192,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "demo": _demo,
     "robot": _robot,
     "teach": _teach,
+    "service-limits": _service_limits,
     "grab": _grab,
     "focus": _focus,
     "runs": _runs,

@@ -27,6 +27,7 @@ CELL = (
     Listed("demo", _CELL, "Start a fake cell, daemon and line PLC and run one job."),
     Listed("robot", _CELL, "Listen to one robot and print what it says. Moves nothing."),
     Listed("teach", _CELL, "Capture taught poses; the arm is moved by hand or pendant."),
+    Listed("service-limits", _CELL, "Print a drop-in for cellctl.service: only this cell's peers."),
     Listed("grab", _CELL, "Save images as PNG, each exposure with a JSON file; moves nothing."),
     Listed("focus", _CELL, "Show sharpness, light, overlap and what is found, live."),
 )

@@ -1,0 +1,84 @@
+"""What the service of one cell needs of the PC: network peers, serial lines, SocketCAN.
+
+Drivers name such settings alike (docs/writing-a-driver.md): ``host`` and ``robot_address`` are
+network peers, a path below ``/dev`` is a device, ``can_channel`` with ``can_interface`` a CAN bus.
+"""
+
+import ipaddress
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from cellctl.config.cell import CellConfig
+
+_PEERS = ("host", "robot_address")
+_SOCKET_CAN = "socketcan"
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceLimits:
+    """Everything that the cell file names, and what it leaves open."""
+
+    peers: tuple[str, ...]
+    """Addresses or networks, as they are written."""
+    devices: tuple[str, ...]
+    """Paths below /dev."""
+    socket_can: bool
+    open_ends: tuple[str, ...]
+    """Devices whose peers nobody can tell from the file, and why."""
+
+
+def service_limits(cell: CellConfig) -> ServiceLimits:
+    """The limits of one cell; every device has an address, a path, or an entry of its own."""
+    peers: dict[str, None] = dict.fromkeys(_addresses(cell.plc.allowed_clients))
+    devices: dict[str, None] = {}
+    open_ends: list[str] = []
+    socket_can = False
+    for path, (_, device) in cell.devices().items():
+        settings = device.settings
+        local = {value for value in settings.values() if _is_device(value)}
+        can = settings.get("transport") == "can"
+        socket_can |= can and settings.get("can_interface", _SOCKET_CAN) == _SOCKET_CAN
+        devices |= dict.fromkeys(sorted(local))
+        if local or can:
+            continue  # a serial line or a bus: its settings of a network mean nothing
+        named = [str(settings[key]) for key in _PEERS if settings.get(key)]
+        known = list(_addresses(named))
+        peers |= dict.fromkeys(known)
+        if not named:
+            open_ends.append(f"{path} ({device.driver}) names no address")
+        open_ends += [f"{path}: {name} is a name" for name in named if name not in known]
+    return ServiceLimits(tuple(peers), tuple(devices), socket_can, tuple(open_ends))
+
+
+def drop_in(cell: CellConfig) -> str:
+    """The limits as a drop-in of the unit ``cellctl.service``."""
+    return "".join(f"{line}\n" for line in _lines(cell, service_limits(cell)))
+
+
+def _lines(cell: CellConfig, limits: ServiceLimits) -> Iterator[str]:
+    yield f"# Made by `cellctl service-limits` from the cell file of {cell.name}."
+    yield "[Service]"
+    yield "# The first line empties the list of the unit."
+    yield "DeviceAllow="
+    yield from (f"DeviceAllow={device} rw" for device in limits.devices)
+    if limits.socket_can:
+        yield "RestrictAddressFamilies=AF_CAN"
+    yield "IPAddressDeny=any"
+    yield "IPAddressAllow=localhost"
+    yield from (f"IPAddressAllow={peer}" for peer in limits.peers)
+    for text in limits.open_ends:
+        yield f"# {text}: add an IPAddressAllow= of its network, or it cannot be reached."
+
+
+def _addresses(written: Iterable[str]) -> Iterator[str]:
+    for text in written:
+        try:
+            ipaddress.ip_network(text, strict=False)
+        except ValueError:
+            continue
+        yield text
+
+
+def _is_device(value: Any) -> bool:
+    return isinstance(value, str) and value.startswith("/dev/")

@@ -1,0 +1,69 @@
+"""The drop-in of the service names what the cell file names, and nothing else."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.commands import whole_app
+from cellctl.config import CellConfig, load_cell
+from cellctl.config.service_limits import drop_in, service_limits
+
+CONFIG = Path(__file__).parents[3] / "config"
+
+
+@pytest.fixture(scope="module")
+def template() -> CellConfig:
+    return load_cell(CONFIG / "cell.toml")
+
+
+def changed(cell: CellConfig, **settings: Any) -> CellConfig:
+    """The same cell with other settings of its force sensor."""
+    name, sensor = next(iter(cell.force_sensors.items()))
+    other = sensor.model_copy(update={"settings": {**sensor.settings, **settings}})
+    return cell.model_copy(update={"force_sensors": {name: other}})
+
+
+def test_every_address_of_the_file_is_a_peer(template: CellConfig) -> None:
+    peers = service_limits(template).peers
+    for _, device in template.devices().values():
+        for key in ("host", "robot_address"):
+            if key in device.settings:
+                assert device.settings[key] in peers
+    assert set(template.plc.allowed_clients) <= set(peers)
+    assert service_limits(template).open_ends == ()
+
+
+def test_all_else_is_denied(template: CellConfig) -> None:
+    lines = drop_in(template).splitlines()
+    assert "IPAddressDeny=any" in lines
+    assert "DeviceAllow=" in lines
+    assert not any(line.startswith("DeviceAllow=/") for line in lines)
+    assert not any("AF_CAN" in line for line in lines)
+
+
+def test_a_serial_sensor_is_its_line_alone(template: CellConfig) -> None:
+    cell = changed(template, transport="serial", device="/dev/ttyUSB0")
+    assert service_limits(cell).devices == ("/dev/ttyUSB0",)
+    assert "192.168.0.108" not in service_limits(cell).peers
+    assert "DeviceAllow=/dev/ttyUSB0 rw" in drop_in(cell).splitlines()
+
+
+@pytest.mark.parametrize(("interface", "needed"), [("socketcan", True), ("slcan", False)])
+def test_socket_can_is_allowed_where_it_is_used(
+    template: CellConfig, interface: str, needed: bool
+) -> None:
+    cell = changed(template, transport="can", can_interface=interface, can_channel="can0")
+    assert service_limits(cell).socket_can is needed
+    assert ("RestrictAddressFamilies=AF_CAN" in drop_in(cell)) is needed
+
+
+def test_what_nobody_can_tell_is_told(template: CellConfig) -> None:
+    cell = changed(template, host="sensor-box")
+    (text,) = service_limits(cell).open_ends
+    assert "sensor-box is a name" in text
+    done = CliRunner().invoke(whole_app(), ["service-limits", str(CONFIG / "deck-gige.toml")])
+    assert done.exit_code == 0, done.output
+    assert "names no address" in done.stderr
+    assert "IPAddressDeny=any" in done.stdout
