@@ -108,7 +108,7 @@ def _measured(report: StatusReport) -> list[tuple[str, Text]]:
     if any(axis.value is not None for axis in report.errors):
         rows.append(("errors", Text(", ").join(_axis(axis) for axis in report.errors)))
     for force in report.forces:
-        rows.append((f"force {force.sensor}".strip(), _force(force)))
+        rows.append((f"at {force.sensor}" if len(report.forces) > 1 else "force", _force(force)))
     return rows
 
 
