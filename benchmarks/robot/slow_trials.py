@@ -6,6 +6,7 @@ import time
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from typing import Any
 
 from scipy.spatial.transform import RigidTransform
 
@@ -177,27 +178,42 @@ async def _stopped(slow: Slow, cause: Cause, statement_s: float, report_ms: floa
     up = RigidTransform.from_translation([0.0, 0.0, way_m])
     target = up * rig.robot.state(ENDLESS_S).base_T_flange
     await asyncio.sleep(slow.rng.uniform(0.0, round_s))
+    begun, braked = _noted(rig)
     asked_s = time.monotonic()
     move = asyncio.create_task(
         rig.robot.move_linear(target, speed_m_s=SPEED_M_S, acceleration_m_s2=1.0)
     )
-    await _until(rig.controller.moving)
-    begun_s = time.monotonic()
+    begun_s = await asyncio.wait_for(begun, ENDLESS_S)
     await asyncio.sleep(slow.rng.uniform(1.0, 2.0) * round_s)
     caused_s = time.monotonic()
     causing = asyncio.ensure_future(cause(slow))
-    await _until(lambda: rig.arm.cut_short or not rig.controller.moving())
-    stopped_s, braked = time.monotonic(), rig.arm.cut_short
+    # A motion that nothing stops ends by itself.
+    ends: set[asyncio.Future[Any]] = {braked, move}
+    await asyncio.wait(ends, timeout=ENDLESS_S, return_when=asyncio.FIRST_COMPLETED)
     causing.cancel()
     # Without a link nobody waits for the end of a stop.
     for wire in rig.wires.values():
         wire.reset()
     await asyncio.gather(causing, move, return_exceptions=True)
-    stop_ms = 1000 * (stopped_s - caused_s) if braked else None
+    stop_ms = 1000 * (braked.result() - caused_s) if braked.done() else None
     return Trial(report_ms, 1000 * (begun_s - asked_s), stop_ms)
 
 
-async def _until(holds: Callable[[], bool]) -> None:
-    async with asyncio.timeout(ENDLESS_S):
-        while not holds():  # noqa: ASYNC110  the arm has no event
-            await asyncio.sleep(0.001)
+def _noted(rig: JobRig) -> "tuple[asyncio.Future[float], asyncio.Future[float]]":
+    """When the arm begins its next motion, and when it is told to brake."""
+    loop, arm = asyncio.get_running_loop(), rig.arm
+    begun: asyncio.Future[float] = loop.create_future()
+    braked: asyncio.Future[float] = loop.create_future()
+    start, stop = arm.start_linear, arm.stop
+
+    def started(*arguments: Any) -> None:
+        start(*arguments)
+        begun.set_result(time.monotonic())
+
+    def stopped(time_s: float, *, latency_s: float | None = None) -> None:
+        stop(time_s, latency_s=latency_s)
+        if not braked.done():
+            braked.set_result(time.monotonic())
+
+    arm.start_linear, arm.stop = started, stopped  # type: ignore[method-assign, assignment]
+    return begun, braked
