@@ -11,6 +11,7 @@ from cellctl import log
 from cellctl.cell.driver_object import driver_object
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.lit_cameras import Lights
 from cellctl.cell.noted_robot import RobotNotes
 from cellctl.cell.permitted_robot import permitted
 from cellctl.cell.slowed_robot import MaintenancePace, slowed
@@ -24,7 +25,7 @@ from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
-from cellctl.interfaces import Camera, DigitalIo, Gripper, StereoCamera, TargetTracker
+from cellctl.interfaces import DigitalIo, Gripper, TargetTracker
 from cellctl.interfaces.device import Device
 from cellctl.workers import VisionWorkers
 
@@ -53,9 +54,11 @@ class Cell:
         self.pace = MaintenancePace()
         moving = slowed(config, {robot.name: robot for robot in noted}, self.pace)
         self.robots = zoned_robots(config, moving)
-        self.stereo_cameras: Mapping[str, StereoCamera] = _built(config, "stereo_cameras")
+        lights = Lights(self.digital_ios)
+        heads = _built(config, "stereo_cameras")
+        self.stereo_cameras = lights.heads(heads, config.stereo_cameras)
         self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
-        self.cameras: Mapping[str, Camera] = _built(config, "cameras")
+        self.cameras = lights.cameras(_built(config, "cameras"), config.cameras)
         self.grippers: Mapping[str, Gripper] = _built(config, "grippers")
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
         """By the name of the force sensor that each of them owns."""

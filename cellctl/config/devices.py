@@ -32,6 +32,17 @@ class PermitConfig(Section):
     """Name of the output there; on is the permit."""
 
 
+class LightConfig(Section):
+    """A lamp at a digital output, which is on while an image is exposed."""
+
+    device: DeviceName
+    """The digital I/O; one with a watchdog switches the lamp off when this PC dies."""
+    output: str
+    """Name of the output there; on is light."""
+    settle_s: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """From the confirmed output to the exposure: what the lamp takes to give its full light."""
+
+
 class WayConfig(Section):
     """A way between two taught poses, for where the straight one is not free."""
 
@@ -80,6 +91,8 @@ class CameraConfig(DeviceConfig):
     """The robot that carries it; none where it is fixed."""
     flange_T_camera: WrittenPose | None = None
     """Nominal pose on the flange of the robot that carries it, for planning views only."""
+    light: LightConfig | None = None
+    """Switched on for each exposure; cameras may share one."""
 
 
 class StereoCameraConfig(CameraConfig):

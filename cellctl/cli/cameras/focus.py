@@ -49,7 +49,7 @@ def focus(
 
 
 async def _one(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> FocusView:
-    async with device.device:
+    async with device.opened():
         return await _look(device, board, holes)
 
 
@@ -59,7 +59,7 @@ async def _follow(device: Chosen, board: CalibrationBoard | None, holes: HolesWa
     # Not by the cancellation that a Ctrl-C is otherwise: one that meets a finished wait is lost on
     # Python 3.11, and the command would go on for ever.
     asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
-    async with device.device:
+    async with device.opened():
         with Live(auto_refresh=False) as live:
             while seen := await _unless(ended, _look(device, board, holes)):
                 for one in seen.sides:

@@ -46,7 +46,7 @@ def grab(
 
 async def _save(device: Chosen, folder: Path, first: int, count: int) -> int:
     last = first + count - 1
-    async with device.device as camera:
+    async with device.opened() as camera:
         serial_number = await camera.serial_number()
         with Progress(transient=True) as progress:
             for number in progress.track(range(first, last + 1), description=device.name):

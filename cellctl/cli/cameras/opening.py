@@ -1,5 +1,7 @@
 """Finds the camera or the stereo head that a command names, and takes exposures of it."""
 
+from collections.abc import AsyncIterator, Mapping
+from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,8 +12,11 @@ import typer
 from numpy.typing import NDArray
 
 from cellctl.cell.driver_object import driver_object
+from cellctl.cell.lit_cameras import Lights
 from cellctl.config import CellConfig, load_cell
+from cellctl.config.devices import CameraConfig
 from cellctl.errors.config import DeviceNotInCell
+from cellctl.interfaces import Camera, DigitalIo, StereoCamera
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image, StereoPair
@@ -61,8 +66,20 @@ class Chosen:
 
     name: str
     driver: str
-    device: Any
-    """A ``StereoCamera`` or a ``Camera``."""
+    device: Camera | StereoCamera
+    light: DigitalIo | None = None
+    """The digital I/O that switches its lamp."""
+
+    @asynccontextmanager
+    async def opened(self) -> AsyncIterator[Camera | StereoCamera]:
+        """Connected inside, with the digital I/O of its lamp; raises what their drivers raise."""
+        async with AsyncExitStack() as stack:
+            # The camera first. One that a running daemon has (F222) ends the command before it
+            # touches outputs, which all go off when their link is let go.
+            await stack.enter_async_context(self.device)
+            if self.light is not None:
+                await stack.enter_async_context(self.light)
+            yield self.device
 
     async def expose(self) -> Exposed:
         """Take one exposure; raises what the driver raises."""
@@ -77,10 +94,18 @@ def chosen(cell_file: Path, head: str | None, camera: str | None) -> Chosen:
         raise typer.BadParameter("give one of --head NAME and --camera NAME")
     cell = load_cell(cell_file)
     section, name = (_HEADS, head) if head is not None else (_CAMERAS, camera or "")
-    found = cell.section(section).get(name)
+    sections: Mapping[str, CameraConfig] = cell.cameras if head is None else cell.stereo_cameras
+    found = sections.get(name)
     if found is None:
         raise DeviceNotInCell(f"{cell_file} has no {section}.{name}; {_there_is(cell)}")
-    return Chosen(name, found.driver, driver_object(section, name, found))
+    built = driver_object(section, name, found)
+    if found.light is None:
+        return Chosen(name, found.driver, built)
+    io_name = found.light.device
+    io: DigitalIo = driver_object("digital_ios", io_name, cell.digital_ios[io_name])
+    lights = Lights({io_name: io})
+    lit = lights.heads if head is not None else lights.cameras
+    return Chosen(name, found.driver, lit({name: built}, {name: found})[name], io)
 
 
 def _there_is(cell: CellConfig) -> str:
