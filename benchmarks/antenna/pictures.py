@@ -24,6 +24,7 @@ from fakes.render.connectors import api
 from fakes.render.options import RenderOptions
 from fakes.world.connector.drawing import ContactKind
 from fakes.world.connector.scene import Tip
+from fakes.world.scene import MonoTruth
 
 FOLDER = Path("config/connectors")
 _DISTANCE_M = api.WORKING_DISTANCE_M
@@ -81,6 +82,14 @@ def drawing(name: str, kind: str) -> Connector:
     return read_connector(FOLDER / f"{name}-{kind}.toml")
 
 
+def exact_model(camera: MonoTruth) -> SingleCamera:
+    """A rendered camera as a calibration without error has it."""
+    lens = camera.lens
+    matrix = np.diag([*lens.focal_px, 1.0])
+    matrix[:2, 2] = lens.centre_px
+    return SingleCamera(camera.image_size_px, CameraModel(matrix, np.array(lens.distortion)))
+
+
 def trial(seed: int, conditions: Conditions) -> Trial:
     """The image of a seed, with its truth."""
     rng = np.random.default_rng([seed, 20_131])
@@ -89,15 +98,7 @@ def trial(seed: int, conditions: Conditions) -> Trial:
     size_px = conditions.size_px or _size_px(connector, um_per_px, conditions)
     lens_blur = float(rng.uniform(*conditions.blur_px))
     camera = api.nominal_camera(um_per_px=um_per_px, size_px=size_px, blur_px=lens_blur)
-    lens = camera.lens
-    matrix = np.array(
-        [
-            [lens.focal_px[0], 0.0, lens.centre_px[0]],
-            [0.0, lens.focal_px[1], lens.centre_px[1]],
-            [0.0, 0.0, 1.0],
-        ]
-    )
-    single = SingleCamera(size_px, CameraModel(matrix, np.array(lens.distortion)))
+    single = exact_model(camera)
     direction, radius = rng.uniform(0.0, 2.0 * np.pi), np.sqrt(rng.uniform())
     offset = conditions.off_axis_m * radius * np.array([np.cos(direction), np.sin(direction)])
     yaw_deg = float(rng.uniform(-1.0, 1.0))

@@ -4,12 +4,23 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.antenna.chain.arms import FACTORY, IDEAL, RP_002, DrawnArm, Grade, Repeatability
+from benchmarks.antenna.chain.arms import (
+    FACTORY,
+    GEAR_MESH,
+    IDEAL,
+    RP_002,
+    DrawnArm,
+    Grade,
+    Repeatability,
+)
 from benchmarks.antenna.chain.closing_look import close_by_steps
-from benchmarks.antenna.chain.drawn_cell import FLANGE_T_PLUG, PLUG_STATION, SOCKET
+from benchmarks.antenna.chain.drawn_cell import FLANGE_T_PLUG, MARKS_M, PLUG_STATION, SOCKET
+from benchmarks.antenna.chain.image_optics import ImageOptics
 from benchmarks.antenna.chain.optics import DrawnOptics
 from benchmarks.antenna.chain.trials import CONTACTS_M
-from benchmarks.antenna.insertion.trials import FAULTS, run_insertion
+from benchmarks.antenna.insertion.trials import FAULTS, GOOD, KINDS, run_insertion
+from cellctl.geometry.pose import pose_error
+from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG, ContactKind
 
 EXACT = Repeatability("exact", 0.0, 0.0)
 POSES = [PLUG_STATION * FLANGE_T_PLUG.inv(), SOCKET * FLANGE_T_PLUG.inv()]
@@ -51,12 +62,47 @@ def test_an_exact_camera_finds_the_contacts_in_their_plane() -> None:
     np.testing.assert_allclose(seen.pose.as_matrix(), (plane * shift).as_matrix(), atol=1e-12)
 
 
+@pytest.mark.parametrize("kind", ["pins", "holes"])
+def test_a_camera_with_images_finds_what_the_drawn_one_finds(kind: ContactKind) -> None:
+    drawn = DrawnOptics.draw(np.random.default_rng(4), 0.0)
+    exact = DrawnOptics(drawn.true, drawn.true, np.zeros(2))
+    # Camera I looks at a socket from above, camera II at a plug from below: z of both points up.
+    towards = RigidTransform.identity() if kind == "pins" else SOCKET_T_MATED_PLUG
+    plane = RigidTransform.from_translation([0.001, -0.002, 0.25]) * towards
+    place = plane * RigidTransform.from_translation([3e-4, 2e-4, 0.0])
+    images = ImageOptics(exact, kind, np.random.default_rng(6))
+    for points in (CONTACTS_M, MARKS_M) if kind == "pins" else (CONTACTS_M,):
+        by_hand = exact.look(place, points, plane, 0.0, np.random.default_rng(5))
+        seen = images.look(place, points, plane, 0.0, np.random.default_rng(5))
+        moved, turned = pose_error(by_hand.pose, seen.pose)
+        # Light moves what is seen of the rims of holes.
+        assert np.linalg.norm(moved) < 5e-6
+        assert np.linalg.norm(turned) < np.radians(0.02)
+
+
+def test_gears_move_an_arm_by_20_um_and_change_over_degrees() -> None:
+    smooth, rippled = arm(FACTORY), arm(GEAR_MESH)
+    beside = [RigidTransform.from_translation([0.0, y, 0.0]) * POSES[1] for y in (0.0, 0.001, 0.03)]
+    errors = [(smooth.mean_place(p).inv() * rippled.mean_place(p)).translation for p in beside]
+    assert 2e-6 < np.linalg.norm(errors[0]) < 60e-6
+    assert np.linalg.norm(errors[1] - errors[0]) < 5e-6
+    assert np.linalg.norm(errors[2] - errors[0]) > 5e-6
+
+
 def test_the_closing_look_leaves_a_few_micrometres() -> None:
     rng = np.random.default_rng(5)
     left = np.array(
         [close_by_steps(np.array([60e-6, -40e-6, 0.0]), np.zeros(3), rng) for _ in range(200)]
     )
     assert 1e-6 < np.sqrt((left[:, :2] ** 2).mean()) < 6e-6
+
+
+@pytest.mark.parametrize("name", list(KINDS))
+def test_a_good_connector_seats_and_one_off_its_place_does_not(name: str) -> None:
+    assert not run_insertion(GOOD, seed=3, name=name).caught
+    outcome = run_insertion(FAULTS[3], seed=3, name=name)
+    assert outcome.caught
+    assert outcome.side_n < 3
 
 
 def test_a_bent_pin_is_stopped_before_it_collapses() -> None:

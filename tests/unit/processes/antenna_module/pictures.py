@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
+from benchmarks.antenna.pictures import exact_model
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.vision.plane import PlaneCalibration, facing_camera
 from cellctl.vision.camera.single_camera import SingleCamera, single_camera_to_json
-from cellctl.vision.camera.stereo_head import CameraModel
 from fakes.render.connectors import api
 
 CONNECTOR = Path("config/connectors/micro-d-15-pins.toml")
@@ -55,9 +55,6 @@ def picture(
 ) -> Picture:
     """A micro-D plug 0.3 mm off the axis, without true position errors."""
     camera = api.nominal_camera(um_per_px=UM_PER_PX, size_px=SIZE_PX)
-    lens = camera.lens
-    matrix = np.diag([*lens.focal_px, 1.0])
-    matrix[:2, 2] = lens.centre_px
     pose = api.facing(shift_m=(3e-4, -2e-4, 0.0), yaw_deg=3.0 + turn_deg)
     body = api.connector_as_made(
         "micro-d-15",
@@ -71,6 +68,6 @@ def picture(
     shown = api.render(camera, (body,), pixels="rgb", seed=noise)
     return Picture(
         np.ascontiguousarray(shown.image[:, :, ::-1]),
-        SingleCamera(SIZE_PX, CameraModel(matrix, np.array(lens.distortion))),
+        exact_model(camera),
         pose,
     )

@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from benchmarks.antenna.pictures import exact_model
 from cellctl.geometry.pose import pose_error
 from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.plane import PlaneCalibration, facing_camera
-from cellctl.vision.camera.single_camera import SingleCamera
-from cellctl.vision.camera.stereo_head import CameraModel
 from fakes.render.connectors import api
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.scene import AntennaBench
@@ -211,15 +210,7 @@ def test_a_d_sub_is_measured_in_what_the_cameras_see(
     optics = scene.optics
     assert isinstance(optics, MonoTruth)
     picture = api.render(optics, (body,), seed=1)
-    lens = optics.lens
-    matrix = np.array(
-        [
-            [lens.focal_px[0], 0.0, lens.centre_px[0]],
-            [0.0, lens.focal_px[1], lens.centre_px[1]],
-            [0.0, 0.0, 1.0],
-        ]
-    )
-    model = SingleCamera(optics.image_size_px, CameraModel(matrix, np.array(lens.distortion)))
+    model = exact_model(optics)
     # z of the plane away from the camera, that of the connector towards it.
     plane = PlaneCalibration(model.id, facing_camera(body.camera_T_connector), 2e-4, 2e-3, None)
     drawn = read_connector(CONFIG / "connectors" / f"d-sub-15-{kind}.toml")
