@@ -23,7 +23,7 @@ from benchmarks.antenna.vision.timing import time_rows
 def main() -> int:
     """Print the table; 1 when a demand was missed."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-n", type=int, default=40, help="images of a row")
+    parser.add_argument("-n", type=int, default=80, help="images of most rows")
     parser.add_argument("--only", nargs="*", default=[], help="rows, as B1 B6")
     chosen = parser.parse_args()
     # Not forked: OpenCV's threads do not survive it.

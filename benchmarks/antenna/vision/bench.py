@@ -88,7 +88,7 @@ class Bench:
 
     def missing(self) -> None:
         """B3: a missing contact is named, the pose stays right, the paper's method refuses."""
-        default, paper = self.run(replace(CLEAN, missing=1), 0.5)
+        default, paper = self.run(replace(CLEAN, missing=1), 0.625)
         named = sum(item.bad == item.faulty for item in default)
         worst = max(item.distance_um for item in default)
         refused = sum(item.fault == "PaperMethodRefused" for item in paper)
@@ -105,7 +105,7 @@ class Bench:
 
     def bent(self) -> None:
         """B4: bent contacts are named; good connectors are not suspected."""
-        default, paper = self.run(replace(CLEAN, bent_m=1e-4))
+        default, paper = self.run(replace(CLEAN, bent_m=1e-4), 1.25)
         named = sum(item.bad == item.faulty for item in default)
         count = len(default)
         self.report.row(
@@ -144,7 +144,7 @@ class Bench:
 
     def blocked(self) -> None:
         """B3: a blocked hole is named, and the pose stays right."""
-        default, paper = self.run(replace(HOLES, blocked=1), 0.5)
+        default, paper = self.run(replace(HOLES, blocked=1), 0.625)
         measured = [item for item in default if not item.fault]
         named = sum(item.bad == item.faulty for item in measured)
         worst = max(item.distance_um for item in measured)
@@ -176,7 +176,7 @@ class Bench:
             ("intrinsics exchanged", CLEAN, "intrinsics", ForeignIntrinsics),
         )
         for what, conditions, change, fault in cases:
-            seeds = range(max(self.count // 8, 4))
+            seeds = range(max(round(0.15 * self.count), 4))
             found = list(
                 self.pool.map(partial(refusal, conditions=conditions, change=change), seeds)
             )
