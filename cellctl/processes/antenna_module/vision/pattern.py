@@ -174,10 +174,13 @@ def surplus(
     turn = rotation(best.yaw_rad)
     places = (candidates.spots_m - best.shift_m) @ turn
     inside = np.all(np.abs(places) < np.array(outline_m) / 2.0, axis=1)
-    inside[best.spot[best.spot >= 0]] = False
+    matched = best.spot[best.spot >= 0]
+    # One contact may be seen as two spots, whose middles lie within it.
+    apart = np.linalg.norm(candidates.spots_m[:, None] - candidates.spots_m[matched], axis=2)
+    inside &= apart.min(axis=1) > pattern.diameter_m / 2.0
     # Scratches and reflections are weaker than contacts; a contact too many is as strong.
-    matched = candidates.spots.contrast[best.spot[best.spot >= 0]]
-    inside &= candidates.spots.contrast > 0.5 * float(np.median(matched))
+    typical = float(np.median(candidates.spots.contrast[matched]))
+    inside &= candidates.spots.contrast > 0.5 * typical
     count = 0
     for place in candidates.spots_m[inside]:
         radius_m = pattern.diameter_m / 2.0

@@ -1,0 +1,21 @@
+"""A contact that shows as two spots is still one contact."""
+
+from benchmarks.antenna.pictures import trial
+from benchmarks.antenna.vision.bench import HOLES
+from cellctl.processes.antenna_module.vision.measure import contact_pattern, measure_connector
+from cellctl.processes.antenna_module.vision.pattern import find_pattern, surplus
+
+TWICE = 39
+"""Seed of a picture in which two holes of a good socket are found as two spots each."""
+
+
+def test_a_hole_that_is_found_twice_is_no_hole_too_many() -> None:
+    given = trial(TWICE, HOLES)
+    connector, image = given.connector, given.pixels.plane
+    plane = given.plane.before(given.camera).at_height(-connector.rim_depth_m)
+    pattern = contact_pattern(connector)
+    candidates = find_pattern(image, plane, pattern, least=9)
+    assert len(candidates.spots.px) > len(connector.contacts)
+    assert surplus(image, plane, pattern, candidates, connector.outline_m) == 0
+    found = measure_connector(image, given.camera, given.plane, connector)
+    assert all(contact.state == "ok" for contact in found.contacts)
