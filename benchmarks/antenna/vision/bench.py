@@ -214,9 +214,10 @@ def clean_rows(bench: Bench) -> None:
     bench.accuracy("B1", "micro-D pins, bright walls", replace(CLEAN, wall_light=0.5), bright)
     bench.accuracy("B1", "D-sub pins", replace(CLEAN, name="d-sub-15"), fine, share=0.5)
     bench.accuracy("B1", "micro-D, raw mosaic", replace(CLEAN, pixels="bayer"), fine, share=0.5)
-    # A dome has no border where its light changes, so the lamp moves what is seen of it.
-    dome = replace(CLEAN, tip="dome")
-    bench.accuracy("B1", "micro-D, domed tips", dome, bright, share=0.25, as_drawn=False)
+    # A dome has no border where its light changes, so the lamp moves what is seen of it. Nothing is
+    # demanded of domes; a run counts 5 µm per axis for light.
+    dome, counted = replace(CLEAN, tip="dome"), (WRONG_UM, 0.015)
+    bench.accuracy("B1", "micro-D, domed tips", dome, counted, share=0.25, as_drawn=False)
     bench.accuracy("B1", "micro-D holes", HOLES, bores, share=0.5, as_drawn=False)
     large = replace(HOLES, name="d-sub-15")
     bench.accuracy("B1", "D-sub holes", large, bores, share=0.25, as_drawn=False)
