@@ -1,8 +1,8 @@
 """One whole cycle by touch: face, search, insertion, pushes to the sides, verdict."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, Self
 
 from cellctl.cell.by_touch.motions import ContactMotions
 from cellctl.processes.peg_in_hole.choice import SearchChoice, SearchName
@@ -41,8 +41,6 @@ class CycleResult:
 
     face: TouchedFace
     found_by: SearchName
-    trace: SearchTrace
-    hole_map: HoleMap
     fed: Fed
     evidence: InsertionEvidence
     judgement: PegJudgement
@@ -58,6 +56,21 @@ class CycleResult:
         }
 
 
+@dataclass(slots=True, eq=False)
+class CycleLog:
+    """What one cycle has felt so far; its caller keeps it where the cycle fails, too."""
+
+    hole_map: HoleMap
+    trace: SearchTrace = field(default_factory=SearchTrace)
+    found_by: SearchName | None = None
+    """None until the peg has entered."""
+
+    @classmethod
+    def of(cls, plan: CyclePlan) -> Self:
+        """Nothing felt yet."""
+        return cls(HoleMap(plan.task.cell.uncertainty_m, plan.task.fit.catch_radius_m))
+
+
 def _silent(_words: str) -> None:
     return
 
@@ -65,28 +78,35 @@ def _silent(_words: str) -> None:
 async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
     """From above the face to the verdict, held by the gripper still; see ``search_and_insert``."""
     face = await touch_face(motions, plan.task, plan.face)
-    return await search_and_insert(motions, plan, face)
+    return await search_and_insert(motions, plan, face, CycleLog.of(plan))
 
 
 async def search_and_insert(
     motions: ContactMotions,
     plan: CyclePlan,
     face: TouchedFace,
+    log: CycleLog,
     tell: Callable[[str], None] = _silent,
 ) -> CycleResult:
-    """From the touched face to the verdict; ``tell`` hears what is being done.
+    """From the touched face to the verdict; ``log`` takes what is felt on the way.
 
-    Raises what search and insertion raise; then the caller backs out. Without a touch on the
-    part's rear the verdict rests on the grip force alone.
+    ``tell`` hears what is being done. Raises what search and insertion raise; then the caller
+    decides about the way out. Without a touch on the part's rear the verdict rests on the grip
+    force alone.
     """
     task = plan.task
-    tell("search: " + ", then ".join(name.value for name in plan.choice.order))
+    order = ", then ".join(name.value for name in plan.choice.order)
+    tell(f"search: {order}")
     begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
-    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
     probe = TouchProbe(
-        motions, task, plan.choice.parameters, hole_map, begun.time_s + task.search_limit_s
+        motions,
+        task,
+        plan.choice.parameters,
+        log.hole_map,
+        begun.time_s + task.search_limit_s,
+        trace=log.trace,
     )
-    found_by = await find_hole(probe, plan.choice.order)
+    found_by = log.found_by = await find_hole(probe, plan.choice.order)
     tell(f"insert: the hole was found by {found_by.value}")
     fed = await insert(motions, task)
     tell("verify: pushed to four sides")
@@ -106,4 +126,4 @@ async def search_and_insert(
         held_pull_n=held_n,
     )
     judgement = judge_peg(evidence, task, plan.seat)
-    return CycleResult(face, found_by, probe.trace, hole_map, fed, evidence, judgement)
+    return CycleResult(face, found_by, fed, evidence, judgement)

@@ -10,6 +10,8 @@ ByTouchError
         HoleTooWide, PegNotHeld                     590–595  the verdict
 """
 
+from typing import ClassVar
+
 from cellctl.errors.base import CellError, Reaction
 
 
@@ -17,6 +19,9 @@ class ByTouchError(CellError):
     """A hole may not be searched by touch, was not found, or the peg did not go in."""
 
     reaction = Reaction.STOP
+    leaves_hole: ClassVar[bool] = True
+    """Whether the peg is drawn out after it; False where a pull could do harm, or nobody would feel
+    it."""
 
 
 class SearchImpossible(ByTouchError):
@@ -101,6 +106,7 @@ class PegWedged(ByTouchError):
     text = "The peg is wedged in its hole"
     cause = "It entered at too great an angle; after an aligned entry something else is wrong."
     remedy = "Free the part by hand; do not let the robot pull harder. Look for damage."
+    leaves_hole = False
 
 
 class HoleBlocked(ByTouchError):
@@ -132,6 +138,7 @@ class SensorDead(PegNotInserted):
     text = "The force sensor did not feel the peg being pushed"
     cause = "The sensor repeats an old value, its cable is loose, or nothing holds the peg."
     remedy = "Do not pull the peg out by the robot before the sensor answers; check the sensor."
+    leaves_hole = False
 
 
 class PegSlipped(PegNotInserted):
@@ -141,6 +148,7 @@ class PegSlipped(PegNotInserted):
     text = "The part has slipped in the gripper, or nobody can tell"
     cause = "A force above 60 % of the grip force, or a rear that is not where the drawing has it."
     remedy = "Take the part out by hand; check jaws and grip pressure; measure the grip force."
+    leaves_hole = False
 
 
 class NotSeated(PegNotInserted):

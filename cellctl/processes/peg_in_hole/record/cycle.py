@@ -5,31 +5,47 @@ from math import isfinite
 import numpy as np
 
 from cellctl.calibration.checks import LimitCheck
-from cellctl.processes.peg_in_hole.cycle import CycleResult
+from cellctl.errors.base import CellError
+from cellctl.processes.peg_in_hole.cycle import CycleLog, CycleResult
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace
 from cellctl.records.entries import Figure
 from cellctl.records.figures import Limit, figure
+from cellctl.records.run_recorder import RunRecorder
 
 _M_TO_MM = 1e3
 _MAP_CELLS = 61
 """A drawing needs no more along one side."""
 
 
-async def record_cycle(run: PegRun, result: CycleResult) -> None:
-    """Everything that the verdict rests on, also of a part that it rejects."""
-    await run.recorder.document(keys.CYCLE, result.to_record())
-    await run.recorder.document(keys.TRACE, trace_record(result.trace))
-    await run.recorder.document(keys.MAP, map_record(result.hole_map))
-    points = result.trace.points
+async def record_search(recorder: RunRecorder, log: CycleLog) -> None:
+    """Path and map of the search, whatever has become of it."""
+    await recorder.document(keys.TRACE, trace_record(log.trace))
+    await recorder.document(keys.MAP, map_record(log.hole_map))
+    points = log.trace.points
     searched_s = points[-1].time_s - points[0].time_s if points else 0.0
-    most_n = run.facts.plan.task.limits.insertion_n
-    await run.recorder.figures(
+    await recorder.figures(
         [
             figure(keys.SEARCH_TIME, searched_s, "s"),
             figure(keys.TOUCHES, float(len(points)), ""),
+        ]
+    )
+
+
+async def record_failure(recorder: RunRecorder, log: CycleLog, fault: CellError) -> None:
+    """How far a cycle has come, and what has ended it."""
+    found_by = None if log.found_by is None else log.found_by.value
+    await recorder.document(keys.FAILURE, {"found_by": found_by, "fault": str(fault)})
+
+
+async def record_cycle(run: PegRun, result: CycleResult) -> None:
+    """Everything that the verdict rests on, also of a part that it rejects."""
+    await run.recorder.document(keys.CYCLE, result.to_record())
+    most_n = run.facts.plan.task.limits.insertion_n
+    await run.recorder.figures(
+        [
             figure(keys.PEAK, result.fed.greatest_force_n, "N", limit=Limit(upper=most_n)),
             *(_figure(check) for check in result.judgement.checks),
         ]

@@ -7,6 +7,7 @@ FACE, INSERTION, LOOP = "face", "insertion", "loop"
 """Streams; their ticks are files of these names."""
 FACE_HEIGHT, FACE_TILT = "face.height", "face.tilt"
 CHOICE, CYCLE, TRACE, MAP = "search.choice", "insertion.result", "search.trace", "search.map"
+FAILURE = "insertion.failure"
 SEARCH_TIME, TOUCHES = "search.time", "search.touches"
 PEAK = "insertion.greatest_force"
 

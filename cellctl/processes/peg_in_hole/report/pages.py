@@ -88,7 +88,10 @@ def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
             insertion_picture(ticks),
             "Forces and moments of the hole on the peg about its tip, over the whole stream.",
         )
-    result = record.document(keys.CYCLE)
+    failure, result = record.document(keys.FAILURE), record.document(keys.CYCLE)
+    if failure:
+        found_by = failure["found_by"] or "not found"
+        yield FactList((("hole", found_by), ("ended by", failure["fault"])))
     if result:
         recoveries = ", ".join(result["recoveries"]) or "none"
         yield FactList((("found by", result["found_by"]), ("recoveries", recoveries)))

@@ -73,14 +73,16 @@ class TouchProbe:
         parameters: SearchParameters,
         hole_map: HoleMap,
         deadline_s: float,
+        *,
+        trace: SearchTrace | None = None,
     ) -> None:
-        """``deadline_s``: on the clock of the samples."""
+        """``deadline_s``: on the clock of the samples. ``trace``: where the caller keeps one."""
         self.motions = motions
         self.task = task
         self.parameters = parameters
         self.hole_map = hole_map
         self.deadline_s = deadline_s
-        self.trace = SearchTrace()
+        self.trace = SearchTrace() if trace is None else trace
 
     @property
     def press_n(self) -> float:

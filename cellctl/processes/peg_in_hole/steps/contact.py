@@ -5,7 +5,6 @@ from contextlib import asynccontextmanager
 
 from cellctl.cell.by_touch.contact_loop import ContactLoop
 from cellctl.cell.by_touch.frames import ContactFrames
-from cellctl.cell.by_touch.motions import ContactMotions
 from cellctl.cell.by_touch.opening import open_contact_loop
 from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.record import keys
@@ -14,7 +13,7 @@ from cellctl.processes.peg_in_hole.tick_log import TickLog
 
 
 @asynccontextmanager
-async def contact(run: PegRun, frames: ContactFrames, name: str) -> AsyncIterator[ContactMotions]:
+async def contact(run: PegRun, frames: ContactFrames, name: str) -> AsyncIterator[StreamedContact]:
     """Motions by touch; the ticks become the artefact ``NAME.csv``, also when they end badly."""
     async with recorded_loop(run, frames, name) as loop:
         yield StreamedContact(loop)

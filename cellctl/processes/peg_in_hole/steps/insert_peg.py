@@ -2,12 +2,23 @@
 
 import numpy as np
 
+from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.errors.base import CellError
-from cellctl.processes.peg_in_hole.cycle import search_and_insert
+from cellctl.processes.peg_in_hole.cycle import (
+    CycleLog,
+    CycleResult,
+    search_and_insert,
+)
 from cellctl.processes.peg_in_hole.face import TouchedFace
 from cellctl.processes.peg_in_hole.record import keys
-from cellctl.processes.peg_in_hole.record.cycle import record_cycle
+from cellctl.processes.peg_in_hole.record.cycle import (
+    record_cycle,
+    record_failure,
+    record_search,
+)
+from cellctl.processes.peg_in_hole.run import PegRun
 from cellctl.processes.peg_in_hole.state import FaceTouched, PegInserted
+from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
 from cellctl.processes.peg_in_hole.steps.contact import contact
 from cellctl.processes.peg_in_hole.steps.touch_face import CLEAR_M
 
@@ -18,21 +29,32 @@ _ON_FACE = TouchedFace(0.0, np.zeros(2), 0.0, 0.0)
 
 
 async def find_and_insert(touched: FaceTouched) -> PegInserted:
-    """Raises the faults of search, insertion and verdict; the peg stays where it is then."""
+    """Raises the faults of search, insertion and verdict; after most the peg is drawn out."""
     run, plan = touched.run, touched.run.facts.plan
     await run.recorder.document(keys.CHOICE, plan.choice.to_record())
-    async with contact(run, touched.frames, keys.INSERTION) as motions:
-        # Upright on the face now, over its middle.
-        await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
-        await motions.touch(_DOWN, 2 * CLEAR_M, plan.task.limits.search_n)
-        try:
-            result = await search_and_insert(motions, plan, _ON_FACE, run.say)
-        except CellError:
-            # What was felt on the way is in the record; the stream ends at standstill.
-            await motions.back_out(CLEAR_M)
-            raise
-    await record_cycle(run, result)
-    fault = result.judgement.fault
-    if fault is not None:
-        raise fault
+    log = CycleLog.of(plan)
+    try:
+        async with contact(run, touched.frames, keys.INSERTION) as motions:
+            result = await _cycle(run, motions, log)
+    except CellError as fault:
+        await record_failure(run.recorder, log, fault)
+        raise
+    finally:
+        await record_search(run.recorder, log)
     return PegInserted(run, touched.frames, result)
+
+
+async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleResult:
+    plan = run.facts.plan
+    # Upright on the face now, over its middle.
+    await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
+    await motions.touch(_DOWN, 2 * CLEAR_M, plan.task.limits.search_n)
+    try:
+        result = await search_and_insert(motions, plan, _ON_FACE, log, run.say)
+        await motions.hold_while(record_cycle(run, result))
+        if result.judgement.fault is not None:
+            raise result.judgement.fault
+    except CellError as fault:
+        run.say(await back_out_after(fault, motions))
+        raise
+    return result

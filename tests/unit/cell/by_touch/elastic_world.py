@@ -1,5 +1,6 @@
 """A tip on an arm with dead time, before an elastic part; with a stream and a guard, no process."""
 
+import asyncio
 from bisect import bisect_right
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -169,6 +170,8 @@ class WorldStream(PoseStream):
         return StreamReport(world.now_s, self._tick, FRAMES.base_T_flange(world.tip), 0, 0)
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
+        # A tick is awaited on the wire, too, and others get their turn.
+        await asyncio.sleep(0)
         self._world.tick(FRAMES.tip(base_T_flange))
         self._tick += 1
         return self.report
