@@ -1,5 +1,6 @@
 """`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
 
+import grp
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Annotated
@@ -46,14 +47,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
     _say_what_others_need(console, cell)
-    calibrations = cell_file.parent / cell.calibration_dir
-    # A hint, not an error: whoever checks a file is often not the user that the daemon runs as.
-    if not may_write(calibrations):
-        console.print(
-            f"  calibration_dir {calibrations}: this user may not write it, the daemon's must",
-            style="yellow",
-            markup=False,
-        )
+    _say_what_the_daemon_needs(console, cell, cell_file.parent)
 
 
 def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
@@ -88,6 +82,30 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
         order = ", then ".join(zone.retreat) or "nobody while another one is in it"
         console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}", markup=False)
         console.print(f"  {'':32} leaves first: {order}", markup=False)
+
+
+def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:
+    """Hints, not errors: whoever checks a file is often neither the user nor on the PC that the
+    daemon runs as and on."""
+    folders = {"data_dir": Path(cell.data_dir), "calibration_dir": folder / cell.calibration_dir}
+    hints = [
+        f"{key} {path}: this user may not write it, the daemon's must"
+        for key, path in folders.items()
+        if not may_write(path)
+    ]
+    group = cell.local_api.group
+    if group and not _is_group(group):
+        hints.append(f"local_api.group {group}: this PC has no such group, the cell's must")
+    for hint in hints:
+        console.print(f"  {hint}", style="yellow", markup=False)
+
+
+def _is_group(name: str) -> bool:
+    try:
+        grp.getgrnam(name)
+    except KeyError:
+        return False
+    return True
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:

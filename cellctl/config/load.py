@@ -18,6 +18,7 @@ from cellctl.config.cross_checks import cross_issues, unpermitted
 from cellctl.config.document.findings import model_issues, shorten, validated
 from cellctl.config.document.lines import key_lines, line_of
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.plausible.findings import plausibility_issues
 from cellctl.config.process_definition import ProcessDefinition, process_definition
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import lacking
@@ -65,6 +66,7 @@ def _examine(
     found, cell = _issues(raw, path.parent)
     if commissioning and cell is not None:
         found += unpermitted(cell, _bad_devices(found))
+        found += _unless_named(found, list(_implausible(cell, path.parent, found)))
     return [replace(issue, line=line_of(issue.key, lines)) for issue in found], cell
 
 
@@ -90,6 +92,20 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
         found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
     # Last: a device at a wrong address still belongs where the process wants it or not.
     return [*found, *address_issues(cell)], cell
+
+
+def _implausible(cell: CellConfig, folder: Path, found: list[ConfigIssue]) -> Iterator[ConfigIssue]:
+    """What is possible and in all likelihood a slip."""
+    bad = _bad_devices(found)
+    yield from plausibility_issues(cell, folder, bad)
+    # A device or a recipe that is wrong itself would be named a second time, by all that use it.
+    if bad & {".".join(path.split(".")[:2]) for path in cell.devices()}:
+        return
+    for index, recipe in enumerate(cell.recipes):
+        key = f"recipes.{index}"
+        if not bad & {key, f"processes.{recipe.process}"}:
+            definition = process_definition(recipe.process)
+            yield from definition.check_plausible(cell, recipe, key, folder)
 
 
 def _fault_number_issues() -> list[ConfigIssue]:

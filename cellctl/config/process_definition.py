@@ -43,6 +43,20 @@ class ProcessDefinition(ABC):
         """
 
     @classmethod
+    def check_plausible(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        key: str,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+    ) -> Iterable[ConfigIssue]:
+        """What could be meant as it stands, and in all likelihood is a slip; by default nothing.
+
+        Asked by ``cellctl check`` alone, after ``check`` has found nothing: a daemon takes it.
+        """
+        return ()
+
+    @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:  # noqa: ARG003
         """Every move that the process can command with a recipe, from every place where it begins.
 

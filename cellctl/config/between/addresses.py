@@ -58,19 +58,25 @@ def address_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
 
 
 def _not_addresses(cell: CellConfig) -> Iterator[ConfigIssue]:
+    for key, host in written_hosts(cell).items():
+        # Digits and dots alone are meant as an address; a host name may be anything else.
+        if re.fullmatch(r"[\d.]+", host) and not is_address(host):
+            allowed = "an IPv4 address has four numbers from 0 to 255, such as 192.168.20.11"
+            yield ConfigIssue(key, repr(host), allowed)
+
+
+def written_hosts(cell: CellConfig) -> dict[str, str]:
+    """Addresses and host names of the line and of all devices, by their keys."""
     written = {"plc.host": cell.plc.host}
     for path, (_, device) in cell.devices().items():
         for name in _HOSTS:
             if isinstance(value := device.settings.get(name), str):
                 written[f"{path}.settings.{name}"] = value
-    for key, host in written.items():
-        # Digits and dots alone are meant as an address; a host name may be anything else.
-        if re.fullmatch(r"[\d.]+", host) and not _is_address(host):
-            allowed = "an IPv4 address has four numbers from 0 to 255, such as 192.168.20.11"
-            yield ConfigIssue(key, repr(host), allowed)
+    return written
 
 
-def _is_address(text: str) -> bool:
+def is_address(text: str) -> bool:
+    """True for an IPv4 or IPv6 address, in contrast to a host name."""
     try:
         ipaddress.ip_address(text)
     except ValueError:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from cellctl.config.document.leaves import leaves
 from cellctl.config.issue import ConfigIssue
 
 _LARGEST_RAD = 2.0 * math.pi
@@ -22,19 +23,10 @@ _RADIANS = "degrees; these look like radians"
 _METRES = "millimetres; these look like metres"
 
 
-def unit_issues(section: Mapping[str, Any], path: str = "") -> Iterator[ConfigIssue]:
-    """Everything below a table that looks like radians, metres or milliseconds.
-
-    ``section`` is the file as it was written, ``path`` its place with a dot at its end.
-    """
-    for name, value in section.items():
-        key = f"{path}{name}"
-        if isinstance(value, Mapping):
-            yield from unit_issues(value, f"{key}.")
-        elif isinstance(value, list) and value and all(isinstance(one, Mapping) for one in value):
-            for index, one in enumerate(value):
-                yield from unit_issues(one, f"{key}.{index}.")
-        elif allowed := _looks_wrong(key, value):
+def unit_issues(section: Mapping[str, Any]) -> Iterator[ConfigIssue]:
+    """Everything in a file, as it was written, that looks like radians, metres or milliseconds."""
+    for key, value in leaves(section):
+        if allowed := _looks_wrong(key, value):
             yield ConfigIssue(key, str(value), allowed)
 
 

@@ -61,6 +61,15 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         return recipe_issues(cell, cast(DeckRecipe, recipe), key, folder)
 
     @classmethod
+    def check_plausible(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """Figures and poses that fit their own keys and not each other."""
+        from cellctl.processes.deck_to_frame.checks.plausible import plausible_issues
+
+        return plausible_issues(cell, cast(DeckRecipe, recipe), key, folder)
+
+    @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
         """Those of a run, of the way back to its beginning, and of the procedures."""
         from cellctl.processes.deck_to_frame.stated_moves import deck_moves

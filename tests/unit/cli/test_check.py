@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
+from tests.unit.config.test_mistakes import written
 
 CONFIG = Path(__file__).parents[3] / "config"
 
@@ -35,3 +37,29 @@ def test_poses_of_one_robot_make_one_line() -> None:
 def test_a_device_that_is_not_there_is_named_by_its_role_and_table() -> None:
     lines = said_of("peg-in-hole", "deck.toml")
     assert any("arm: the cell lacks [robots.arm]" in line for line in lines)
+
+
+def test_what_the_daemon_needs_of_its_pc_is_a_hint(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        "deck.toml",
+        'data_dir = "runs/cell"',
+        'data_dir = "runs/cell"\n[local_api]\ngroup = "nobody-has-this"\n',
+    )
+    text = path.read_text()
+    calibrations = 'calibration_dir = "demo-calibration"\n'
+    path.write_text(calibrations + text.replace(calibrations, "", 1))
+    done = CliRunner().invoke(whole_app(), ["check", str(path)])
+    assert done.exit_code == 0, done.output
+    assert "local_api.group nobody-has-this: this PC has no such group" in done.output
+
+
+def test_a_data_folder_that_may_not_be_written_is_a_hint(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The tests may run as root, who may write everywhere.
+    monkeypatch.setattr("cellctl.cli.check.may_write", lambda folder: folder != Path("runs/cell"))
+    done = CliRunner().invoke(whole_app(), ["check", str(written(tmp_path, "deck.toml"))])
+    assert done.exit_code == 0, done.output
+    assert "data_dir runs/cell: this user may not write it" in done.output
+    assert "calibration_dir" not in done.output

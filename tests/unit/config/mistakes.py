@@ -1,17 +1,6 @@
 """Mistakes of a first week: what stands in a shipped cell file, and what somebody wrote instead."""
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True, slots=True)
-class Mistake:
-    """One replacement in a cell file; ``said`` is part of what `cellctl check` must say."""
-
-    file: str
-    old: str
-    new: str
-    key: str
-    said: str
+from tests.unit.config.mistake import Mistake
 
 
 def _deck(old: str, new: str, key: str, said: str) -> Mistake:

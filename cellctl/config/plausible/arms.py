@@ -1,0 +1,72 @@
+"""Taught poses and bounds of arms that no arm has."""
+
+from collections.abc import Iterator, Set
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.devices import RobotConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.robot_drivers import robot_driver
+from cellctl.geometry.pose import MM
+
+_SAME_DEG = 0.1
+"""Two poses so near in all axes are one that was copied: a name of its own means another place."""
+_MOST_DEG = 360.0
+"""Taught poses are bounded by it, so a wider bound bounds nothing."""
+_LONGEST_REACH_MM = 6000.0
+"""Of an arm whose kinematics are not known; the largest that are sold reach below 5 m."""
+
+
+def arm_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
+    """Copied poses, joint bounds of more than a turn, boxes beyond the reach of the arm.
+
+    ``bad`` holds the paths of devices whose settings are wrong themselves.
+    """
+    for name, robot in cell.robots.items():
+        path = f"robots.{name}"
+        yield from _copied(path, robot)
+        yield from _joint_bounds(f"{path}.settings", robot.settings)
+        if path not in bad:
+            yield from _boxes(f"{path}.settings", robot)
+
+
+def _copied(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    for (first, joints_deg), (second, others_deg) in combinations(robot.poses_deg.items(), 2):
+        if np.max(np.abs(np.subtract(joints_deg, others_deg))) < _SAME_DEG:
+            allowed = f"another place than {first}; these are its joints"
+            yield ConfigIssue(f"{path}.poses_deg.{second}", str(list(others_deg)), allowed)
+
+
+def _joint_bounds(path: str, settings: dict[str, Any]) -> Iterator[ConfigIssue]:
+    # Drivers name such settings alike (docs/writing-a-robot-driver.md).
+    for key in ("joints_min_deg", "joints_max_deg"):
+        bounds_deg = settings.get(key)
+        if isinstance(bounds_deg, list) and _largest(bounds_deg) > _MOST_DEG:
+            allowed = f"-{_MOST_DEG:g} to {_MOST_DEG:g} for each axis, as taught poses have it"
+            yield ConfigIssue(f"{path}.{key}", str(bounds_deg), allowed)
+
+
+def _boxes(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    reach_mm = _reach_mm(robot)
+    for key, value in robot.settings.items():
+        corner = key.endswith(("workspace_min_mm", "workspace_max_mm"))
+        if corner and isinstance(value, list) and _largest(value) > reach_mm:
+            allowed = f"within {reach_mm:.0f} mm of the base, which is as far as the arm reaches"
+            yield ConfigIssue(f"{path}.{key}", str(value), allowed)
+
+
+def _reach_mm(robot: RobotConfig) -> float:
+    driver, settings = robot_driver(robot)
+    chain = driver.chain(settings)
+    if chain is None:
+        return _LONGEST_REACH_MM
+    # Stretched out, were all links in one line: no pose comes farther.
+    return float(np.sum(np.abs(chain.dh[:, 1:3]))) / MM
+
+
+def _largest(numbers: list[Any]) -> float:
+    # What is no number the driver's model has reported.
+    return max((abs(one) for one in numbers if isinstance(one, int | float)), default=0.0)

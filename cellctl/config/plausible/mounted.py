@@ -1,0 +1,39 @@
+"""What is mounted on flanges: too far away, or turned back to the arm."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.document.leaves import leaves
+from cellctl.config.issue import ConfigIssue
+from cellctl.geometry.pose import pose_from_xyzabc
+
+_FARTHEST_MM = 3000.0
+"""Half of the longest part of a cell and a fixture, with room to spare."""
+_BACK = -0.2
+"""Cosine between optical axis and flange axis: a camera that looks across the flange is near zero,
+one that is turned half round near -1."""
+
+
+def mounted_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Poses on a flange that are farther from it than any tool, and cameras that see the arm."""
+    far = set()
+    for key, value in leaves(cell.model_dump()):
+        is_pose = isinstance(value, list | tuple) and len(value) == 6
+        if is_pose and key.rsplit(".", 1)[-1].startswith("flange_T_"):
+            away_mm = float(np.linalg.norm(value[:3]))
+            if away_mm > _FARTHEST_MM:
+                far.add(key)
+                allowed = f"within {_FARTHEST_MM:g} mm of the flange; this is {away_mm:.0f} mm away"
+                yield ConfigIssue(key, str(list(value)), allowed)
+    for section in ("cameras", "stereo_cameras"):
+        for name, camera in cell.section(section).items():
+            key = f"{section}.{name}.flange_T_camera"
+            written = getattr(camera, "flange_T_camera", None)
+            if written is None or key in far:
+                continue
+            axis = pose_from_xyzabc(written).rotation.as_matrix()[:, 2]
+            if axis[2] < _BACK:
+                allowed = "a camera that looks away from the arm; its axis points back at it"
+                yield ConfigIssue(key, str(list(written)), allowed)

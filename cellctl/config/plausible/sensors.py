@@ -1,0 +1,48 @@
+"""Force sensors that are too slow or too weak for their guard."""
+
+from collections.abc import Iterator, Set
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.devices import ForceSensorConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.sensor import sensor_rate_hz
+
+_LEAST_RATE_HZ = 100.0
+"""A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch
+(below 1 mm/s) has gone a hundredth of a millimetre, at 100 ms enough for the whole limit."""
+
+
+def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
+    """Rates below what a guard needs, and limits beyond what the sensor can say.
+
+    ``bad`` holds the paths of devices whose settings are wrong themselves.
+    """
+    for name, sensor in cell.force_sensors.items():
+        path = f"force_sensors.{name}"
+        if path in bad:
+            continue
+        rate_hz = sensor_rate_hz(sensor)
+        if rate_hz < _LEAST_RATE_HZ:
+            allowed = f"at least {_LEAST_RATE_HZ:g} samples a second, for the guard to stop in time"
+            yield ConfigIssue(f"{path}.settings.rate_hz", f"{rate_hz:g}", allowed)
+        yield from _range(path, sensor)
+
+
+def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
+    # By convention a driver whose sensor has a measuring range names it so: three forces in N,
+    # three moments in N·m.
+    measuring = sensor.settings.get("range")
+    if not isinstance(measuring, list) or len(measuring) != 6:
+        return
+    limits = {
+        "free_force_n": (sensor.free_force_n, min(measuring[:3]), "N"),
+        "free_moment_n_m": (sensor.free_moment_n_m, min(measuring[3:]), "N·m"),
+    }
+    for key, (limit, most, unit) in limits.items():
+        if limit > most:
+            # The sensor clips before the limit: the guard would never see it passed.
+            allowed = (
+                f"at least {limit:g} {unit} in each axis, as {path}.{key} asks, or a lower limit"
+            )
+            yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)
+            return
