@@ -1,10 +1,6 @@
 """Mistakes of a first week: what stands in a shipped cell file, and what somebody wrote instead."""
 
-from tests.unit.config.mistake import Mistake
-
-
-def _deck(old: str, new: str, key: str, said: str) -> Mistake:
-    return Mistake("deck.toml", old, new, key, said)
+from tests.unit.config.mistake import Mistake, deck
 
 
 def _antenna(old: str, new: str, key: str, said: str) -> Mistake:
@@ -26,20 +22,20 @@ _MAIN = "robots.main.settings"
 _DH_1 = "dh = [[0.0, 1045.0, 500.0, -90.0]"
 
 SPELLING = (
-    _deck(
+    deck(
         "speed_percent = 40", "speed_precent = 40", "robots.main.speed_precent", "'speed_percent'"
     ),
-    _deck("stale_ms = 300.0", "stale_s = 0.3", "force_sensors.force.stale_s", "'stale_ms'"),
-    _deck("\nboard = ", "\nbord = ", "processes.deck-to-frame.bord", "'board'"),
-    _deck("stand_off_mm", "standoff_mm", "recipes.0.standoff_mm", "'stand_off_mm'"),
-    _deck("silence_s", "silense_s", f"{_MAIN}.silense_s", "'silence_s'"),
-    _deck("rate_hz = ", "rate_Hz = ", "force_sensors.force.settings.rate_Hz", "'rate_hz'"),
-    _deck("[plc]", "[pcl]", "pcl", "'plc'"),
-    _deck('"target-server"', '"target_server"', "trackers.tracker.driver", "'target-server'"),
-    _deck('driver = "sri"', 'driver = "SRI"', "force_sensors.force.driver", "installed: sri"),
-    _deck('= "aux_2"', '= "aux2"', "stereo_cameras.head_2.carried_by", "'aux_2'"),
-    _deck('mounted_on = "main"', 'mounted_on = "mian"', "force_sensors.force.mounted_on", "'main'"),
-    _deck('"deck-to-frame"', '"deck-to-fram"', "recipes.0.process", "'deck-to-frame'"),
+    deck("stale_ms = 300.0", "stale_s = 0.3", "force_sensors.force.stale_s", "'stale_ms'"),
+    deck("\nboard = ", "\nbord = ", "processes.deck-to-frame.bord", "'board'"),
+    deck("stand_off_mm", "standoff_mm", "recipes.0.standoff_mm", "'stand_off_mm'"),
+    deck("silence_s", "silense_s", f"{_MAIN}.silense_s", "'silence_s'"),
+    deck("rate_hz = ", "rate_Hz = ", "force_sensors.force.settings.rate_Hz", "'rate_hz'"),
+    deck("[plc]", "[pcl]", "pcl", "'plc'"),
+    deck('"target-server"', '"target_server"', "trackers.tracker.driver", "'target-server'"),
+    deck('driver = "sri"', 'driver = "SRI"', "force_sensors.force.driver", "installed: sri"),
+    deck('= "aux_2"', '= "aux2"', "stereo_cameras.head_2.carried_by", "'aux_2'"),
+    deck('mounted_on = "main"', 'mounted_on = "mian"', "force_sensors.force.mounted_on", "'main'"),
+    deck('"deck-to-frame"', '"deck-to-fram"', "recipes.0.process", "'deck-to-frame'"),
     _gige(
         "serial_number",
         "serial_nummer",
@@ -50,88 +46,84 @@ SPELLING = (
 """Keys, drivers and names of devices."""
 
 TYPES = (
-    _deck("speed_percent = 40", 'speed_percent = "40"', "robots.main.speed_percent", "integer"),
-    _deck("port = 5020", 'port = "5020"', "plc.port", "integer"),
-    _deck("port = 5020", "port = 70000", "plc.port", "0 to 65535"),
-    _deck("simulated = true", 'simulated = "true"', "robots.main.simulated", "boolean"),
-    _deck("speed_percent = 40", "speed_percent = 140", "robots.main.speed_percent", "1 to 100"),
-    _deck("command_port = 7001", "command_port = 7001.5", f"{_MAIN}.command_port", "integer"),
-    _deck(
+    deck("speed_percent = 40", 'speed_percent = "40"', "robots.main.speed_percent", "integer"),
+    deck("port = 5020", 'port = "5020"', "plc.port", "integer"),
+    deck("port = 5020", "port = 70000", "plc.port", "0 to 65535"),
+    deck("simulated = true", 'simulated = "true"', "robots.main.simulated", "boolean"),
+    deck("speed_percent = 40", "speed_percent = 140", "robots.main.speed_percent", "1 to 100"),
+    deck("command_port = 7001", "command_port = 7001.5", f"{_MAIN}.command_port", "integer"),
+    deck(
         "max_iterations = 10",
         "max_iterations = true",
         "recipes.0.pose_correction.max_iterations",
         "integer",
     ),
-    _deck(
+    deck(
         "heartbeat_timeout_s = 3.0",
         "heartbeat_timeout_s = 3000",
         "plc.heartbeat_timeout_s",
         "0.5 to 10",
     ),
-    _deck(
-        _HOME, "home = [0.0, -90.0, 90.0, 0.0, 90.0]", "robots.main.poses_deg.home.5", "required"
-    ),
+    deck(_HOME, "home = [0.0, -90.0, 90.0, 0.0, 90.0]", "robots.main.poses_deg.home.5", "required"),
     _antenna('name = "', "name = 7 # ", "name", "string"),
 )
 """Numbers in quotes, beyond their range, of the wrong kind."""
 
 UNITS = (
-    _deck(
+    deck(
         _HOME,
         "home = [0.0, -1.5708, 1.5708, 0.0, 1.5708, 1.5708]",
         "robots.main.poses_deg.home",
         "radians",
     ),
-    _deck(
+    deck(
         "joints_min_deg = [-90.0, -130.0, 20.0, -180.0, -30.0, -30.0]",
         "joints_min_deg = [-1.57, -2.27, 0.35, -3.14, -0.52, -0.52]",
         f"{_MAIN}.joints_min_deg",
         "radians",
     ),
-    _deck(
+    deck(
         "base_T_frame = [1900.0, 0.0, 400.0, 90.0",
         "base_T_frame = [1.9, 0.0, 0.4, 90.0",
         "recipes.0.base_T_frame",
         "metres",
     ),
-    _deck(
-        "400.0, 90.0, 0.0, 0.0]", "400.0, 1.5708, 0.0, 0.0]", "recipes.0.base_T_frame", "radians"
-    ),
-    _deck(
+    deck("400.0, 90.0, 0.0, 0.0]", "400.0, 1.5708, 0.0, 0.0]", "recipes.0.base_T_frame", "radians"),
+    deck(
         "[0.0, 0.0, 60.0, 0.0",
         "[0.0, 0.0, 0.06, 0.0",
         "force_sensors.force.flange_T_sensor",
         "metres",
     ),
-    _deck(
+    deck(
         "flange_T_camera = [-89.5, 0.0, 120.0",
         "flange_T_camera = [-0.0895, 0.0, 0.12",
         "stereo_cameras.head_1.flange_T_camera",
         "metres",
     ),
-    _deck(
+    deck(
         "workspace_min_mm = [900.0, -900.0, 880.0]",
         "workspace_min_mm = [0.9, -0.9, 0.88]",
         f"{_MAIN}.workspace_min_mm",
         "metres",
     ),
-    _deck(
+    deck(
         "min_mm = [800.0, -1500.0, 300.0]",
         "min_mm = [0.8, -1.5, 0.3]",
         "zones.beside_head_1.robots.main.min_mm",
         "metres",
     ),
-    _deck("a1_mm = 500.0", "a1_mm = 0.5", "robots.main.a1_mm", "metres"),
-    _deck(_DH_1, "dh = [[0.0, 1045.0, 500.0, -1.5708]", f"{_MAIN}.dh", "radians"),
-    _deck("max_deadman_s = 1.5 ", "max_deadman_s = 500 ", f"{_MAIN}.max_deadman_s", "milliseconds"),
-    _deck("silence_s = 1.5", "silence_s = 500.0", f"{_MAIN}.silence_s", "milliseconds"),
-    _deck(
+    deck("a1_mm = 500.0", "a1_mm = 0.5", "robots.main.a1_mm", "metres"),
+    deck(_DH_1, "dh = [[0.0, 1045.0, 500.0, -1.5708]", f"{_MAIN}.dh", "radians"),
+    deck("max_deadman_s = 1.5 ", "max_deadman_s = 500 ", f"{_MAIN}.max_deadman_s", "milliseconds"),
+    deck("silence_s = 1.5", "silence_s = 500.0", f"{_MAIN}.silence_s", "milliseconds"),
+    deck(
         "linear_speed_mm_s = 50.0",
         "linear_speed_mm_s = 0.05",
         "robots.main.linear_speed_mm_s",
         "1 to 500",
     ),
-    _deck("d1_mm = 1045.0", "d1_mm = 1.045", "robots.main.d1_mm", "100 to 3000"),
+    deck("d1_mm = 1045.0", "d1_mm = 1.045", "robots.main.d1_mm", "100 to 3000"),
     _antenna(
         "workspace_min_mm = [",
         "workspace_min_mm = [0.25, -0.35, 0.34] # [",
@@ -156,30 +148,30 @@ ADDRESSES = (
         "trackers.tracker.settings.host",
         "controller of robots.aux_1",
     ),
-    _deck(
+    deck(
         "command_port = 7011",
         "command_port = 7001",
         "robots.aux_1.settings.command_port",
         "robots.main.settings.command_port",
     ),
-    _deck(
+    deck(
         "state_port = 7022",
         "state_port = 7012",
         "robots.aux_2.settings.state_port",
         "robots.aux_1.settings.state_port",
     ),
-    _deck("state_port = 7002", "state_port = 7001", _MAIN, "must differ"),
-    _deck("guard_port = 7003", "guard_port = 7002", f"{_STOP}.guard_port", "state_port"),
-    _deck("port = 7102", "port = 7101", f"{_HEAD_2}.port", "head_1"),
-    _deck("port = 4008", "port = 7103", "force_sensors.force.settings.port", "trackers.tracker"),
-    _deck("command_port = 7001", "command_port = 5020", f"{_MAIN}.command_port", "plc.port"),
+    deck("state_port = 7002", "state_port = 7001", _MAIN, "must differ"),
+    deck("guard_port = 7003", "guard_port = 7002", f"{_STOP}.guard_port", "state_port"),
+    deck("port = 7102", "port = 7101", f"{_HEAD_2}.port", "head_1"),
+    deck("port = 4008", "port = 7103", "force_sensors.force.settings.port", "trackers.tracker"),
+    deck("command_port = 7001", "command_port = 5020", f"{_MAIN}.command_port", "plc.port"),
     _antenna("port = 7312", "port = 7311", "cameras.camera_2.settings.port", "camera_1"),
     _pin("guard_port = 7503", "guard_port = 7501", f"{_STOP}.guard_port", "command_port"),
 )
 """Ports and addresses that are none, or that two devices have."""
 
 DEVICES = (
-    _deck(
+    deck(
         'robot_name = "SR500A", guard',
         'robot_name = "T90A-1", guard',
         f"{_STOP}.robot_name",
@@ -191,7 +183,7 @@ DEVICES = (
         f"{_STOP}.robot_name",
         "which it must stop: 'ARM-1'",
     ),
-    _deck(
+    deck(
         'robot_name = "T90A-2"',
         'robot_name = "T90A-1"',
         "robots.aux_2.settings.robot_name",
@@ -215,67 +207,67 @@ DEVICES = (
         f"{_HEAD_2}.left.serial_number",
         "two devices",
     ),
-    _deck(
+    deck(
         'carried_by = "aux_2"',
         'carried_by = "aux_1"',
         "stereo_cameras.head_2.carried_by",
         "carries head_1",
     ),
-    _deck(
+    deck(
         'carried_by = "aux_2"',
         'carried_by = "main"',
         "robots.main.poses_deg.measuring",
         "head II",
     ),
-    _deck("simulated = true", "simulated = false", "simulated", "mark all or none"),
-    _deck("[trackers.tracker]", "[trackers.head_1]", "trackers.head_1", "must differ"),
+    deck("simulated = true", "simulated = false", "simulated", "mark all or none"),
+    deck("[trackers.tracker]", "[trackers.head_1]", "trackers.head_1", "must differ"),
 )
 """Devices that are taken for one another."""
 
 FIGURES = (
-    _deck(
+    deck(
         _HOME,
         "home = [95.0, -90.0, 90.0, 0.0, 90.0, 90.0]",
         "robots.main.poses_deg.home",
         "teach the pose again",
     ),
-    _deck(
+    deck(
         "base_T_frame = [1900.0, 0.0",
         "base_T_frame = [19000.0, 0.0",
         "recipes.0.base_T_frame",
         "outside the box",
     ),
-    _deck("400.0, 90.0, 0.0, 0.0]", "300.0, 90.0, 0.0, 0.0]", "recipes.0.base_T_frame", "seated"),
-    _deck(
+    deck("400.0, 90.0, 0.0, 0.0]", "300.0, 90.0, 0.0, 0.0]", "recipes.0.base_T_frame", "seated"),
+    deck(
         'deck_features = "features/deck.toml"',
         'deck_features = "features/frame.toml"',
         "recipes.0.deck_features",
         "as a frame has",
     ),
-    _deck(
+    deck(
         'frame_features = "features/frame.toml"',
         'frame_features = "features/deck.toml"',
         "recipes.0.frame_features",
         "as a deck has",
     ),
-    _deck(
+    deck(
         "face_mm = [1000.0, 500.0]", "face_mm = [500.0, 1000.0]", "recipes.0.face_mm", "beside it"
     ),
-    _deck(
+    deck(
         "speed_percent = 40",
         "speed_percent = 80",
         "robots.main.speed_percent",
         "at most 50",
     ),
-    _deck(
+    deck(
         "linear_speed_mm_s = 50.0",
         "linear_speed_mm_s = 150.0",
         "robots.main.linear_speed_mm_s",
         "at most 100",
     ),
-    _deck("d1_mm = 1045.0", "d1_mm = 1054.0", "robots.main.d1_mm", "1045, as the first link"),
-    _deck("a1_mm = 500.0", "a1_mm = 550.0", "robots.main.a1_mm", "500, as the first link"),
-    _deck(
+    deck("d1_mm = 1045.0", "d1_mm = 1054.0", "robots.main.d1_mm", "1045, as the first link"),
+    deck("a1_mm = 500.0", "a1_mm = 550.0", "robots.main.a1_mm", "500, as the first link"),
+    deck(
         "workspace_max_mm = [2500.0, 900.0, 2400.0]",
         "workspace_max_mm = [2500.0, -950.0, 2400.0]",
         _MAIN,

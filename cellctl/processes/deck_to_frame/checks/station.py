@@ -1,14 +1,16 @@
 """Holds the pose in which the deck is measured against the frame below it, and the zones."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.devices import RobotConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.zone_checks import taught_in_zone
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HEAD_1, HEAD_2, MAIN, MEASURING
 
@@ -26,8 +28,7 @@ def station_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[C
 
 def _above_the_frame(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
     robot = cell.robots[recipe.device(MAIN)]
-    driver, settings = robot_driver(robot)
-    kinematics = driver.forward_kinematics(settings)
+    kinematics = _kinematics(robot)
     if kinematics is None:
         return
     base_T_deck = kinematics(np.radians(robot.poses_deg[DECK_MEASURE])) * pose_from_xyzabc(
@@ -52,16 +53,26 @@ def _above_the_frame(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator
         yield ConfigIssue(f"{key}.deck_thickness_mm", thickness, allowed)
 
 
+def _kinematics(robot: RobotConfig) -> Callable[[Array], RigidTransform] | None:
+    driver, settings = robot_driver(robot)
+    return driver.forward_kinematics(settings)
+
+
 def _shared_zones(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
     """While a head measures the deck, two arms stand at their poses at once."""
     main = recipe.device(MAIN)
     carriers = {cell.stereo_cameras[recipe.device(head)].carried_by for head in (HEAD_1, HEAD_2)}
     for name, zone in cell.zones.items():
+        # Without kinematics nobody knows before the arm stands there whether its box holds a pose.
         inside = {
-            robot: taught_in_zone(cell.robots[robot], share) for robot, share in zone.robots.items()
+            robot: taught_in_zone(cell.robots[robot], share)
+            for robot, share in zone.robots.items()
+            if _kinematics(cell.robots[robot]) is not None
         }
-        for carrier in carriers & inside.keys():
-            if DECK_MEASURE in inside.get(main, []) and MEASURING in inside[carrier]:
+        if DECK_MEASURE not in inside.get(main, []):
+            continue
+        for carrier, poses in inside.items():
+            if carrier in carriers and MEASURING in poses:
                 share = zone.robots[main]
                 allowed = (
                     f"a box without the taught pose {DECK_MEASURE}: {carrier} is in this zone at "
