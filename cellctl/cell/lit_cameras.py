@@ -34,6 +34,10 @@ class LitDevice(Device):
         """That of the device behind it."""
         return await self._device.serial_number()
 
+    async def set_exposure(self, exposure_s: float) -> float:
+        """As the device behind it."""
+        return await self._device.set_exposure(exposure_s)
+
 
 class LitCamera(LitDevice, Camera):
     """A single camera behind its lamp."""

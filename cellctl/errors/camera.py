@@ -1,4 +1,4 @@
-"""22x: cameras behind the library of their maker (GenTL)."""
+"""22x and 23x: cameras behind the library of their maker (GenTL)."""
 
 from cellctl.errors.link import LinkError
 
@@ -77,3 +77,21 @@ class SeveralCameras(CameraError):
     text = "Several cameras have this name"
     cause = "A user name or address that two cameras have, or the serial number of two makers."
     remedy = "The detail names them; choose by another key, or give each a name of its own."
+
+
+class ExposureNotReached(CameraError):
+    """The automatic exposure has not found an image of the wanted grey."""
+
+    number = 231
+    text = "Automatic exposure has not reached its grey"
+    cause = "Too much or too little light, no holes in view, or reflections beside them."
+    remedy = "Change lamp or aperture; see what the camera sees by `cellctl focus`."
+
+
+class ExposureNotAdjustable(CameraError):
+    """The driver has no way to set the exposure of its camera."""
+
+    number = 232
+    text = "Exposure of this camera cannot be set from here"
+    cause = "The protocol of its server has no request for it."
+    remedy = "Set the exposure at the camera or its server."

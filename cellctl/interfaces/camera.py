@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.interfaces.device import Device
-from cellctl.interfaces.exposure import ExposureRecord
+from cellctl.interfaces.exposure import AdjustableExposure, ExposureRecord
 
 
 class PixelFormat(Enum):
@@ -39,7 +39,7 @@ class CameraImage:
     """How it was exposed, as far as the driver knows."""
 
 
-class Camera(Device):
+class Camera(AdjustableExposure, Device):
     """Called by steps and calibration procedures, from the daemon's event loop only.
 
     Connecting takes no image. Whoever needs a sharp image waits for standstill before ``grab``;

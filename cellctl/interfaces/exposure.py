@@ -1,6 +1,8 @@
-"""How an image came about, for the record beside it."""
+"""How an image came about, for the record beside it, and how that is changed."""
 
 from dataclasses import dataclass
+
+from cellctl.errors.camera import ExposureNotAdjustable
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,3 +22,17 @@ class ExposureRecord:
     """Exposures that were dropped for this image, because they came damaged or were old ones."""
     device_time_ns: int | None = None
     """By the camera's own clock; its zero is the camera's affair."""
+
+
+class AdjustableExposure:
+    """What camera and head offer where their driver can do it."""
+
+    name: str
+
+    async def set_exposure(self, exposure_s: float) -> float:  # noqa: ARG002 - for those who can
+        """Expose the next images for so long, until the device is disconnected.
+
+        Returns the time that the camera has made of it, the nearest that it can. Raises
+        ``ExposureNotAdjustable`` where the driver has no way to do it, else the faults of ``grab``.
+        """
+        raise ExposureNotAdjustable(f"{self.name}: {type(self).__name__}")

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.interfaces.device import Device
-from cellctl.interfaces.exposure import ExposureRecord
+from cellctl.interfaces.exposure import AdjustableExposure, ExposureRecord
 
 Image = NDArray[np.uint8]
 
@@ -27,7 +27,7 @@ class StereoPair:
     """How left and right were exposed, in this order; empty where the driver does not know."""
 
 
-class StereoCamera(Device):
+class StereoCamera(AdjustableExposure, Device):
     """Called by steps and calibration procedures while the head stands still.
 
     Methods may raise ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``.

@@ -13,10 +13,12 @@ from rich.console import Console
 from rich.live import Live
 
 from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.cli.cameras.auto_exposure import exposed_for_holes
 from cellctl.cli.cameras.focus_screen import screen
 from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
 from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen
 from cellctl.clock import now_s
+from cellctl.vision.camera.exposure_search import ExposureAim
 
 
 def focus(
@@ -31,35 +33,52 @@ def focus(
         tuple[float, float] | None,
         typer.Option(help="Look for dark round holes: least and greatest radius, px."),
     ] = None,
+    auto: Annotated[
+        bool,
+        typer.Option("--auto", help="First set the exposure by the grey round holes (--hole-px)."),
+    ] = False,
+    target_grey: Annotated[
+        float, typer.Option(help="Of --auto, in grey values of 8 bit.", min=20.0, max=240.0)
+    ] = 180.0,
+    exposure_ms: Annotated[
+        tuple[float, float], typer.Option(help="Of --auto: least and greatest exposure.")
+    ] = (0.02, 200.0),
     once: Annotated[bool, typer.Option("--once", help="One exposure, one table.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One exposure, as JSON.")] = False,
 ) -> None:
     """Show sharpness, light, overlap and what is found, live until Ctrl-C; moves nothing."""
     pattern = None if board is None else _board(board)
+    aim = _aim(target_grey, exposure_ms, hole_px) if auto else None
     device = chosen(cell_file, head, camera)
     if as_json:
-        seen = asyncio.run(_one(device, pattern, hole_px))
+        seen = asyncio.run(_one(device, pattern, hole_px, aim))
         typer.echo(json.dumps(asdict(seen), indent=2))
     elif once:
-        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px))))
+        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px, aim))))
     else:
         # Ctrl-C is how this command ends; the camera is let go on the way out.
         with suppress(KeyboardInterrupt):
-            asyncio.run(_follow(device, pattern, hole_px))
+            asyncio.run(_follow(device, pattern, hole_px, aim))
 
 
-async def _one(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> FocusView:
+async def _one(
+    device: Chosen, board: CalibrationBoard | None, holes: HolesWanted, aim: ExposureAim | None
+) -> FocusView:
     async with device.opened():
+        await _set_exposure(device, holes, aim)
         return await _look(device, board, holes)
 
 
-async def _follow(device: Chosen, board: CalibrationBoard | None, holes: HolesWanted) -> None:
+async def _follow(
+    device: Chosen, board: CalibrationBoard | None, holes: HolesWanted, aim: ExposureAim | None
+) -> None:
     sharpest: dict[str, float] = {}
     ended = asyncio.Event()
     # Not by the cancellation that a Ctrl-C is otherwise: one that meets a finished wait is lost on
     # Python 3.11, and the command would go on for ever.
     asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
     async with device.opened():
+        await _set_exposure(device, holes, aim)
         with Live(auto_refresh=False) as live:
             while seen := await _unless(ended, _look(device, board, holes)):
                 for one in seen.sides:
@@ -67,6 +86,13 @@ async def _follow(device: Chosen, board: CalibrationBoard | None, holes: HolesWa
                         before = sharpest.get(one.side, one.figures.blur_px)
                         sharpest[one.side] = min(before, one.figures.blur_px)
                 live.update(screen(device.name, seen, sharpest), refresh=True)
+
+
+async def _set_exposure(device: Chosen, holes: HolesWanted, aim: ExposureAim | None) -> None:
+    if aim is not None and holes is not None:
+        exposure_s = await exposed_for_holes(device, aim, holes)
+        # Beside the figures, which a program reads.
+        typer.echo(f"{device.name}: settings.exposure_s = {exposure_s:.6g}", err=True)
 
 
 async def _unless(ended: asyncio.Event, look: Coroutine[None, None, FocusView]) -> FocusView | None:
@@ -87,6 +113,15 @@ async def _look(device: Chosen, board: CalibrationBoard | None, holes: HolesWant
     exposed = await device.expose()
     took_s = now_s() - began_s
     return await asyncio.to_thread(looked_at, exposed, took_s, board, holes)
+
+
+def _aim(target_grey: float, exposure_ms: tuple[float, float], holes: HolesWanted) -> ExposureAim:
+    if holes is None:
+        raise typer.BadParameter("--auto needs --hole-px: it looks at the surface round the holes")
+    least_ms, greatest_ms = exposure_ms
+    if not 0.0 < least_ms < greatest_ms:
+        raise typer.BadParameter(f"--exposure-ms {least_ms:g} {greatest_ms:g}: least, greatest")
+    return ExposureAim(target_grey, least_ms * 1e-3, greatest_ms * 1e-3)
 
 
 def _board(corners: str) -> CalibrationBoard:

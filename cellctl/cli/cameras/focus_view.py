@@ -54,7 +54,7 @@ def _side(view: View, board: CalibrationBoard | None, holes: HolesWanted) -> Sid
     return SideView(
         side=view.side or "image",
         figures=image_figures(grey),
-        exposure_s=None if view.exposure is None else view.exposure.exposure_s,
+        exposure_s=view.exposure_s,
         gain_db=None if view.exposure is None else view.exposure.gain_db,
         board_corners=None if board is None else (0 if corners is None else len(corners.ids)),
         holes=found,

@@ -40,6 +40,11 @@ class View:
     exposure: ExposureRecord | None
 
     @property
+    def exposure_s(self) -> float | None:
+        """As the camera states it; None where it does not, or sets it by itself."""
+        return None if self.exposure is None else self.exposure.exposure_s
+
+    @property
     def grey(self) -> Image:
         """Reduced to 8 bit grey, shape (height, width)."""
         if self.pixel_format is PixelFormat.RGB8:

@@ -8,7 +8,9 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
-_SATURATED_GREY, _BLACK_GREY = 254, 2
+SATURATED_GREY = 254
+"""From this value of 8 bit on a pixel counts as saturated."""
+_BLACK_GREY = 2
 _SMOOTHING_PX = 1.0
 _EDGE_SHARE = 0.999
 _MIN_SPREAD_GREY = 12
@@ -42,7 +44,7 @@ def image_figures(image: Image) -> ImageFigures:
     return ImageFigures(
         median_grey=middle,
         bright_grey=high,
-        saturated_share=1.0 - float(share[_SATURATED_GREY - 1]),
+        saturated_share=1.0 - float(share[SATURATED_GREY - 1]),
         black_share=float(share[_BLACK_GREY]),
         blur_px=_blur_px(image) if high - low >= _MIN_SPREAD_GREY else None,
     )

@@ -22,6 +22,7 @@ from drivers.camera.gige.protocol import (
     Request,
     RequestFailed,
     SentImage,
+    SetExposureRequest,
     Trouble,
 )
 from drivers.camera.gige.selection import selected
@@ -68,6 +69,10 @@ class _Cameras:
                     return self._opened(request), []
                 case GrabRequest():
                     return self._grabbed()
+                case SetExposureRequest(exposure_s):
+                    for camera in self._open:
+                        camera.set_exposure(exposure_s)
+                    return self._stated(), []
         except TroubleError as error:
             self._clean = False
             return RequestFailed(error.trouble, str(error)), []
@@ -110,6 +115,9 @@ class _Cameras:
         self._clean = True
         self._tries = first.tries
         self._fired_by_others = first.trigger.startswith("Line")
+        return self._stated()
+
+    def _stated(self) -> Opened:
         return Opened(tuple(camera.stated() for camera in self._open))
 
     def _grabbed(self) -> tuple[Answer, list[int]]:

@@ -4,6 +4,7 @@ import asyncio
 import logging
 import math
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -27,6 +28,7 @@ from drivers.camera.gige.protocol import (
     OpenRequest,
     Request,
     SentImage,
+    SetExposureRequest,
 )
 from drivers.camera.gige.running_mean import RunningMean
 
@@ -47,6 +49,8 @@ class GigeDevice(Device):
         self._cameras = cameras
         self._library = LibraryProcess(name)
         self._turn = asyncio.Lock()
+        self._exposure_s: float | None = None
+        """What was set since the connection was asked for, in place of the settings'."""
         self._opened: tuple[OpenedCamera, ...] = ()
         self._frame = 0
 
@@ -64,23 +68,24 @@ class GigeDevice(Device):
             raise LinkLost(f"{self.name}: not connected")
         return "+".join(camera.serial_number for camera in self._opened)
 
+    async def set_exposure(self, exposure_s: float) -> float:
+        """Of all cameras; kept when a lost camera is opened anew, until ``disconnect``."""
+
+        async def change() -> float:
+            answer, _ = await self._asked(SetExposureRequest(exposure_s), _PATIENCE_S)
+            if not isinstance(answer, Opened):
+                raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for an exposure")
+            self._opened = answer.cameras
+            self._exposure_s = answer.cameras[0].exposure_s or exposure_s
+            return self._exposure_s
+
+        return await self._in_turn(change)
+
     async def _exposed(self) -> tuple[Grabbed, list[Block]]:
         async def grab() -> tuple[Grabbed, list[Block]]:
-            if not self._opened:
-                raise LinkLost(f"{self.name}: not connected")
-            if not self._library.running:
-                await self._connected()
             settings = self._settings
             patience_s = settings.tries * settings.image_timeout_s * len(self._cameras)
-            try:
-                answer, blocks = await self._ask(GrabRequest(), patience_s + _PATIENCE_S)
-            except (ReplyTimeout, ImagesDamaged):
-                raise  # the cameras are there
-            except LinkError:
-                # A maker's library seldom finds a camera again that it has lost: its handle stays
-                # dead when the cable is back. The next request opens the camera anew.
-                await asyncio.to_thread(self._library.end)
-                raise
+            answer, blocks = await self._asked(GrabRequest(), patience_s + _PATIENCE_S)
             if not isinstance(answer, Grabbed) or len(blocks) != len(self._cameras):
                 raise ProtocolViolation(f"{self.name}: {type(answer).__name__} for images")
             if answer.taken_again:
@@ -88,6 +93,22 @@ class GigeDevice(Device):
             return answer, blocks
 
         return await self._in_turn(grab)
+
+    async def _asked(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:
+        """Ask open cameras; those that were lost are opened anew first."""
+        if not self._opened:
+            raise LinkLost(f"{self.name}: not connected")
+        if not self._library.running:
+            await self._connected()
+        try:
+            return await self._ask(request, timeout_s)
+        except (ReplyTimeout, ImagesDamaged, CameraFeatureRefused):
+            raise  # the cameras are there
+        except LinkError:
+            # A maker's library seldom finds a camera again that it has lost: its handle stays
+            # dead when the cable is back. The next request opens the camera anew.
+            await asyncio.to_thread(self._library.end)
+            raise
 
     def _forget(self) -> None:
         """Drop what earlier images have told: cameras that are opened anew may have been off."""
@@ -122,7 +143,7 @@ class GigeDevice(Device):
         await asyncio.to_thread(self._library.start)
         try:
             answer, _ = await self._ask(
-                OpenRequest(self._cameras), self._settings.connect_timeout_s
+                OpenRequest(self._setups()), self._settings.connect_timeout_s
             )
         except BaseException:
             await asyncio.to_thread(self._library.end)
@@ -132,6 +153,15 @@ class GigeDevice(Device):
         self._opened = answer.cameras
         for camera in answer.cameras:
             await self._require_readable(camera)
+
+    def _setups(self) -> tuple[CameraSetup, ...]:
+        if self._exposure_s is None:
+            return self._cameras
+        change = {"exposure_s": self._exposure_s}
+        return tuple(
+            replace(one, acquisition=one.acquisition.model_copy(update=change))
+            for one in self._cameras
+        )
 
     async def _require_readable(self, camera: OpenedCamera) -> None:
         """Raise ``CameraFeatureRefused`` for images that this driver could not read."""
@@ -145,6 +175,7 @@ class GigeDevice(Device):
 
     async def _ended(self) -> None:
         self._opened = ()
+        self._exposure_s = None
         await asyncio.to_thread(self._library.end)
 
     async def _ask(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:

@@ -77,9 +77,7 @@ class Features:
         if settings.region is not None:
             self._set_region(settings.region)
         if settings.exposure_s is not None:
-            # What sets itself is read-only, or is overwritten by the camera in the next image.
-            self._write_if_there("ExposureMode", "Timed")
-            self._write_if_there("ExposureAuto", "Off")
+            self._end_automatic_exposure()
             self.write(self._name_of("ExposureTime"), settings.exposure_s * 1e6)
         if settings.gain_db is not None:
             self._write_if_there("GainAuto", "Off")
@@ -91,6 +89,22 @@ class Features:
         for name, value in settings.features.items():
             self.write(name, value)
         self._set_trigger(settings)
+
+    def set_exposure(self, exposure_s: float) -> None:
+        """Fix the exposure, at the nearest that the camera can; raises ``TroubleError``."""
+        self._end_automatic_exposure()
+        name = self._name_of("ExposureTime")
+        exposure_us = exposure_s * 1e6
+        if self.has(name):
+            node = getattr(self._nodes, name)
+            with camera_errors(self._label):
+                exposure_us = min(max(exposure_us, float(node.min)), float(node.max))
+        self.write(name, exposure_us)
+
+    def _end_automatic_exposure(self) -> None:
+        # What sets itself is read-only, or is overwritten by the camera in the next image.
+        self._write_if_there("ExposureMode", "Timed")
+        self._write_if_there("ExposureAuto", "Off")
 
     def _set_region(self, region: Region) -> None:
         # Offsets first to zero: the new size may not fit beside the old ones.

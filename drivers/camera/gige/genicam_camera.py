@@ -55,6 +55,10 @@ class GenicamCamera:
         """Write the settings; raises ``TroubleError`` with what the camera allows."""
         self._features.set_up(self._settings)
 
+    def set_exposure(self, exposure_s: float) -> None:
+        """Expose for so long from now on, or as near as the camera can; raises ``TroubleError``."""
+        self._features.set_exposure(exposure_s)
+
     def stated(self) -> OpenedCamera:
         """What the camera says of itself once it is set up."""
         exposure_us = self._features.fixed("ExposureTime", "ExposureAuto")

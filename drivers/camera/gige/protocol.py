@@ -53,13 +53,20 @@ class GrabRequest:
 
 
 @dataclass(frozen=True, slots=True)
+class SetExposureRequest:
+    """Expose for so long from now on; answered by ``Opened``."""
+
+    exposure_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class ListRequest:
     """What the producers see."""
 
     acquisition: Acquisition
 
 
-Request = OpenRequest | GrabRequest | ListRequest
+Request = OpenRequest | GrabRequest | SetExposureRequest | ListRequest
 
 
 class CameraState(Enum):
