@@ -5,9 +5,9 @@ import asyncio
 from cellctl.cli.cameras.opening import Chosen, Exposed
 from cellctl.errors.camera import ExposureNotReached
 from cellctl.vision.camera.exposure_search import (
+    Brightness,
     ExposureAim,
     ExposureSearch,
-    Light,
     light_round_holes,
     of_all,
 )
@@ -50,5 +50,5 @@ async def _search(device: Chosen, aim: ExposureAim, radii_px: tuple[float, float
     raise ExposureNotReached(f"{device.name}: not in {MOST_EXPOSURES} exposures")
 
 
-def _light(exposed: Exposed, radii_px: tuple[float, float]) -> Light:
+def _light(exposed: Exposed, radii_px: tuple[float, float]) -> Brightness:
     return of_all([light_round_holes(view.grey, radii_px) for view in exposed.views])

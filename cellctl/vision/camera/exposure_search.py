@@ -39,7 +39,7 @@ class ExposureAim:
 
 
 @dataclass(frozen=True, slots=True)
-class Light:
+class Brightness:
     """How bright it is round the holes; where none is found, the bright part of the whole image."""
 
     grey: float
@@ -53,7 +53,7 @@ class Light:
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class Judgement:
     """What to do after an exposure: take another one of ``next_s``, or end."""
 
     next_s: float | None
@@ -61,24 +61,24 @@ class Verdict:
     """Where it ends without the wanted grey: why."""
 
 
-def light_round_holes(image: Image, radii_px: tuple[float, float]) -> Light:
+def light_round_holes(image: Image, radii_px: tuple[float, float]) -> Brightness:
     """Look at rings round dark holes with a radius in this range; shape (height, width)."""
     found = find_candidates(image, radii_px)
     rings = [ring for one in found if (ring := _ring(image, one)).size]
     if not rings:
         whole = image_figures(image)
-        return Light(whole.bright_grey, whole.saturated_share, 0)
+        return Brightness(whole.bright_grey, whole.saturated_share, 0)
     grey = float(np.median([np.median(ring) for ring in rings]))
     share = float(np.mean(np.concatenate(rings) >= SATURATED_GREY))
-    return Light(grey, share, len(rings))
+    return Brightness(grey, share, len(rings))
 
 
-def of_all(views: Sequence[Light]) -> Light:
+def of_all(views: Sequence[Brightness]) -> Brightness:
     """Of the cameras of a head, which expose alike: the brighter one decides.
 
     Holes are there when each camera sees some.
     """
-    return Light(
+    return Brightness(
         max(one.grey for one in views),
         max(one.saturated_share for one in views),
         min(one.holes for one in views),
@@ -93,7 +93,7 @@ class ExposureSearch:
         self._saturated_s = math.inf
         """The shortest exposure that was saturated."""
 
-    def judge(self, exposure_s: float, light: Light) -> Verdict:
+    def judge(self, exposure_s: float, light: Brightness) -> Judgement:
         """``exposure_s`` as the camera made it."""
         if light.saturated:
             self._saturated_s = min(self._saturated_s, exposure_s)
@@ -101,20 +101,20 @@ class ExposureSearch:
             return self._unless_the_same(exposure_s, exposure_s / 2.0, "it saturates")
         too_dark = self._aim.target_grey - light.grey
         if abs(too_dark) <= _TOLERANCE_GREY:
-            return Verdict(None, "" if light.holes else "no holes of this size are seen")
+            return Judgement(None, "" if light.holes else "no holes of this size are seen")
         change = self._aim.target_grey / max(light.grey, 1.0)
         wanted_s = exposure_s * min(max(change, 1.0 / _MOST_CHANGE), _MOST_CHANGE)
         if wanted_s >= self._saturated_s:
             if self._saturated_s < _NEAR_SATURATION * exposure_s:
-                return Verdict(None, f"it saturates from grey {light.grey:.0f} on")
+                return Judgement(None, f"it saturates from grey {light.grey:.0f} on")
             wanted_s = math.sqrt(exposure_s * self._saturated_s)
         return self._unless_the_same(exposure_s, wanted_s, f"its grey is {light.grey:.0f}")
 
-    def _unless_the_same(self, exposure_s: float, wanted_s: float, seen: str) -> Verdict:
+    def _unless_the_same(self, exposure_s: float, wanted_s: float, seen: str) -> Judgement:
         next_s = self._aim.within(wanted_s)
         if math.isclose(next_s, exposure_s, rel_tol=1e-3):
-            return Verdict(None, f"{seen} at the limit of the exposure, {exposure_s * 1e3:g} ms")
-        return Verdict(next_s)
+            return Judgement(None, f"{seen} at the limit of the exposure, {exposure_s * 1e3:g} ms")
+        return Judgement(next_s)
 
 
 def _ring(image: Image, hole: Candidate) -> Image:

@@ -7,10 +7,10 @@ import pytest
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.exposure_search import (
+    Brightness,
     ExposureAim,
     ExposureSearch,
-    Light,
-    Verdict,
+    Judgement,
     light_round_holes,
     of_all,
 )
@@ -36,7 +36,9 @@ def image(light: Array, exposure_s: float) -> Image:
     return np.clip(np.rint(grey), 0, 255).astype(np.uint8)
 
 
-def searched(light: Array, exposure_s: float, aim: ExposureAim = AIM) -> tuple[float, Verdict, int]:
+def searched(
+    light: Array, exposure_s: float, aim: ExposureAim = AIM
+) -> tuple[float, Judgement, int]:
     """The last exposure, what was said of it, and how many there were."""
     search = ExposureSearch(aim)
     for step in range(1, STEPS + 1):
@@ -90,8 +92,8 @@ def test_a_plate_without_holes_is_not_enough() -> None:
 
 
 def test_of_a_head_the_brighter_camera_decides() -> None:
-    both = of_all([Light(120.0, 0.001, 4), Light(150.0, 0.02, 0)])
-    assert both == Light(150.0, 0.02, 0)
+    both = of_all([Brightness(120.0, 0.001, 4), Brightness(150.0, 0.02, 0)])
+    assert both == Brightness(150.0, 0.02, 0)
     assert both.saturated
 
 
