@@ -53,7 +53,7 @@ class Brightness:
 
 
 @dataclass(frozen=True, slots=True)
-class Judgement:
+class ExposureVerdict:
     """What to do after an exposure: take another one of ``next_s``, or end."""
 
     next_s: float | None
@@ -93,7 +93,7 @@ class ExposureSearch:
         self._saturated_s = math.inf
         """The shortest exposure that was saturated."""
 
-    def judge(self, exposure_s: float, light: Brightness) -> Judgement:
+    def judge(self, exposure_s: float, light: Brightness) -> ExposureVerdict:
         """``exposure_s`` as the camera made it."""
         if light.saturated:
             self._saturated_s = min(self._saturated_s, exposure_s)
@@ -101,20 +101,22 @@ class ExposureSearch:
             return self._unless_the_same(exposure_s, exposure_s / 2.0, "it saturates")
         too_dark = self._aim.target_grey - light.grey
         if abs(too_dark) <= _TOLERANCE_GREY:
-            return Judgement(None, "" if light.holes else "no holes of this size are seen")
+            return ExposureVerdict(None, "" if light.holes else "no holes of this size are seen")
         change = self._aim.target_grey / max(light.grey, 1.0)
         wanted_s = exposure_s * min(max(change, 1.0 / _MOST_CHANGE), _MOST_CHANGE)
         if wanted_s >= self._saturated_s:
             if self._saturated_s < _NEAR_SATURATION * exposure_s:
-                return Judgement(None, f"it saturates from grey {light.grey:.0f} on")
+                return ExposureVerdict(None, f"it saturates from grey {light.grey:.0f} on")
             wanted_s = math.sqrt(exposure_s * self._saturated_s)
         return self._unless_the_same(exposure_s, wanted_s, f"its grey is {light.grey:.0f}")
 
-    def _unless_the_same(self, exposure_s: float, wanted_s: float, seen: str) -> Judgement:
+    def _unless_the_same(self, exposure_s: float, wanted_s: float, seen: str) -> ExposureVerdict:
         next_s = self._aim.within(wanted_s)
         if math.isclose(next_s, exposure_s, rel_tol=1e-3):
-            return Judgement(None, f"{seen} at the limit of the exposure, {exposure_s * 1e3:g} ms")
-        return Judgement(next_s)
+            return ExposureVerdict(
+                None, f"{seen} at the limit of the exposure, {exposure_s * 1e3:g} ms"
+            )
+        return ExposureVerdict(next_s)
 
 
 def _ring(image: Image, hole: Candidate) -> Image:

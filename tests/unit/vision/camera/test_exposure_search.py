@@ -10,7 +10,7 @@ from cellctl.vision.camera.exposure_search import (
     Brightness,
     ExposureAim,
     ExposureSearch,
-    Judgement,
+    ExposureVerdict,
     light_round_holes,
     of_all,
 )
@@ -38,7 +38,7 @@ def image(light: Array, exposure_s: float) -> Image:
 
 def searched(
     light: Array, exposure_s: float, aim: ExposureAim = AIM
-) -> tuple[float, Judgement, int]:
+) -> tuple[float, ExposureVerdict, int]:
     """The last exposure, what was said of it, and how many there were."""
     search = ExposureSearch(aim)
     for step in range(1, STEPS + 1):
