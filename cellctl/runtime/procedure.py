@@ -3,12 +3,15 @@
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.runtime.jobs.record import JobRecord
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
+
+if TYPE_CHECKING:
+    # Whoever only reads a cell file loads this module too, and must not wait for the database.
+    from cellctl.runtime.jobs.record import JobRecord
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +20,7 @@ class ProcedureContext:
 
     board: ProgressBoard
     safe_point: SafePoint
-    record: JobRecord
+    record: "JobRecord"
     """To be opened by a procedure with contact, before it moves."""
 
     async def progress(self, done: int, total: int, message: str) -> None:

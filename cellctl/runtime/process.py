@@ -8,7 +8,7 @@ of it for its cell, and calls the methods below. The rest of cellctl knows no pr
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.calibration.store.kind import CalibrationKind, Kinds
@@ -20,15 +20,18 @@ from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
 from cellctl.errors.records import NotReplayable
-from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import Calibration, RunRecord
 from cellctl.records.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
-from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, Steps
+
+if TYPE_CHECKING:
+    # Whoever only reads a cell file loads this module too, and must not wait for the database.
+    from cellctl.records.async_store import AsyncRunStore
+    from cellctl.records.run_recorder import RunRecorder
 
 P = TypeVar("P")
 R = TypeVar("R")
@@ -42,7 +45,7 @@ class CellServices:
     cell: Cell
     calibrations: CalibrationStore
     board: ProgressBoard
-    store: AsyncRunStore
+    store: "AsyncRunStore"
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +62,7 @@ class Prepared(Generic[P]):
 class RunContext:
     """What a process is given for one open run."""
 
-    recorder: RunRecorder
+    recorder: "RunRecorder"
     """Writes into the record of this run."""
     safe_point: SafePoint
     """Obeys a pending Hold; a step that waits long or repeats itself calls it in between."""

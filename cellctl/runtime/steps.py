@@ -7,11 +7,14 @@ type checker follows the chain from the first step to the last.
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from cellctl import log
-from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.progress import ProgressBoard
+
+if TYPE_CHECKING:
+    # Whoever only reads a cell file loads this module too, and must not wait for the database.
+    from cellctl.records.run_recorder import RunRecorder
 
 _log = log.get(__name__)
 
@@ -86,7 +89,7 @@ class StepRunner:
 
     board: ProgressBoard
     safe_point: SafePoint
-    recorder: RunRecorder
+    recorder: "RunRecorder"
     """Told of every step as a phase of the run."""
     single_step: bool = False
     """Hold before each step that was not reached before; with every Unhold the run measures anew

@@ -5,9 +5,10 @@ bound while its record is there, passed and valid; otherwise the bound counts.
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from cellctl.calibration.store.snapshot import CalibrationSnapshot
-from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS, STOP_LATENCY
+if TYPE_CHECKING:
+    from cellctl.calibration.store.snapshot import CalibrationSnapshot
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,8 +20,11 @@ class Commissioned:
     """Arm and contact in series, as measured with one pair of parts."""
 
     @classmethod
-    def of(cls, snapshot: CalibrationSnapshot, recipe_id: int) -> "Commissioned":
+    def of(cls, snapshot: "CalibrationSnapshot", recipe_id: int) -> "Commissioned":
         """The figures in a snapshot; the stiffness is that of one recipe's parts."""
+        # Here, because `cellctl check` needs the bounds alone, and not the solvers of all kinds.
+        from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS, STOP_LATENCY
+
         return cls(
             stop_latency_s=snapshot.find(STOP_LATENCY),
             stiffness_n_m=snapshot.find(CONTACT_STIFFNESS.for_recipe(recipe_id)),

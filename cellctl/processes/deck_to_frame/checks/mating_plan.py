@@ -12,8 +12,8 @@ from cellctl.errors.force import ContactPlanInvalid
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
-from cellctl.processes.deck_to_frame.mating.contact_plan import mating_settings
 from cellctl.processes.deck_to_frame.mating.plan import plan_mating
+from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE
 

@@ -12,9 +12,10 @@ from cellctl.errors.robot import SpeedOverridden
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
-from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan, mating_settings
+from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.recipe import Pins
 from cellctl.processes.deck_to_frame.run_facts import read_facts
