@@ -1,7 +1,7 @@
 """The way in which any process records its run: figures, poses, passes, phases and files."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from scipy.spatial.transform import RigidTransform
@@ -10,6 +10,7 @@ from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.geometry.units import in_mm_deg
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import (
     Document,
@@ -22,6 +23,9 @@ from cellctl.records.entries import (
 from cellctl.records.figures import NO_LIMIT, Limit, figure
 from cellctl.records.raw_images import GreyImage
 from cellctl.records.store import RunStore
+
+EXPOSURES = "images.exposures"
+"""Key of the document that says how the raw images of a run were exposed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +113,12 @@ class RunRecorder:
     async def add(self, *details: RunDetail) -> None:
         """Details of several kinds in one transaction; all of them are recorded, or none."""
         await self.store.do(RunStore.add, self.run, *details)
+
+    async def exposures(self, taken: Mapping[str, ExposureRecord | None]) -> None:
+        """How raw images were exposed, by the names of their files; None where nobody knows."""
+        known = {name: asdict(one) for name, one in taken.items() if one is not None}
+        if known:
+            await self.document(EXPOSURES, known)
 
     def raw_image(self, name: str, image: GreyImage) -> None:
         """An image as the camera gave it, shape (height, width); kept later, see ``keep_image``."""

@@ -73,9 +73,12 @@ class Eyes:
         state = self.arm.robot.state()
         images, found = [], []
         for number in range(1, self.frames + 1):
-            image = measured_channel(await camera.grab())
+            taken = await camera.grab()
+            image = measured_channel(taken)
             if self.recorder is not None:
-                self.recorder.raw_image(f"raw/{name}-frame-{number}.pgm.zst", image)
+                file = f"raw/{name}-frame-{number}.pgm.zst"
+                await self.recorder.exposures({file: taken.exposure})
+                self.recorder.raw_image(file, image)
             images.append(image)
             found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)

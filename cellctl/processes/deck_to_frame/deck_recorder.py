@@ -46,7 +46,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     MATING,
     MEASURED_FROM,
 )
-from cellctl.processes.deck_to_frame.record.sources import measured_from, raw_images
+from cellctl.processes.deck_to_frame.record.sources import exposures, measured_from, raw_images
 from cellctl.records.curve_file import encode_curve
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, split_document
@@ -191,6 +191,7 @@ class DeckRecorder:
             # shows as missing in a replay.
             source = measured_from(kind, measured, predicted, list(images))
             await self.recorder.document(MEASURED_FROM, {name: source})
+            await self.recorder.exposures(exposures(name, measured.shots))
             for file, image in images.items():
                 self.recorder.raw_image(file, image)
         await self._pictures(name, measured)

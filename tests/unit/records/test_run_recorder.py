@@ -9,6 +9,7 @@ import pytest
 from cellctl.errors.records import RunClosed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import (
     LoopPass,
@@ -80,6 +81,17 @@ async def test_a_covariance_is_kept_whole_in_mm_and_degrees(recorder: RunRecorde
     np.testing.assert_allclose(covariance, pose.covariance * np.outer(scale, scale))
     np.testing.assert_allclose(np.array(entry.sigma_mm_deg), pose.sigma * scale)
     np.testing.assert_allclose(np.array(entry.pose_mm_deg), [10, 20, 500, 5, 1, 179])
+
+
+async def test_exposures_of_raw_images_by_their_files(recorder: RunRecorder) -> None:
+    await recorder.exposures({"raw/none.pgm.zst": None})
+    assert (await record_of(recorder)).documents == ()
+    one = ExposureRecord("GL-1", "Mono12", 12, exposure_s=0.004, gain_db=3.0, device_time_ns=7)
+    await recorder.exposures({"raw/a.pgm.zst": one, "raw/none.pgm.zst": None})
+    await recorder.exposures({"raw/b.pgm.zst": ExposureRecord(None, "Mono8", 8)})
+    kept = (await record_of(recorder)).document("images.exposures")
+    assert set(kept) == {"raw/a.pgm.zst", "raw/b.pgm.zst"}
+    assert ExposureRecord(**kept["raw/a.pgm.zst"]) == one
 
 
 async def test_a_closed_run_takes_nothing_more(recorder: RunRecorder) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.interfaces import StereoPair
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
 from cellctl.processes.deck_to_frame.record.keys import FRAME
@@ -23,6 +24,16 @@ def raw_images(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dic
         for head, pair in enumerate(pairs, start=1)
         for side, image in (("left", pair.left), ("right", pair.right))
     }
+
+
+def exposures(
+    name: str, shots: Sequence[tuple[StereoPair, StereoPair]]
+) -> dict[str, ExposureRecord | None]:
+    """How these images were exposed, by the same names; None where the driver does not know."""
+    records = (
+        record for pairs in shots for pair in pairs for record in pair.exposures or (None, None)
+    )
+    return dict(zip(raw_images(name, shots), records, strict=True))
 
 
 def measured_from(

@@ -1,12 +1,17 @@
-"""Which grey values of a camera's image are measured."""
+"""Which grey values of a camera's image are measured, and what of it is recorded."""
+
+from collections.abc import Callable
+from typing import Any, cast
+from unittest.mock import AsyncMock, Mock
 
 import numpy as np
 import pytest
 
-from cellctl.interfaces.camera import CameraImage, PixelFormat
+from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
+from cellctl.processes.antenna_module import looking
 from cellctl.processes.antenna_module.faults.connector import PixelsNotMeasurable
-from cellctl.processes.antenna_module.looking import measured_channel
+from cellctl.processes.antenna_module.looking import Eyes, measured_channel
 from cellctl.processes.antenna_module.vision.pixels import mosaic_plane
 from drivers.camera.gige.pixels import decoded
 
@@ -42,3 +47,25 @@ def test_green_of_the_gige_driver_is_the_green_of_the_mosaic() -> None:
     # Means of four that end in a half are rounded up by one, to the even number by the other.
     assert np.abs(off).max() <= 1
     assert np.abs(off).mean() < 0.1
+
+
+async def test_each_raw_image_is_recorded_with_its_exposure(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(looking, "settle", AsyncMock())
+    monkeypatch.setattr(looking, "require_unmoved", Mock())
+    exposures = [ExposureRecord("1", "Mono8", 8, exposure_s=seconds) for seconds in (0.01, 0.02)]
+    grey = np.zeros((4, 4), np.uint8)
+    images = [CameraImage(grey, PixelFormat.MONO8, 0.0, n, one) for n, one in enumerate(exposures)]
+    recorder = Mock(exposures=AsyncMock())
+
+    async def run(measure: Callable[[Any], Any], image: Any) -> Any:
+        return measure(image)
+
+    eyes = Eyes(Mock(), Mock(run=run), recorder, frames=2)
+    camera = Mock(grab=AsyncMock(side_effect=images))
+    await eyes.look("tray", cast(Camera, camera), np.sum)
+    files = [f"raw/tray-frame-{number}.pgm.zst" for number in (1, 2)]
+    assert [call.args[0] for call in recorder.raw_image.call_args_list] == files
+    told = [call.args[0] for call in recorder.exposures.call_args_list]
+    assert told == [{file: one} for file, one in zip(files, exposures, strict=True)]

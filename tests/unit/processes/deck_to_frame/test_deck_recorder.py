@@ -1,5 +1,7 @@
 """What the steps find out, as it lies in the store."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -7,6 +9,8 @@ import pytest
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import StereoPair
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.processes.deck_to_frame.deck_recorder import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.record.entries import rms_um
@@ -103,3 +107,21 @@ def test_a_picture_is_a_jpeg() -> None:
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
     assert picture is not None
     assert picture.shape == (40 + INSET_PX, 60, 3)
+
+
+async def test_raw_images_are_recorded_with_their_exposures(rig: RunRig) -> None:
+    grey = np.zeros((4, 6), np.uint8)
+    sides = [ExposureRecord(name, "Mono8", 8, exposure_s=0.004) for name in ("left", "right")]
+    told = StereoPair(grey, grey, 0.0, 1, tuple(sides))
+    silent = StereoPair(grey, grey, 0.0, 1)
+    found = replace(
+        measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA),
+        predicted=PLACE,
+        shots=((told, silent),),
+    )
+    await rig.recorder.measurement("frame", found)
+    kept = (await rig.record()).document("images.exposures")
+    files = [f"raw/frame-frame-1-head-1-{side}.pgm.zst" for side in ("left", "right")]
+    assert {file: one["serial_number"] for file, one in kept.items()} == dict(
+        zip(files, ("left", "right"), strict=True)
+    )
