@@ -159,7 +159,7 @@ def _marks_in(
         names=marks.names,
         positions_m=marks.positions_m,
         diameter_m=marks.diameter_m,
-        true_position_m=_MARK_TRUE_POSITION_M,
+        true_position_m=_mark_sigma_m(plane, calibration, marks),
         reach_m=_MARK_REACH * marks.diameter_m,
         bright=marks.bright,
     )
@@ -179,6 +179,18 @@ def _marks_in(
     radius_px = marks.diameter_m / 2.0 / raised.m_per_px(found.fit.shift_m)
     pose = uncertain_pose(raised, calibration, found.fit)
     return MeasuredMarks(pose, px, radius_px, found.fit.scale)
+
+
+def _mark_sigma_m(plane: MeasuringPlane, calibration: PlaneCalibration, marks: Marks) -> float:
+    """How far a good mark may be off its place, standard deviation.
+
+    Marks lie far apart: a plane whose height is wrong by 0.2 mm moves those at its ends by 20 µm
+    along their rays, which is no fault of theirs.
+    """
+    reach_m = float(np.linalg.norm(marks.positions_m, axis=1).max())
+    height_m = float(np.hypot(calibration.sigma_height_m, reach_m * calibration.sigma_tilt_rad))
+    along_m = height_m * reach_m / float(plane.camera_T_plane.translation[2])
+    return float(np.hypot(_MARK_TRUE_POSITION_M, along_m))
 
 
 def _expectation(

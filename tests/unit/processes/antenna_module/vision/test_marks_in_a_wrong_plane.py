@@ -1,0 +1,26 @@
+"""Gripper marks are measured although the height of their plane is a little wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from benchmarks.antenna.pictures import Conditions, trial
+from cellctl.processes.antenna_module.vision.measure import measure_marks
+
+HEIGHT_SIGMA_M = 0.2e-3
+
+
+@pytest.mark.parametrize("wrong_m", [-0.4e-3, 0.0, 0.4e-3])
+def test_marks_are_found_within_what_is_stated_of_the_height(wrong_m: float) -> None:
+    given = trial(1, Conditions(marks=True, um_per_px=(35.0, 35.0), height_sigma_m=HEIGHT_SIGMA_M))
+    assert given.marks is not None
+    exact = measure_marks(given.pixels.plane, given.camera, given.plane, given.marks)
+    lifted = RigidTransform.from_translation([0.0, 0.0, wrong_m])
+    plane = replace(given.plane, camera_T_plane=given.plane.camera_T_plane * lifted)
+    found = measure_marks(given.pixels.plane, given.camera, plane, given.marks)
+    moved = found.camera_T_marks.pose.translation - exact.camera_T_marks.pose.translation
+    assert moved[2] == pytest.approx(-wrong_m, abs=1e-6)
+    # The marks' middle is 5 mm beside their origin, and the camera's axis 2 mm at most.
+    assert np.linalg.norm(moved[:2]) < 7e-3 * abs(wrong_m) / 0.25 + 1e-6
