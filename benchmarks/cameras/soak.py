@@ -26,6 +26,7 @@ from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
 
 SERIAL = "GL"
+_SETTLE_S = 3.0
 _WARM_UP = 0.1
 """Share of a job after which it is looked at for the first time; at least three times."""
 
@@ -136,7 +137,7 @@ async def _soaked(
     before = _kept(library)
     for _ in track(range(times - warm), name, transient=True):
         await once()
-    after = _kept(library)
+    after = await _settled(library, before)
     busy = not library and (fakes.opened(SERIAL), fakes.buffers(SERIAL)) != (0, 0)
     left = "the camera is still open" if busy else ""
     of_library = None if not library else (before[1], after[1])
@@ -152,6 +153,20 @@ def _use_one_thread() -> None:
 def _kept(library: int) -> tuple[Kept, Kept]:
     """Of this process and of the library's; the same twice where none lasts."""
     return kept(os.getpid()), kept(library or os.getpid())
+
+
+async def _settled(library: int, before: tuple[Kept, Kept]) -> tuple[Kept, Kept]:
+    """What is kept once threads that are about to end have ended; what stays is shown at the end.
+
+    A progress bar and the reader of a process that has just been let go do not end at once.
+    """
+    end_s = now_s() + _SETTLE_S
+    while True:
+        after = _kept(library)
+        grown = any(now.outgrows(then) for now, then in zip(after, before, strict=True))
+        if not grown or now_s() > end_s:
+            return after
+        await asyncio.sleep(0.05)
 
 
 def _camera(producer: Path) -> GigeCamera:

@@ -89,7 +89,9 @@ async def test_a_good_plug_is_seated_and_its_curve_kept(over: Over) -> None:
     notes = over.bench.notes
     assert notes.artefacts == [keys.CURVE]
     assert notes.documents[keys.INSERTION]["verdict"] == "seated"
-    assert notes.figures[keys.SEAT_DEPTH] == pytest.approx(2.5, abs=0.06)
+    # Read off the curve, whose depths are those of an arm that jumps a tenth of a millimetre: on a
+    # busy PC the recorder sees it between two jumps or after both.
+    assert notes.figures[keys.SEAT_DEPTH] == pytest.approx(2.5, abs=0.16)
     assert over.world.depth_mm() == pytest.approx(2.5, abs=0.06)
 
 
