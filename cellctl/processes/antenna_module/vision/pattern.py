@@ -157,9 +157,10 @@ def fit_pattern(
             points[index] = feature.circle.centre_m
             covariances[index] = feature.circle.covariance_m2
     fit = fit_planar(pattern.positions_m, points, covariances, pattern.true_position_m)
-    return (
-        None if fit is None else PatternFit(_with_all_residuals(fit, features, pattern), features)
-    )
+    if fit is None:
+        return None
+    fit = _with_common_light(fit, _COMMON_PX * plane.m_per_px(fit.shift_m))
+    return PatternFit(_with_all_residuals(fit, features, pattern), features)
 
 
 def surplus(
@@ -269,6 +270,12 @@ def _contrast(image: Image, plane: MeasuringPlane, centre_m: Array, pattern: Pat
         levels.append(float(np.median(image[pixels[:, 1], pixels[:, 0]])))
     difference = levels[0] - levels[1]
     return difference if pattern.bright else -difference
+
+
+def _with_common_light(fit: PlanarFit, sigma_m: float) -> PlanarFit:
+    """With what moves all features together, which the fit of one against another cannot see."""
+    common = np.diag([sigma_m**2, sigma_m**2, 0.0])
+    return replace(fit, covariance=fit.covariance + common)
 
 
 def _with_all_residuals(

@@ -1,7 +1,13 @@
-"""A contact that shows as two spots is still one contact."""
+"""A contact that shows as two spots is still one contact; what is stated of a fit is true."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
 
 from benchmarks.antenna.pictures import trial
-from benchmarks.antenna.vision.bench import HOLES
+from benchmarks.antenna.vision.bench import CLEAN, HOLES
+from benchmarks.antenna.vision.outcomes import outcome
 from cellctl.processes.antenna_module.vision.measure import contact_pattern, measure_connector
 from cellctl.processes.antenna_module.vision.pattern import find_pattern, surplus
 
@@ -19,3 +25,14 @@ def test_a_hole_that_is_found_twice_is_no_hole_too_many() -> None:
     assert surplus(image, plane, pattern, candidates, connector.outline_m) == 0
     found = measure_connector(image, given.camera, given.plane, connector)
     assert all(contact.state == "ok" for contact in found.contacts)
+
+
+def test_errors_are_as_large_as_is_stated_of_them() -> None:
+    squares = []
+    for seed in range(12):
+        given = trial(seed, replace(CLEAN, wall_light=0.5, um_per_px=(35.0, 35.0)))
+        image, camera, plane = given.pixels.plane, given.camera, given.plane
+        measured = outcome(given, partial(measure_connector, image, camera, plane, given.connector))
+        assert not measured.fault
+        squares.append(measured.nees / 3.0)
+    assert 0.4 < np.mean(squares) < 2.2
