@@ -44,8 +44,8 @@ class InsertionLimits:
     travel_m_s: float = 5e-3
     early_touch_m: float = 0.0
     """The first touch may come so much earlier than drawn: heights are uncertain."""
-    entry_m_s: float = 0.1e-3
-    entry_step_m: float = 0.03e-3
+    entry_m_s: float = 0.07e-3
+    entry_step_m: float = 0.025e-3
     """From the first touch on. So slow, and in so small steps, that a pin which slides down its
     funnel meets less than 3 N from the side before a stop that takes 250 ms takes effect, or before
     the step ends where no stop is obeyed; with a holder of 50 N/mm."""
@@ -57,7 +57,7 @@ class InsertionLimits:
     entry_axial_n: float = 1.2
     """Contacts that lie within 5 µm of their places reach 1.0 N in a plug that is 30 µm off; a plug
     that is 0.10 mm off begins at 1.7 N (docs/plugging.md)."""
-    entry_rise_n: float = 0.15
+    entry_rise_n: float = 0.08
     """By how much the axial force must exceed its own mean of the last 0.1 s: a hose that pulls
     steadily is not a contact."""
     entry_most_n: float = 3.0

@@ -116,7 +116,7 @@ def test_other_bounds_trip_too(shape: Shape, cause: TripCause) -> None:
 
 def test_limits_follow_depth() -> None:
     assert LIMITS.at(-1e-3).speed_m_s == 5e-3
-    assert LIMITS.at(0.0).speed_m_s == 0.1e-3
+    assert LIMITS.at(0.0).speed_m_s == 0.07e-3
     assert LIMITS.at(2e-3).speed_m_s == 0.4e-3
     assert LIMITS.at(0.0).side_n < LIMITS.at(2e-3).side_n
     assert LIMITS.at(2e-3).axial_n == pytest.approx(51.7)
