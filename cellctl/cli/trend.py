@@ -9,6 +9,8 @@ from rich.table import Table
 
 from cellctl.cli.plain_json import as_plain
 from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.records.entries import Verdict
+from cellctl.records.figures import Limit
 from cellctl.records.trend import CONFIDENCE, Index, Sample, Trend
 from cellctl.records.trend import trend as trend_of
 
@@ -56,9 +58,7 @@ def _chart(samples: list[Sample], found: Trend, title: str) -> Table:
     marked = {signal.run for signal in found.signals}
     table = Table("run", "time (UTC)", "value", "limits", "−3σ … +3σ", title=title, box=None)
     for one in samples:
-        beyond = (one.lower is not None and one.value < one.lower) or (
-            one.upper is not None and one.value > one.upper
-        )
+        beyond = Limit(one.lower, one.upper).judge(one.value) is Verdict.FAIL
         limits = " … ".join("–" if x is None else f"{x:g}" for x in (one.lower, one.upper))
         table.add_row(
             str(one.run),

@@ -51,13 +51,13 @@ def service_limits(cell: CellConfig) -> ServiceLimits:
     return ServiceLimits(tuple(peers), tuple(devices), socket_can, tuple(open_ends))
 
 
-def drop_in(cell: CellConfig) -> str:
-    """The limits as a drop-in of the unit ``cellctl.service``."""
-    return "".join(f"{line}\n" for line in _lines(cell, service_limits(cell)))
+def drop_in(name: str, limits: ServiceLimits) -> str:
+    """The limits of the cell of this name as a drop-in of the unit ``cellctl.service``."""
+    return "".join(f"{line}\n" for line in _lines(name, limits))
 
 
-def _lines(cell: CellConfig, limits: ServiceLimits) -> Iterator[str]:
-    yield f"# Made by `cellctl service-limits` from the cell file of {cell.name}."
+def _lines(name: str, limits: ServiceLimits) -> Iterator[str]:
+    yield f"# Made by `cellctl service-limits` from the cell file of {name}."
     yield "[Service]"
     yield "# The first line empties the list of the unit."
     yield "DeviceAllow="

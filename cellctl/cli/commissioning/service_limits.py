@@ -15,6 +15,7 @@ def limits(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.
     Devices whose address the file does not name are told on standard error.
     """
     cell = load_cell(cell_file)
-    typer.echo(drop_in(cell), nl=False)
-    for text in service_limits(cell).open_ends:
+    found = service_limits(cell)
+    typer.echo(drop_in(cell.name, found), nl=False)
+    for text in found.open_ends:
         typer.echo(f"{text}: add its network to the drop-in by hand", err=True)

@@ -25,6 +25,10 @@ def changed(cell: CellConfig, **settings: Any) -> CellConfig:
     return cell.model_copy(update={"force_sensors": {name: other}})
 
 
+def drop_in_of(cell: CellConfig) -> str:
+    return drop_in(cell.name, service_limits(cell))
+
+
 def test_every_address_of_the_file_is_a_peer(template: CellConfig) -> None:
     peers = service_limits(template).peers
     for _, device in template.devices().values():
@@ -36,7 +40,7 @@ def test_every_address_of_the_file_is_a_peer(template: CellConfig) -> None:
 
 
 def test_all_else_is_denied(template: CellConfig) -> None:
-    lines = drop_in(template).splitlines()
+    lines = drop_in_of(template).splitlines()
     assert "IPAddressDeny=any" in lines
     assert "DeviceAllow=" in lines
     assert not any(line.startswith("DeviceAllow=/") for line in lines)
@@ -47,7 +51,7 @@ def test_a_serial_sensor_is_its_line_alone(template: CellConfig) -> None:
     cell = changed(template, transport="serial", device="/dev/ttyUSB0")
     assert service_limits(cell).devices == ("/dev/ttyUSB0",)
     assert "192.168.0.108" not in service_limits(cell).peers
-    assert "DeviceAllow=/dev/ttyUSB0 rw" in drop_in(cell).splitlines()
+    assert "DeviceAllow=/dev/ttyUSB0 rw" in drop_in_of(cell).splitlines()
 
 
 @pytest.mark.parametrize(("interface", "needed"), [("socketcan", True), ("slcan", False)])
@@ -56,7 +60,7 @@ def test_socket_can_is_allowed_where_it_is_used(
 ) -> None:
     cell = changed(template, transport="can", can_interface=interface, can_channel="can0")
     assert service_limits(cell).socket_can is needed
-    assert ("RestrictAddressFamilies=AF_CAN" in drop_in(cell)) is needed
+    assert ("RestrictAddressFamilies=AF_CAN" in drop_in_of(cell)) is needed
 
 
 def test_what_nobody_can_tell_is_told(template: CellConfig) -> None:
