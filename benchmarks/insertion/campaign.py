@@ -20,7 +20,7 @@ from benchmarks.insertion.cases import CASES, SearchCase
 from benchmarks.insertion.traps import PegState, TrapOutcome, run_trap
 from benchmarks.insertion.trials import SearchTrialOutcome, run_search
 from benchmarks.insertion.wilson import wilson_bounds
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 
 WORKERS = 2
 TRIALS, QUICK_TRIALS = 300, 10

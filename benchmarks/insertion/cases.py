@@ -3,8 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from cellctl.processes.peg_in_hole.choice import SearchName
-from cellctl.processes.peg_in_hole.task import CellFigures, FitGeometry, ForceLimits, SearchTask
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.task import (
+    CellFigures,
+    FitGeometry,
+    ForceLimits,
+    SearchTask,
+)
 
 _SPIRAL, _VALLEY, _MAP = SearchName.SPIRAL, SearchName.TILTED_VALLEY, SearchName.PARTICLE_MAP
 _ARC = SearchName.ARC

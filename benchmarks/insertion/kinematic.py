@@ -19,9 +19,9 @@ from cellctl.cell.by_touch.motions import (
     ContactSample,
     Ended,
 )
-from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.tilted_touch import tilted_dip_m
-from cellctl.processes.peg_in_hole.task import SearchTask
 
 Array = NDArray[np.float64]
 

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.processes.peg_in_hole.choice import SearchName
 from cellctl.processes.peg_in_hole.faults import ByTouchError
-from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.patent import PatentMidpoint
 from cellctl.processes.peg_in_hole.search.probe import TouchProbe
-from cellctl.processes.peg_in_hole.task import SearchTask
 
 LIMIT_S = 120.0
 """Of the reference's table, for all strategies alike."""

@@ -3,7 +3,7 @@
 from typing import Any
 
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.processes.peg_in_hole.loop_record import figures_of_record
+from cellctl.processes.peg_in_hole.record.loop_record import figures_of_record
 
 CONTACT_LOOP = CalibrationKind(
     name="contact_loop",

@@ -6,7 +6,7 @@ from typing import cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors import CellError
-from cellctl.processes.peg_in_hole.planned import cycle_plan
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ARM, FORCE
 from cellctl.processes.peg_in_hole.settings import PegSettings

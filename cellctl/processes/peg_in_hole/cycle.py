@@ -5,13 +5,13 @@ from dataclasses import dataclass, field
 from typing import Any, Self
 
 from cellctl.cell.by_touch.motions import ContactMotions
-from cellctl.processes.peg_in_hole.choice import SearchChoice, SearchName
-from cellctl.processes.peg_in_hole.face import FacePlan, TouchedFace, touch_face
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
+from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
-from cellctl.processes.peg_in_hole.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.holding import (
     directions_that_resist_a_turn,

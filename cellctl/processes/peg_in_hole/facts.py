@@ -8,7 +8,7 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
-from cellctl.processes.peg_in_hole.planned import cycle_plan
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.run import PegFacts
 from cellctl.processes.peg_in_hole.stations import PegCell

@@ -6,7 +6,7 @@ from pydantic import Field
 
 from cellctl.config.base import Section, WrittenPose
 from cellctl.config.recipe import Recipe
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 
 _Length = Annotated[float, Field(gt=0, le=500)]
 _Chamfer = Annotated[float, Field(ge=0, le=20)]

@@ -13,9 +13,9 @@ from cellctl.config.cell import CellConfig
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.interfaces.streaming_robot import StreamingRobot
-from cellctl.processes.peg_in_hole.face import TouchedFace
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import FORCE
+from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.settings import PegSettings
 
 _OVER = Rotation.from_rotvec([np.pi, 0.0, 0.0])

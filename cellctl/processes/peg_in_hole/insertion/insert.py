@@ -19,7 +19,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 )
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 SEAT_TOLERANCE_M = 0.3e-3
 _MOST_RECOVERIES = 3

@@ -9,7 +9,7 @@ import numpy as np
 
 from cellctl.cell.by_touch.motions import Condition, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
-from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
+from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _HOLD_N = 5.0
 _FASTEST_RAD_S = radians(3.0)

@@ -12,7 +12,7 @@ import numpy as np
 from cellctl.cell.by_touch.motions import ContactMotions
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.insertion.felt import Standing
-from cellctl.processes.peg_in_hole.task import FitGeometry
+from cellctl.processes.peg_in_hole.plan.task import FitGeometry
 
 _LOWERED, _HALVED = 0.3, 0.5
 _GIVE_WAY_S = 1.0

@@ -8,11 +8,11 @@ from cellctl.cell.by_touch.commissioning import CommissionedLoop, commission_con
 from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.calibrations import CONTACT_LOOP
 from cellctl.processes.peg_in_hole.leaving import leave_hole
-from cellctl.processes.peg_in_hole.loop_record import loop_checks, loop_record
-from cellctl.processes.peg_in_hole.planned import cycle_plan
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.procedures.contact_loop_picture import loop_picture
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.record.loop_record import loop_checks, loop_record
 from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
 from cellctl.processes.peg_in_hole.state import AtHome, FaceTouched
 from cellctl.processes.peg_in_hole.stations import PegCell

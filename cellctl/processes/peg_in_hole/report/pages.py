@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.record.tick_log import read_ticks
 from cellctl.processes.peg_in_hole.report.drawings import insertion_picture, search_picture
-from cellctl.processes.peg_in_hole.tick_log import read_ticks
 from cellctl.processes.peg_in_hole.verdict.judgement import DEPTH, RESISTED, SLIP
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import (

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import Ended
-from cellctl.processes.peg_in_hole.choice import ARC_TOUCHES, SearchName
-from cellctl.processes.peg_in_hole.parameters import touch_speed_m_s
+from cellctl.processes.peg_in_hole.plan.choice import ARC_TOUCHES, SearchName
+from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.search.circles import circle_through
 from cellctl.processes.peg_in_hole.search.edges import slide_to_edge
 from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, Felt, TouchProbe

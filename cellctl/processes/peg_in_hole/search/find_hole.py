@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from cellctl.processes.peg_in_hole.choice import SearchName
 from cellctl.processes.peg_in_hole.faults import HoleAbsent
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.search.arc import ArcSearch
 from cellctl.processes.peg_in_hole.search.particle_map import ParticleMap
 from cellctl.processes.peg_in_hole.search.patent import PatentCircumcentre, PatentMidpoint

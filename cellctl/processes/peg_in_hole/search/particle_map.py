@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 from cellctl.processes.peg_in_hole.search.tilted_touch import leaning, tilted_dip_m

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.search.circles import circle_through, turned
 from cellctl.processes.peg_in_hole.search.edges import Edge, slide_to_edge, stand_inside
 from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, TouchProbe

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
-from cellctl.processes.peg_in_hole.parameters import DETECTION_S, SearchParameters
+from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, SearchParameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.spirals import expanding_turns
-from cellctl.processes.peg_in_hole.task import SearchTask
 
 Array = NDArray[np.float64]
 

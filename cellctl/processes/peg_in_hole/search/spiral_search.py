@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, TouchProbe
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 

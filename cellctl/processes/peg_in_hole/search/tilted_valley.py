@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotion, ContactSample, Ended
-from cellctl.processes.peg_in_hole.choice import SearchName
-from cellctl.processes.peg_in_hole.parameters import DETECTION_S
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S
 from cellctl.processes.peg_in_hole.search.probe import Felt, Stop, TouchProbe
 from cellctl.processes.peg_in_hole.search.spirals import spiral_points
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy

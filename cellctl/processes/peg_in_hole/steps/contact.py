@@ -8,8 +8,8 @@ from cellctl.cell.by_touch.frames import ContactFrames
 from cellctl.cell.by_touch.opening import open_contact_loop
 from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import PegRun
-from cellctl.processes.peg_in_hole.tick_log import TickLog
 
 
 @asynccontextmanager

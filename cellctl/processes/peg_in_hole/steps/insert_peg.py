@@ -9,7 +9,6 @@ from cellctl.processes.peg_in_hole.cycle import (
     CycleResult,
     search_and_insert,
 )
-from cellctl.processes.peg_in_hole.face import TouchedFace
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.cycle import (
     record_cycle,
@@ -17,6 +16,7 @@ from cellctl.processes.peg_in_hole.record.cycle import (
     record_search,
 )
 from cellctl.processes.peg_in_hole.run import PegRun
+from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.state import FaceTouched, PegInserted
 from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
 from cellctl.processes.peg_in_hole.steps.contact import contact

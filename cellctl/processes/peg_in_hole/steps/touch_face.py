@@ -1,8 +1,8 @@
 """Step 20: the face is touched, and frame A put onto it."""
 
 from cellctl.geometry.pose import MM
-from cellctl.processes.peg_in_hole.face import touch_face
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.search.face import touch_face
 from cellctl.processes.peg_in_hole.state import AboveHole, FaceTouched
 from cellctl.processes.peg_in_hole.stations import on_face
 from cellctl.processes.peg_in_hole.steps.contact import contact

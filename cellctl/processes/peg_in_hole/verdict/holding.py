@@ -5,7 +5,7 @@ from math import radians
 import numpy as np
 
 from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
-from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
+from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0
 _TURN_RAD_S = radians(1.0)

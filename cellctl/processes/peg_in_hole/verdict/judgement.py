@@ -20,7 +20,7 @@ from cellctl.processes.peg_in_hole.faults import (
     PegSlipped,
     SensorDead,
 )
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 
 _MM = 1e-3

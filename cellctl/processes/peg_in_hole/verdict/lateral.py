@@ -3,7 +3,7 @@
 import numpy as np
 
 from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, Ended
-from cellctl.processes.peg_in_hole.task import CellFigures, SearchTask
+from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 
 _PRESS_N = 2.0

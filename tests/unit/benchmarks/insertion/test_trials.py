@@ -2,7 +2,7 @@ from dataclasses import replace
 
 from benchmarks.insertion.cases import CASES
 from benchmarks.insertion.trials import LIMIT_S, run_search
-from cellctl.processes.peg_in_hole.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 
 CHAMFERED = CASES[12].task
 

@@ -11,7 +11,7 @@ from cellctl.cell.by_touch.motions import Condition, ContactMotion, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
-from cellctl.processes.peg_in_hole.task import KeyGeometry, SearchTask
+from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 from cellctl.processes.peg_in_hole.verdict.holding import directions_that_resist_a_turn
 from tests.unit.processes.peg_in_hole.tasks import plug
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cellctl.force.contact.streamed.gains import LoopFigures
-from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
 from tests.unit.cell.by_touch.elastic_world import ElasticWorld, Hole, Part, contact, wall

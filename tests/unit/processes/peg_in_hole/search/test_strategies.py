@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.processes.peg_in_hole.choice import SearchName, choose_search
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, SearchGaveUp
-from cellctl.processes.peg_in_hole.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.choice import SearchName, choose_search
+from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
-from cellctl.processes.peg_in_hole.task import SearchTask
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 

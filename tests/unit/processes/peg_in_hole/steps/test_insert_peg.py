@@ -13,16 +13,16 @@ import pytest
 from cellctl.cell.by_touch.streamed_contact import StreamedContact
 from cellctl.errors.base import CellError
 from cellctl.force.contact.streamed.gains import LoopFigures
-from cellctl.processes.peg_in_hole.choice import SearchName, choose_search
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
-from cellctl.processes.peg_in_hole.face import FacePlan
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegWedged
+from cellctl.processes.peg_in_hole.plan.choice import SearchName, choose_search
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.report.pages import pages
 from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
+from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.state import FaceTouched
 from cellctl.processes.peg_in_hole.steps import insert_peg
-from cellctl.processes.peg_in_hole.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord

@@ -11,7 +11,7 @@ from cellctl.processes.peg_in_hole.faults import (
     PegSlipped,
     SensorDead,
 )
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 TASKS = (pin(), pin(0.1, chamfer_mm=0.5, stiffness_n_m=1e5), plug())

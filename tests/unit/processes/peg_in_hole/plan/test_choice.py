@@ -2,15 +2,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.processes.peg_in_hole.choice import (
+from cellctl.processes.peg_in_hole.faults import HeightTooNoisy, SearchImpossible
+from cellctl.processes.peg_in_hole.plan.choice import (
     SearchName,
     choose_search,
     estimate_searches,
     is_wide,
 )
-from cellctl.processes.peg_in_hole.faults import HeightTooNoisy, SearchImpossible
-from cellctl.processes.peg_in_hole.parameters import search_parameters, touch_speed_m_s
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.parameters import search_parameters, touch_speed_m_s
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 

@@ -9,10 +9,10 @@ from enum import StrEnum
 from math import pi
 from typing import Any
 
-from cellctl.processes.peg_in_hole.derived import Derived
 from cellctl.processes.peg_in_hole.faults import HeightTooNoisy, SearchImpossible
-from cellctl.processes.peg_in_hole.parameters import SearchParameters, search_parameters
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.derived import Derived
+from cellctl.processes.peg_in_hole.plan.parameters import SearchParameters, search_parameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 ARC_TOUCHES = 9
 """Touches along the outer face of a plug."""

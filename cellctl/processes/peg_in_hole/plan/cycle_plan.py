@@ -3,18 +3,18 @@
 from math import radians
 
 from cellctl.geometry.pose import MM
-from cellctl.processes.peg_in_hole.choice import choose_search
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
-from cellctl.processes.peg_in_hole.face import FacePlan
-from cellctl.processes.peg_in_hole.recipe import KeysSection, PegRecipe
-from cellctl.processes.peg_in_hole.settings import PegSettings
-from cellctl.processes.peg_in_hole.task import (
+from cellctl.processes.peg_in_hole.plan.choice import choose_search
+from cellctl.processes.peg_in_hole.plan.task import (
     CellFigures,
     FitGeometry,
     ForceLimits,
     KeyGeometry,
     SearchTask,
 )
+from cellctl.processes.peg_in_hole.recipe import KeysSection, PegRecipe
+from cellctl.processes.peg_in_hole.search.face import FacePlan
+from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 
 _MS = 1e-3

@@ -11,15 +11,15 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.load import load_cell
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.peg_in_hole.checks import recipe_issues
-from cellctl.processes.peg_in_hole.choice import SearchName
-from cellctl.processes.peg_in_hole.face import TouchedFace
-from cellctl.processes.peg_in_hole.planned import cycle_plan
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.run import PegFacts
+from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell, believed_frames, on_face, weight_of
 
-CELL = load_cell(Path(__file__).parents[4] / "config" / "insertion-pin.toml")
+CELL = load_cell(Path(__file__).parents[5] / "config" / "insertion-pin.toml")
 SETTINGS = cast(PegSettings, CELL.processes["peg-in-hole"])
 RECIPE = cast(PegRecipe, CELL.recipes[0])
 

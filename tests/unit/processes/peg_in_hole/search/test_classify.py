@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from benchmarks.insertion.traps import PegState, StandingPeg
-from cellctl.processes.peg_in_hole.classify import (
+from cellctl.processes.peg_in_hole.search.classify import (
     ContactClass,
     class_by_force,
     class_by_touches,

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from math import radians
 from typing import Any
 
-from cellctl.processes.peg_in_hole.derived import Derived
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.derived import Derived
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 DETECTION_S = 0.03
 """A lost or a new contact is believed after so long."""

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotions, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
-from cellctl.processes.peg_in_hole.parameters import touch_speed_m_s
-from cellctl.processes.peg_in_hole.task import SearchTask
+from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 Array = NDArray[np.float64]
 

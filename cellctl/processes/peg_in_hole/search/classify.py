@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
-from cellctl.processes.peg_in_hole.task import CellFigures, SearchTask
+from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 
 Array = NDArray[np.float64]
 
