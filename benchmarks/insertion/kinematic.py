@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import lfilter
 
-from cellctl.cell.by_touch.motions import (
+from cellctl.cell.contact_motion.motions import (
     Condition,
     ContactMotion,
     ContactMotions,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.cell.by_touch.motions import Condition, ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion, Ended
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSeatLimits, judge_peg

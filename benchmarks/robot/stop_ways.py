@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from cellctl.cell.permitted_robot import PermittedRobot
+from cellctl.cell.robot_layers.permitted_robot import PermittedRobot
 from cellctl.interfaces.robot import Robot
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel

@@ -1,6 +1,6 @@
 """The devices of one cell by name, and what can be done with them whatever the process is.
 
-``devices`` builds and connects them; ``guarded_moves`` runs moves under force limits; ``zones``
-keeps two arms out of one space; ``settling``, ``standstill`` and ``readiness`` say whether the
-cell is still, unmoved and ready.
+``devices`` builds and connects them; ``robot_layers`` and ``zones`` stand between a command and the
+driver of a robot. ``guarded_motion`` moves through free air under force limits, ``contact_motion``
+moves in contact. ``standstill`` and ``readiness`` say whether the cell is unmoved and ready.
 """

@@ -12,9 +12,9 @@ from cellctl.cell.driver_object import driver_object
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.lit_cameras import Lights
-from cellctl.cell.noted_robot import RobotNotes
-from cellctl.cell.permitted_robot import permitted
-from cellctl.cell.slowed_robot import MaintenancePace, slowed
+from cellctl.cell.robot_layers.noted_robot import RobotNotes
+from cellctl.cell.robot_layers.permitted_robot import permitted
+from cellctl.cell.robot_layers.slowed_robot import MaintenancePace, slowed
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.noted_robot import RobotNotes
+from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.zones.arbiter import ZoneArbiter
 from cellctl.cell.zones.zone import Share, Zone
 from cellctl.cell.zones.zoned_robot import ZonedRobot

@@ -26,7 +26,7 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell import settling
+from cellctl.cell.guarded_motion import settling
 from cellctl.processes.deck_to_frame.faults import MatingOverforce
 from cellctl.errors.link import LinkLost
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition

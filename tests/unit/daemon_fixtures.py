@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.cell import settling
+from cellctl.cell.guarded_motion import settling
 from tests.unit.cell.bench import Bench, make_bench
 from tests.unit.daemon_rig import DaemonRig
 

@@ -5,7 +5,7 @@ from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
+from cellctl.cell.robot_layers.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.cell.zones.arbiter import REPORT_AGE_S, ZoneArbiter
 from cellctl.cell.zones.ways import Way, joint_way, linear_way, stream_way
 from cellctl.cell.zones.zone import zones_of

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.free_moves import move_joint_free
-from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.free_moves import move_joint_free
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.stations import AntennaCell

@@ -5,7 +5,7 @@ from functools import partial
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s

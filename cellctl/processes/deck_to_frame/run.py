@@ -6,8 +6,8 @@ from typing import Self
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder

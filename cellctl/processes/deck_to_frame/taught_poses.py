@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cellctl.cell.free_moves import move_joint_free
 from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.config.via_points import has_way, via_points
 from cellctl.geometry.pose import Array

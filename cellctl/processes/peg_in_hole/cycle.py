@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Self
 
-from cellctl.cell.by_touch.motions import ContactMotions
+from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
 from cellctl.processes.peg_in_hole.plan.task import SearchTask

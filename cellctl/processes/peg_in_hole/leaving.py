@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.free_moves import move_joint_free
-from cellctl.cell.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.free_moves import move_joint_free
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import HOME

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Self
 
-from cellctl.cell.by_touch.settings import ContactSettings
+from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.cycle import CyclePlan

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from cellctl.cell.by_touch.frames import ContactFrames
+from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.processes.peg_in_hole.cycle import CycleResult
 from cellctl.processes.peg_in_hole.run import PegRun
 

@@ -6,7 +6,7 @@ from typing import cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.cell.by_touch.frames import ContactFrames
+from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.cell import CellConfig

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
-from cellctl.cell.guard_port import GuardPort
-from cellctl.cell.noted_robot import RobotNote, RobotNotes
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.robot_layers.noted_robot import RobotNote, RobotNotes
 from cellctl.clock import now_s, utc_now
 from cellctl.errors import CellError
 from cellctl.geometry.pose import Array

@@ -12,8 +12,8 @@ from cellctl.calibration.payload import IdentifiedPayload
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
-from cellctl.cell.noted_robot import RobotNotes
-from cellctl.cell.slowed_robot import MaintenancePace
+from cellctl.cell.robot_layers.noted_robot import RobotNotes
+from cellctl.cell.robot_layers.slowed_robot import MaintenancePace
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell

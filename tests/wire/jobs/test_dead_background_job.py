@@ -7,7 +7,7 @@ from collections.abc import AsyncIterator
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.permitted_robot import PermittedRobot
+from cellctl.cell.robot_layers.permitted_robot import PermittedRobot
 from cellctl.errors.link import LinkLost
 from cellctl.interfaces import Robot, RobotState
 from tests.wire.jobs.job_rig import JobRig, job_rig

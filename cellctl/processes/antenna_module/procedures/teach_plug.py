@@ -9,7 +9,7 @@ import asyncio
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.processes.antenna_module.calibrations import TOOL
 from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
 from cellctl.processes.antenna_module.procedures.by_hand import jogged_by_hand

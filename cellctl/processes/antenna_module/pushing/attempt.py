@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_limits import Sensing, guard_limits
-from cellctl.cell.guard_port import GuardPort
-from cellctl.cell.guarded_moves import Motion, guarded
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guarded_moves import Motion, guarded
 from cellctl.clock import now_s
 from cellctl.errors.force import SensorFrozen, SensorSilent
 from cellctl.geometry.pose import Array

@@ -1,8 +1,8 @@
 """Straight out of the socket after a fault; a plug that is held stops the arm."""
 
 from cellctl import log
-from cellctl.cell.guard_limits import guard_limits
-from cellctl.cell.leaving import able_to_leave
+from cellctl.cell.guarded_motion.guard_limits import guard_limits
+from cellctl.cell.guarded_motion.leaving import able_to_leave
 from cellctl.errors.base import CellError
 from cellctl.errors.force import ForceError, LiftOffHeld
 from cellctl.errors.line import LineLostInContact

@@ -2,7 +2,7 @@
 
 from collections import deque
 
-from cellctl.cell.guarded_moves import Motion
+from cellctl.cell.guarded_motion.guarded_moves import Motion
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import MM
 from cellctl.guard.report import GuardTrip

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_limits import Sensing
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_limits import Sensing
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch

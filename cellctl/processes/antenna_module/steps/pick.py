@@ -4,7 +4,7 @@ import asyncio
 
 import numpy as np
 
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import WrongModuleMass

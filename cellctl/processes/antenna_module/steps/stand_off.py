@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.errors.force import TareImplausible
 from cellctl.geometry.pose import MM

@@ -11,9 +11,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_port import GuardPort
-from cellctl.cell.guarded_moves import Motion, guarded
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guarded_moves import Motion, guarded
 from cellctl.errors.force import SensorFrozen, SensorSilent
 from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
 from cellctl.geometry.pose import Array

@@ -2,7 +2,7 @@
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.guarded_moves import Motion
+from cellctl.cell.guarded_motion.guarded_moves import Motion
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.approach import advance
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.errors.force import CommissioningFailed
 from cellctl.force.contact.commissioning import StiffnessEstimate, joint_stiffness
 from cellctl.interfaces import Robot

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.cell.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import Array
 from cellctl.guard.limits import CusumTouch, GuardLimits

@@ -3,8 +3,8 @@
 from collections.abc import Awaitable, Callable
 
 from cellctl import log
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.errors.base import CellError
 from cellctl.force.contact.commissioning import StiffnessEstimate
 from cellctl.force.contact.curve import curve_statistics

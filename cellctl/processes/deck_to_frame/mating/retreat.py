@@ -1,7 +1,7 @@
 """After a fault of the mating: stops the arm and, where that is right, backs off from the frame."""
 
 from cellctl import log
-from cellctl.cell.leaving import able_to_leave
+from cellctl.cell.guarded_motion.leaving import able_to_leave
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
     ForceError,

@@ -10,7 +10,7 @@ from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
-from cellctl.cell.free_moves import free_tolerance, guarded_section
+from cellctl.cell.guarded_motion.free_moves import free_tolerance, guarded_section
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.config.robot_drivers import first_link_mm
 from cellctl.geometry.pose import MM

@@ -1,6 +1,6 @@
 """Step 20: measure how the gripper holds the deck (paper 2.1.3, eq. 4)."""
 
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange

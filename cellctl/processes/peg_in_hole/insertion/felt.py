@@ -9,7 +9,7 @@ from math import hypot
 
 import numpy as np
 
-from cellctl.cell.by_touch.motions import ContactSample
+from cellctl.cell.contact_motion.motions import ContactSample
 
 _OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""

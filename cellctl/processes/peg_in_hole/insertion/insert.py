@@ -5,7 +5,7 @@ A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the study of 
 
 from dataclasses import dataclass
 
-from cellctl.cell.by_touch.motions import (
+from cellctl.cell.contact_motion.motions import (
     ContactMotion,
     ContactMotions,
     ContactSample,

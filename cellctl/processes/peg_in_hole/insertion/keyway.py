@@ -7,7 +7,7 @@ from math import radians
 
 import numpy as np
 
-from cellctl.cell.by_touch.motions import Condition, ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from cellctl.cell.by_touch.motions import ContactMotions
+from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.insertion.felt import Standing
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry

@@ -4,8 +4,8 @@ import numpy as np
 
 from cellctl import log
 from cellctl.calibration.checks import all_passed
-from cellctl.cell.by_touch.commissioning import CommissionedLoop, commission_contact
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.commissioning import CommissionedLoop, commission_contact
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.calibrations import CONTACT_LOOP
 from cellctl.processes.peg_in_hole.leaving import leave_hole
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan

@@ -4,7 +4,7 @@ import numpy as np
 
 from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
-from cellctl.cell.by_touch.commissioning import CommissionedLoop
+from cellctl.cell.contact_motion.commissioning import CommissionedLoop
 from cellctl.geometry.pose import MM
 from cellctl.plot_style import style
 

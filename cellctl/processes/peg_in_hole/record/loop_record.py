@@ -9,7 +9,7 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.settings import DEAD_TIME_MS, STIFFNESS_N_MM, PegSettings
 
 if TYPE_CHECKING:
-    from cellctl.cell.by_touch.commissioning import CommissionedLoop
+    from cellctl.cell.contact_motion.commissioning import CommissionedLoop
 
 SIGMA_PERCENT = 10.0
 HYSTERESIS_MM = 0.02

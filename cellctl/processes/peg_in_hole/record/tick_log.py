@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cellctl.cell.by_touch.ticks import ContactTick, TickObserver
+from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
 from cellctl.geometry.pose import Array
 
 COLUMNS = (

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import Ended
+from cellctl.cell.contact_motion.motions import Ended
 from cellctl.processes.peg_in_hole.plan.choice import ARC_TOUCHES, SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.search.circles import circle_through

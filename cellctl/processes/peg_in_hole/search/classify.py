@@ -11,7 +11,7 @@ from math import atan, radians, tan
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import Ended
+from cellctl.cell.contact_motion.motions import Ended
 from cellctl.processes.peg_in_hole.search.probe import (
     UPRIGHT,
     Felt,

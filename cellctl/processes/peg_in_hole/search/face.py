@@ -10,7 +10,7 @@ from math import radians
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import ContactMotions, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask

@@ -7,7 +7,7 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, SearchParameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask

@@ -9,7 +9,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.by_touch.motions import ContactMotion, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S
 from cellctl.processes.peg_in_hole.search.probe import Felt, Stop, TouchProbe

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cellctl.cell.free_moves import move_joint_free
-from cellctl.cell.settling import settle
+from cellctl.cell.guarded_motion.free_moves import move_joint_free
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.processes.peg_in_hole.roles import ABOVE_HOLE
 from cellctl.processes.peg_in_hole.state import AboveHole, AtHome
 from cellctl.processes.peg_in_hole.stations import believed_frames

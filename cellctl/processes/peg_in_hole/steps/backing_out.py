@@ -1,6 +1,6 @@
 """What becomes of the peg where a cycle fails: drawn out, or left where it stands."""
 
-from cellctl.cell.by_touch.motions import ContactMotions, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, Ended
 from cellctl.errors.base import CellError
 from cellctl.errors.streamed_contact import AdmittanceSaturated, ContactLost
 from cellctl.processes.peg_in_hole.faults import ByTouchError

@@ -3,10 +3,10 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.frames import ContactFrames
-from cellctl.cell.by_touch.opening import open_contact_loop
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.opening import open_contact_loop
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import PegRun

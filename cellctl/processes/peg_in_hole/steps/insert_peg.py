@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.cycle import (
     CycleLog,

@@ -4,7 +4,7 @@ from math import radians
 
 import numpy as np
 
-from cellctl.cell.by_touch.motions import ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0

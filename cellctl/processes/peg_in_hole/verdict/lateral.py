@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.cell.by_touch.motions import ContactMotion, ContactMotions, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, Ended
 from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 

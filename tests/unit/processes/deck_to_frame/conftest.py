@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.cell import settling
+from cellctl.cell.guarded_motion import settling
 from tests.unit.cell.bench import Bench, make_bench
 from tests.unit.processes.deck_to_frame.rig import RunRig
 

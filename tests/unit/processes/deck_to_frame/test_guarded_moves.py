@@ -13,7 +13,7 @@ from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.simulated_loop import run_simulated
 from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.cell.devices import Cell
-from cellctl.cell.free_moves import move_joint_free
+from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded

@@ -8,7 +8,7 @@ import pytest
 from benchmarks.mating.cell import MatingCell
 from benchmarks.mating.simulated_loop import run_simulated
 from benchmarks.mating.trial import nominal_settings, plan_for
-from cellctl.cell.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M, lift_off

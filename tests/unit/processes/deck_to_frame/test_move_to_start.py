@@ -134,7 +134,7 @@ async def test_a_guard_that_cannot_watch_keeps_the_deck_where_it_is(
     bench.cell.guard.faults["arm"] = GuardRefused("no fresh samples")
     with pytest.raises(GuardRefused):
         await lift_off(bench.deck)
-    monkeypatch.setattr("cellctl.cell.settling.TIMEOUT_S", 0.01)
+    monkeypatch.setattr("cellctl.cell.guarded_motion.settling.TIMEOUT_S", 0.01)
     bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
     with pytest.raises(NotSettled):
         await lift_off(bench.deck)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
 from cellctl.errors.base import CellError
 from cellctl.errors.force import (
     FlangePoseStale,

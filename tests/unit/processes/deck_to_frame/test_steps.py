@@ -78,7 +78,7 @@ async def test_a_deck_that_slipped_is_refused(rig: RunRig) -> None:
 async def test_a_swinging_deck_is_not_measured(
     rig: RunRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cellctl.cell.settling.TIMEOUT_S", 0.01)
+    monkeypatch.setattr("cellctl.cell.guarded_motion.settling.TIMEOUT_S", 0.01)
     rig.bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
     frame = await measure_frame(rig.ready())
     with pytest.raises(NotSettled):

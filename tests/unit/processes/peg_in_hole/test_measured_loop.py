@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from cellctl.calibration.checks import all_passed
 from cellctl.calibration.store.envelope import StoredCalibration, write_stored
 from cellctl.calibration.store.store import CalibrationStore
-from cellctl.cell.by_touch.commissioning import CommissionedLoop, StepAnswer
+from cellctl.cell.contact_motion.commissioning import CommissionedLoop, StepAnswer
 from cellctl.clock import utc_now
 from cellctl.config.load import load_cell
 from cellctl.errors.calibration import CalibrationRecordInvalid

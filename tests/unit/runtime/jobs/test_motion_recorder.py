@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.cell.noted_robot import NotedRobot
+from cellctl.cell.robot_layers.noted_robot import NotedRobot
 from cellctl.errors.link import LinkLost
 from cellctl.packml.state import State
 from cellctl.records import motion_file

@@ -9,9 +9,9 @@ from typing import Any, cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.cell.contact_recorder import ContactRecorder
-from cellctl.cell.guard_limits import Sensing
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.cell.guarded_motion.guard_limits import Sensing
+from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.clock import now_s
 from cellctl.errors.robot import MotionAborted
 from cellctl.guard.health import GuardHealth

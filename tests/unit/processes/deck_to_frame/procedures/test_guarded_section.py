@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.cell.free_moves import free_tolerance, guarded_section
+from cellctl.cell.guarded_motion.free_moves import free_tolerance, guarded_section
 from cellctl.errors.base import CellError
 from cellctl.guard.report import TareResult
 from cellctl.runtime.steps import HeldMeanwhile

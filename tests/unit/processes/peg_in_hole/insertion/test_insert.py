@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.cell.by_touch.motions import Condition, ContactMotion, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.cell.by_touch.motions import Condition, ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.cell.by_touch.motions import ContactSample
-from cellctl.cell.by_touch.ticks import ContactTick
+from cellctl.cell.contact_motion.motions import ContactSample
+from cellctl.cell.contact_motion.ticks import ContactTick
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.processes.peg_in_hole.record.tick_log import COLUMNS, TickLog, read_ticks
 from cellctl.processes.peg_in_hole.report.drawings import insertion_picture, search_picture

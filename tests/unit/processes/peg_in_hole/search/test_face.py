@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.cell.by_touch.motions import ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
 from tests.unit.processes.peg_in_hole.tasks import pin

@@ -9,7 +9,7 @@ from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
-from tests.unit.cell.by_touch.elastic_world import ElasticWorld, Hole, Part, contact, wall
+from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, Hole, Part, contact, wall
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 CLEARANCE_M = 0.05e-3

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from cellctl.cell.by_touch.motions import ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import StreamNotOffered
 from cellctl.errors.streamed_contact import AdmittanceSaturated, ContactLost, StreamLate

@@ -10,7 +10,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.errors.base import CellError
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
@@ -29,7 +29,14 @@ from cellctl.records.entries import RunRecord
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
-from tests.unit.cell.by_touch.elastic_world import FRAMES, ElasticWorld, Hole, Part, contact, wall
+from tests.unit.cell.contact_motion.elastic_world import (
+    FRAMES,
+    ElasticWorld,
+    Hole,
+    Part,
+    contact,
+    wall,
+)
 from tests.unit.processes.peg_in_hole.tasks import pin
 from tests.unit.records.conftest import start
 

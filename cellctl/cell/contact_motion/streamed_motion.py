@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.frames import displaced
-from cellctl.cell.by_touch.motions import ContactMotion, ContactSample, Ended
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import displaced
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.errors.streamed_contact import AdmittanceSaturated, ContactLost
 from cellctl.force.contact.streamed.admittance import Admittance, PushRamp
 from cellctl.force.contact.streamed.path import PathFollower

@@ -7,7 +7,7 @@ from typing import Any
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
+from cellctl.cell.robot_layers.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, StreamLimits

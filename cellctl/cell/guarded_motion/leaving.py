@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.interfaces import Robot
 
 

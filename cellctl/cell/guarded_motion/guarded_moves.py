@@ -9,10 +9,10 @@ from typing import Any
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.guard_limits import Sensing, guard_limits
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.cell.settling import settle
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.guard.limits import Six

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from cellctl.cell.guarded_moves import guarded
+from cellctl.cell.guarded_motion.guarded_moves import guarded
 from cellctl.errors.robot import MotionAborted
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode

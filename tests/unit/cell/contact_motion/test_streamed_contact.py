@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellctl.cell.by_touch.motions import ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.errors.streamed_contact import ContactLost, StreamLate
 from cellctl.force.contact.streamed.gains import LoopFigures
-from tests.unit.cell.by_touch.elastic_world import ElasticWorld, Hole, Ticks, contact, wall
+from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, Hole, Ticks, contact, wall
 
 DOWN = np.array([0.0, 0.0, 1.0])
 UPRIGHT = np.zeros(3)

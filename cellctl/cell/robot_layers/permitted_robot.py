@@ -14,7 +14,7 @@ from contextlib import asynccontextmanager
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
+from cellctl.cell.robot_layers.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
 from cellctl.errors.link import LinkError

@@ -8,11 +8,11 @@ from typing import cast
 import numpy as np
 import pytest
 
-from cellctl.cell.by_touch.motions import Ended
-from cellctl.cell.by_touch.opening import streamed_contact, watch_closer
-from cellctl.cell.by_touch.settings import ContactSettings
+from cellctl.cell.contact_motion.motions import Ended
+from cellctl.cell.contact_motion.opening import streamed_contact, watch_closer
+from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.cell.devices import Cell
-from cellctl.cell.guarded_moves import WrenchTolerance
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.load import load_cell
 from cellctl.errors.robot import StreamNotOffered
@@ -23,7 +23,7 @@ from cellctl.interfaces import Robot
 from tests.contracts.inprocess.robot import InProcessRobot
 from tests.contracts.inprocess.streaming_robot import OFFER, InProcessStreamingRobot
 from tests.unit.cell.bench import CELL_FILE
-from tests.unit.cell.by_touch.elastic_world import FRAMES
+from tests.unit.cell.contact_motion.elastic_world import FRAMES
 from tests.unit.cell.guard import TinyGuard
 
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.frames import ContactFrames
-from cellctl.cell.by_touch.settings import ContactSettings
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
-from cellctl.cell.by_touch.ticks import ContactTick, TickObserver
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.settings import ContactSettings
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport

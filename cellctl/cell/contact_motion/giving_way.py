@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.streamed_motion import Press
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.streamed_motion import Press
 from cellctl.force.contact.streamed.admittance import (
     Admittance,
     AdmittanceBounds,

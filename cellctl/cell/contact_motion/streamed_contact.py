@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.giving_way import (
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.giving_way import (
     TILT_X,
     TILT_Y,
     YAW,
@@ -18,7 +18,7 @@ from cellctl.cell.by_touch.giving_way import (
     fastest_rad_s,
     giving_way,
 )
-from cellctl.cell.by_touch.motions import (
+from cellctl.cell.contact_motion.motions import (
     Condition,
     ContactMotion,
     ContactMotions,
@@ -26,8 +26,8 @@ from cellctl.cell.by_touch.motions import (
     Ended,
     Vector,
 )
-from cellctl.cell.by_touch.stalled_feed import StalledFeed
-from cellctl.cell.by_touch.streamed_motion import Press, StreamedMotion
+from cellctl.cell.contact_motion.stalled_feed import StalledFeed
+from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
 from cellctl.force.contact.streamed.path import PathFollower, straight
 from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import Array

@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.errors.base import CellError
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array

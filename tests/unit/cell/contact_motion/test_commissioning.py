@@ -5,10 +5,10 @@ import asyncio
 import numpy as np
 import pytest
 
-from cellctl.cell.by_touch.commissioning import commission_contact
+from cellctl.cell.contact_motion.commissioning import commission_contact
 from cellctl.errors.streamed_contact import LoopFitRefused
 from cellctl.force.contact.streamed.gains import LoopFigures
-from tests.unit.cell.by_touch.elastic_world import ElasticWorld, contact_loop, wall
+from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, contact_loop, wall
 
 START = np.array([0.0, 0.0, -0.06e-3, 0.0, 0.0, 0.0])
 FREE_M = 0.05e-3

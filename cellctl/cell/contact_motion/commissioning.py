@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.motions import ContactSample, Ended
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.motions import ContactSample, Ended
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.errors.streamed_contact import LoopFitRefused
 from cellctl.force.contact.streamed.admittance import (
     Admittance,

@@ -1,6 +1,6 @@
 """Speed of a feed into the hole, and when the force has stopped it."""
 
-from cellctl.cell.by_touch.motions import ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactSample, Ended
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.force.contact.streamed.speeds import FEED_N, feed_override, touch_speed_m_s
 

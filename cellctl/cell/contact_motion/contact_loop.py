@@ -4,13 +4,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cellctl.cell.by_touch.frames import ContactFrames
-from cellctl.cell.by_touch.motions import ContactSample
-from cellctl.cell.by_touch.settings import ContactSettings
-from cellctl.cell.by_touch.ticks import ContactTick, TickObserver
-from cellctl.cell.by_touch.trail import Trail
-from cellctl.cell.guard_port import GuardPort
-from cellctl.cell.guarded_moves import late_trip
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.motions import ContactSample
+from cellctl.cell.contact_motion.settings import ContactSettings
+from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
+from cellctl.cell.contact_motion.trail import Trail
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guarded_moves import late_trip
 from cellctl.clock import now_s
 from cellctl.errors.robot import MotionAborted
 from cellctl.force.contact.streamed.ticks import Pace, TickRules

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
-from cellctl.cell.by_touch.motions import ContactSample
+from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.geometry.pose import Array
 

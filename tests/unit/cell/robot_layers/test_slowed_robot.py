@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.slowed_robot import MaintenancePace, SlowedRobot, SlowedStreamingRobot
+from cellctl.cell.robot_layers.slowed_robot import (
+    MaintenancePace,
+    SlowedRobot,
+    SlowedStreamingRobot,
+)
 from cellctl.config import load_cell
 from cellctl.config.between.robots import robot_issues
 from cellctl.config.devices import MaintenanceSpeeds

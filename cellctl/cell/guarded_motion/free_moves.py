@@ -7,10 +7,10 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.guard_limits import Sensing, guard_limits
-from cellctl.cell.guarded_moves import TARE_S, WrenchTolerance, guarded
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guarded_moves import TARE_S, WrenchTolerance, guarded
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.cell.settling import settle
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import Array
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchmarks.mating.simulated_loop import run_simulated
-from cellctl.cell.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
+from cellctl.cell.guarded_motion.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
 from cellctl.errors.force import GuardDied, NotSettled, SensorFrozen
 from cellctl.guard.client import GuardClient
 from cellctl.guard.report import GuardSamples

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.robot_layer import RobotLayer, StreamingRobotLayer
+from cellctl.cell.robot_layers.robot_layer import RobotLayer, StreamingRobotLayer
 from cellctl.config import CellConfig
 from cellctl.config.devices import MaintenanceSpeeds
 from cellctl.errors.robot import TargetOutOfBounds

@@ -3,16 +3,16 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from cellctl.cell.by_touch.contact_loop import ContactLoop
-from cellctl.cell.by_touch.frames import ContactFrames
-from cellctl.cell.by_touch.settings import ContactSettings
-from cellctl.cell.by_touch.streamed_contact import StreamedContact
-from cellctl.cell.by_touch.ticks import NoObserver, TickObserver
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.settings import ContactSettings
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.ticks import NoObserver, TickObserver
 from cellctl.cell.devices import Cell
-from cellctl.cell.guard_limits import Sensing, guard_limits
-from cellctl.cell.guarded_moves import TARE_S, WrenchTolerance
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guarded_moves import TARE_S, WrenchTolerance
+from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.cell.settling import settle
 from cellctl.errors.robot import StreamNotOffered
 from cellctl.interfaces.streaming_robot import StreamingRobot, StreamLimits
 

@@ -11,7 +11,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.permitted_robot import PermittedRobot, PermittedStreamingRobot
+from cellctl.cell.robot_layers.permitted_robot import PermittedRobot, PermittedStreamingRobot
 from cellctl.config import CellConfig
 from cellctl.config.cross_checks import cross_issues
 from cellctl.errors.base import CellError
