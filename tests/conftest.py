@@ -12,7 +12,7 @@ _WHOLE_CELLS = Path(__file__).parent / "cell"
 _SHARED_IMAGES = (
     "tests/unit/vision/",
     "tests/unit/calibration/",
-    "tests/unit/cli/test_calibrate.py",
+    "tests/unit/cli/offline/test_calibrate.py",
 )
 _SHARED_MATING = ("tests/unit/processes/deck_to_frame/test_mate.py",)
 

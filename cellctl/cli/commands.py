@@ -128,25 +128,25 @@ def _focus(app: typer.Typer) -> None:
 
 
 def _runs(app: typer.Typer) -> None:
-    from cellctl.cli import runs
+    from cellctl.cli.records import runs
 
     app.add_typer(runs.app, name="runs", rich_help_panel=_RECORDS)
 
 
 def _calibrations(app: typer.Typer) -> None:
-    from cellctl.cli import calibrations
+    from cellctl.cli.records import calibrations
 
     app.add_typer(calibrations.app, name="calibrations", rich_help_panel=_RECORDS)
 
 
 def _replay(app: typer.Typer) -> None:
-    from cellctl.cli.replay import replay
+    from cellctl.cli.records.replay import replay
 
     app.command("replay", rich_help_panel=_RECORDS)(replay)
 
 
 def _audit(app: typer.Typer) -> None:
-    from cellctl.cli.audit import audit
+    from cellctl.cli.records.audit import audit
 
     app.command("audit", rich_help_panel=_RECORDS)(audit)
 

@@ -5,7 +5,7 @@ import asyncio
 from cellctl.errors import CellError
 from cellctl.errors.records import RecordSilent
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.disk_space import require_writable
+from cellctl.records.files.disk_space import require_writable
 from cellctl.records.store import RunStore
 from cellctl.runtime.unit import UnitController
 

@@ -8,7 +8,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from cellctl import log
 from cellctl.errors.records import RecordNotWritten, RecordsError
-from cellctl.records.raw_images import (
+from cellctl.records.files.raw_images import (
     MEDIA_TYPE,
     GreyImage,
     coding_thread,

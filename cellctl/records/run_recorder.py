@@ -21,7 +21,7 @@ from cellctl.records.entries import (
     RunDetail,
 )
 from cellctl.records.figures import NO_LIMIT, Limit, figure
-from cellctl.records.raw_images import GreyImage
+from cellctl.records.files.raw_images import GreyImage
 from cellctl.records.store import RunStore
 
 EXPOSURES = "images.exposures"

@@ -13,7 +13,6 @@ from sqlalchemy import select
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
-from cellctl.records.artefacts import ArtefactFolder
 from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.sessions import Database
 from cellctl.records.entries import (
@@ -25,6 +24,7 @@ from cellctl.records.entries import (
     RunRecord,
     RunResult,
 )
+from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead

@@ -50,7 +50,7 @@ from cellctl.processes.deck_to_frame.steps.pre_assembly import pre_assembly
 from cellctl.processes.deck_to_frame.steps.verify import verify
 from cellctl.records.async_store import Archive
 from cellctl.records.entries import RunResult
-from cellctl.records.curve_file import MEDIA_TYPE, encode_curve
+from cellctl.records.files.curve_file import MEDIA_TYPE, encode_curve
 from cellctl.records.report import export_run
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard

@@ -24,10 +24,10 @@ from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
 from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
-from cellctl.cli.invalidate import invalidate
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
-from cellctl.cli.seal_calibrations import seal
+from cellctl.cli.offline.invalidate import invalidate
+from cellctl.cli.offline.seal_calibrations import seal
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose

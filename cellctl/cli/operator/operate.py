@@ -150,7 +150,7 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
 def _show_result(report: StatusReport, *, dry_run: bool) -> None:
     """What `cellctl runs show` says of the run; raises ``CommandMissedItsGoal`` if not good."""
     # Only a run that is shown needs the run store and what it loads.
-    from cellctl.cli.runs import show
+    from cellctl.cli.records.runs import show
 
     if report.last_run is not None:
         try:

@@ -37,10 +37,10 @@ from cellctl.processes.deck_to_frame.record.keys import (
     MEASURED_FROM,
 )
 from cellctl.processes.deck_to_frame.record.sources import IMAGES_PER_FRAME, predicted_pose
-from cellctl.records.curve_file import is_curve, read_recording
 from cellctl.records.entries import Calibration, PoseOrigin, RecordedPose, RunRecord
 from cellctl.records.figures import split_document
-from cellctl.records.raw_images import decode
+from cellctl.records.files.curve_file import is_curve, read_recording
+from cellctl.records.files.raw_images import decode
 from cellctl.records.replayed import Replayed, compare
 from cellctl.records.report.sections import ReadArtefact
 from cellctl.vision.features.feature_file import FeatureFile, parse_features

@@ -8,7 +8,6 @@ from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
 from cellctl.errors.records import ArtefactDamaged
-from cellctl.records.artefacts import ArtefactFolder
 from cellctl.records.database import schema_1
 from cellctl.records.database.rows import existing_run, to_entry
 from cellctl.records.database.schema import (
@@ -38,6 +37,7 @@ from cellctl.records.entries import (
     RunHead,
     RunRecord,
 )
+from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.seals import Seal
 from cellctl.records.trend import Sample
 

@@ -9,8 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.records import RecordNotWritten, ValueRefused
-from cellctl.records.artefacts import CELL_FILE
 from cellctl.records.entries import RunRecord
+from cellctl.records.files.artefacts import CELL_FILE
 from cellctl.records.gauges import part_verdict
 from cellctl.records.report.pdf import to_pdf
 from cellctl.records.report.render import render

@@ -11,7 +11,7 @@ from cellctl.clock import now_s, utc_now
 from cellctl.errors import CellError
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, RobotState
-from cellctl.records.motion_file import MotionWriter
+from cellctl.records.files.motion_file import MotionWriter
 
 POLL_S = 0.02
 """Controllers report every 20 ms."""
@@ -53,7 +53,7 @@ class MotionRecorder:
         return self
 
     async def finish(self) -> bytes:
-        """End and return the recording, see ``cellctl.records.motion_file``."""
+        """End and return the recording, see ``cellctl.records.files.motion_file``."""
         self._notes.listeners.remove(self._noted)
         if self._task is not None:
             self._task.cancel()

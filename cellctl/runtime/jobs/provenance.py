@@ -9,7 +9,7 @@ from typing import Any
 from cellctl.config import CellConfig
 from cellctl.config.recipe import Recipe
 from cellctl.errors.vision import FeatureFileInvalid
-from cellctl.records.artefacts import CELL_FILE
+from cellctl.records.files.artefacts import CELL_FILE
 
 
 @dataclass(frozen=True, slots=True)

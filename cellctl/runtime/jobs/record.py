@@ -12,11 +12,11 @@ from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.records import RecordsError, RecordSilent
 from cellctl.packml.unit_command import UnitCommand
-from cellctl.records import motion_file
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.disk_space import require_space
 from cellctl.records.entries import Document, RunResult
-from cellctl.records.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
+from cellctl.records.files import motion_file
+from cellctl.records.files.disk_space import require_space
+from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder

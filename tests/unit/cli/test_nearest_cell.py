@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli import nearest_cell
 from cellctl.cli.nearest_cell import nearest_socket, nearest_store
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunStore
 from tests.unit.records.sample import good_run

@@ -9,7 +9,7 @@ from cellctl.daemon import disk_watch
 from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.errors.records import RecordNotWritten, RecordSilent
 from cellctl.packml.state import State
-from cellctl.records import disk_space
+from cellctl.records.files import disk_space
 from cellctl.records.store import RunStore
 from tests.unit.daemon_rig import DaemonRig
 

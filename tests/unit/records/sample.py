@@ -8,7 +8,6 @@ import numpy as np
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
-from cellctl.records.curve_file import encode_curve
 from cellctl.records.entries import (
     Document,
     LoopPass,
@@ -17,7 +16,8 @@ from cellctl.records.entries import (
     RecordedPose,
 )
 from cellctl.records.figures import Limit, figure
-from cellctl.records.mcap_reading import MEDIA_TYPE
+from cellctl.records.files.curve_file import encode_curve
+from cellctl.records.files.mcap_reading import MEDIA_TYPE
 
 PROCESS = "deck-to-frame"
 THRESHOLD = (0.05, 0.05, 0.05, 0.005, 0.005, 0.005)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.errors.records import GaugeRefused
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import Document

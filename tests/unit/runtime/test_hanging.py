@@ -14,7 +14,7 @@ from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.records import disk_space
+from cellctl.records.files import disk_space
 from cellctl.records.store import RunStore
 from cellctl.runtime import unit
 from cellctl.runtime.jobs import record as job_record

@@ -21,7 +21,7 @@ from cellctl.processes.deck_to_frame.poses.part_measurer import (
     PartMeasurement,
     deck_in_frame,
 )
-from cellctl.records.raw_images import MEDIA_TYPE
+from cellctl.records.files.raw_images import MEDIA_TYPE
 from cellctl.records.store import RunStore
 from cellctl.vision.features.feature_file import FeatureFile
 from cellctl.vision.registration.part_pose import PartPose

@@ -9,8 +9,8 @@ from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE, TARGET_FORCE
 from cellctl.processes.deck_to_frame.report.force_plot import force_by_time, force_by_travel
-from cellctl.records.curve_file import Recording, is_curve, read_recording
 from cellctl.records.entries import RunRecord
+from cellctl.records.files.curve_file import Recording, is_curve, read_recording
 from cellctl.records.report.sections import (
     Drawing,
     FactList,

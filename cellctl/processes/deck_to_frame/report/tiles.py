@@ -9,8 +9,8 @@ from cellctl.processes.deck_to_frame.record.keys import (
     SEAT_ROTATION,
 )
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM
-from cellctl.records.curve_file import Recording
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunRecord, Verdict
+from cellctl.records.files.curve_file import Recording
 from cellctl.records.report.sections import Tile
 from cellctl.records.report.text import decimals, fixed, number, with_unit
 

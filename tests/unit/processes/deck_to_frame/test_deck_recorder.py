@@ -14,8 +14,8 @@ from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.processes.deck_to_frame.deck_recorder import draw
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.record.entries import rms_um
-from cellctl.records.curve_file import read_recording
 from cellctl.records.entries import PoseOrigin, Verdict
+from cellctl.records.files.curve_file import read_recording
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.picture import INSET_PX
 from tests.unit.cell.bench import SIGMA, measurement

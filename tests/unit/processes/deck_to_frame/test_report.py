@@ -22,9 +22,9 @@ from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.records import RunStore
-from cellctl.records.curve_file import encode_curve
 from cellctl.records.entries import Document, Gauge
-from cellctl.records.mcap_reading import MEDIA_TYPE
+from cellctl.records.files.curve_file import encode_curve
+from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start

@@ -13,7 +13,7 @@ import pytest
 from pypdf import PdfReader
 from typer.testing import CliRunner
 
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.errors.records import PdfNotMade
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.records import RunStore

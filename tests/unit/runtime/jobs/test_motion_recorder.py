@@ -9,8 +9,8 @@ import pytest
 from cellctl.cell.robot_layers.noted_robot import NotedRobot
 from cellctl.errors.link import LinkLost
 from cellctl.packml.state import State
-from cellctl.records import motion_file
-from cellctl.records.mcap_reading import McapContent, read_mcap
+from cellctl.records.files import motion_file
+from cellctl.records.files.mcap_reading import McapContent, read_mcap
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
 from tests.unit.cell.bench import Bench, make_bench

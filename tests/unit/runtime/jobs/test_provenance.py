@@ -11,9 +11,9 @@ from cellctl.config import CellConfig, load_cell
 from cellctl.config.load import cell_from_document
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
-from cellctl.records.artefacts import ArtefactFolder
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord, RunResult
+from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.provenance import Provenance, provenance
 from cellctl.runtime.jobs.record import JobRecord

@@ -9,8 +9,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.plain_json import as_plain
-from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.cli.records.plain_json import as_plain
+from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.clock import utc_now
 from cellctl.records.entries import Calibration
 

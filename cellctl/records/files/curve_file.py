@@ -19,9 +19,9 @@ from mcap.writer import CompressionType, Writer
 
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
-from cellctl.records import motion_file
 from cellctl.records.entries import Artefact
-from cellctl.records.mcap_reading import MEDIA_TYPE, read_mcap
+from cellctl.records.files import motion_file
+from cellctl.records.files.mcap_reading import MEDIA_TYPE, read_mcap
 
 _TOPIC = "/contact/force"
 _FACTS = "facts"

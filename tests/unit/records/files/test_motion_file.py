@@ -10,8 +10,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.records import RecordingUnreadable
 from cellctl.interfaces import RobotMode, RobotState
-from cellctl.records.mcap_reading import RecordedMessage, read_mcap
-from cellctl.records.motion_file import MotionWriter
+from cellctl.records.files.mcap_reading import RecordedMessage, read_mcap
+from cellctl.records.files.motion_file import MotionWriter
 
 STARTED = datetime(2026, 11, 21, 12, 0, tzinfo=UTC)
 START_S = 500.0

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import migration
@@ -23,7 +23,7 @@ from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read
 
-OLD = Path(__file__).parents[2] / "data" / "store-v1"
+OLD = Path(__file__).parents[3] / "data" / "store-v1"
 RUNS = (1, 2, 3, 4, 5)
 LOST = "F202 Connection to a device lost: aux_1: no answer"
 

@@ -7,8 +7,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.run_store import DataDir, opened_store
-from cellctl.cli.runs import Run
+from cellctl.cli.records.run_store import DataDir, opened_store
+from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.errors.records import NotReplayable
 from cellctl.records.replayed import Replayed

@@ -50,7 +50,7 @@ from cellctl.records import RunStore
 from tests.unit.cli.agreeable import AT_REST, Agreeable, listening
 from tests.unit.records.sample import good_run
 
-DOCS = Path(__file__).parents[3] / "docs"
+DOCS = Path(__file__).parents[4] / "docs"
 OPERATOR = "status|clear|reset|start|procedure|hold|unhold|stop|abort|mode|alarms"
 ALARM = FaultReport(
     number=501,

@@ -8,7 +8,7 @@ import pytest
 
 from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
-from cellctl.records.curve_file import CurveWriter, encode_curve, read_recording
+from cellctl.records.files.curve_file import CurveWriter, encode_curve, read_recording
 
 STARTED = datetime(2026, 11, 21, 12, 0, tzinfo=UTC)
 

@@ -8,7 +8,7 @@ import zstandard
 from numpy.typing import NDArray
 
 from cellctl.errors.records import ArtefactDamaged
-from cellctl.records.artefacts import ArtefactFolder
+from cellctl.records.files.artefacts import ArtefactFolder
 
 MEDIA_TYPE = "application/zstd"
 """PGM inside: `zstd -d` gives a picture that any viewer opens."""

@@ -12,7 +12,7 @@ import pytest
 from cellctl.errors.records import ArtefactDamaged
 from cellctl.records import RunResult, RunStore
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.raw_images import MEDIA_TYPE, coding_thread, decode
+from cellctl.records.files.raw_images import MEDIA_TYPE, coding_thread, decode
 from tests.unit.records.conftest import start
 
 

@@ -12,7 +12,7 @@ import pytest
 from cellctl.records import RunStore
 from cellctl.records.database.migration import backup_of
 
-OLD = Path(__file__).parents[2] / "data" / "store-v2"
+OLD = Path(__file__).parents[3] / "data" / "store-v2"
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.plain_json import as_plain
-from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.cli.records.plain_json import as_plain
+from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.entries import AuditEntry
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from cellctl.calibration.store.old_form import seal_old_files
-from cellctl.cli.invalidate import INSTALLED
+from cellctl.cli.offline.invalidate import INSTALLED
 from cellctl.config import load_cell
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.store import RunStore

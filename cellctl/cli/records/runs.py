@@ -9,10 +9,10 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from cellctl.cli.plain_json import as_plain
-from cellctl.cli.run_report import report
-from cellctl.cli.run_store import DataDir, opened_store
-from cellctl.cli.trend import trend
+from cellctl.cli.records.plain_json import as_plain
+from cellctl.cli.records.run_report import report
+from cellctl.cli.records.run_store import DataDir, opened_store
+from cellctl.cli.records.trend import trend
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
@@ -95,7 +95,7 @@ def export(
 ) -> None:
     """Write record, report, pictures and recordings of a run into a folder."""
     # Loaded here: the processes' pages bring scipy and matplotlib, which `runs list` does without.
-    from cellctl.cli.process_pages import pages_of
+    from cellctl.cli.records.process_pages import pages_of
     from cellctl.records.report.export import export_run
 
     with opened_store(data_dir) as store:

@@ -10,10 +10,10 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from cellctl.calibration.store.envelope import read_stored
-from cellctl.cli.calibrations import app
+from cellctl.cli.records.calibrations import app
 from cellctl.records import RunStore
 
-SHIPPED = Path(__file__).parents[3] / "config" / "demo-calibration"
+SHIPPED = Path(__file__).parents[4] / "config" / "demo-calibration"
 RUNNER = CliRunner(env={"COLUMNS": "200", "NO_COLOR": "1"})
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner, Result
 
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.records import RunResult, RunStore
 from cellctl.records.figures import Limit, figure
 from tests.unit.records.conftest import start

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cellctl.cli.runs import app
+from cellctl.cli.records.runs import app
 from cellctl.errors.records import RunUnknown, StoreUnavailable
 from cellctl.records import RunStore
 from tests.unit.records.conftest import start

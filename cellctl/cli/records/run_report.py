@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.run_store import DataDir, opened_store
+from cellctl.cli.records.run_store import DataDir, opened_store
 
 
 def report(
@@ -19,7 +19,7 @@ def report(
 ) -> None:
     """Write the report of a run as one file with its pictures, HTML or PDF."""
     # Only a report is drawn; the list of runs does not wait for what draws.
-    from cellctl.cli.process_pages import pages_of
+    from cellctl.cli.records.process_pages import pages_of
     from cellctl.records.report.export import write_report
 
     path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
