@@ -14,8 +14,8 @@ from typer.testing import CliRunner
 
 from cellctl.api.modbus.document import register_map_document
 from cellctl.cli.commands import whole_app
-from cellctl.cli.faults import fault_catalogue
-from cellctl.known_faults import shipped_faults
+from cellctl.cli.faults import catalogue_page
+from cellctl.fault_catalogue import shipped_faults
 from cellctl.packml.document import state_machine_document
 from fakes.__main__ import app as fakes_app
 from fakes.demo.app import app as demo_app
@@ -162,7 +162,7 @@ def test_every_page_can_be_found() -> None:
 
 def test_generated_pages_are_new() -> None:
     docs = ROOT / "docs"
-    assert (docs / "faults.md").read_text(encoding="utf-8") == fault_catalogue(shipped_faults())
+    assert (docs / "faults.md").read_text(encoding="utf-8") == catalogue_page(shipped_faults())
     assert (docs / "register-map.md").read_text(encoding="utf-8") == register_map_document()
     assert (docs / "state-machine.md").read_text(encoding="utf-8") == state_machine_document()
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.cli.faults import fault_catalogue
+from cellctl.cli.faults import catalogue_page
 from cellctl.errors import CellError
-from cellctl.known_faults import shipped_faults
+from cellctl.fault_catalogue import shipped_faults
 
 ROOT = Path(__file__).parent.parent
 PACKAGES = ("cellctl", "drivers", "fakes")
@@ -81,7 +81,7 @@ def test_every_fault_tells_the_operator_what_to_do() -> None:
 
 def test_the_fault_catalogue_is_current() -> None:
     written = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
-    assert written == fault_catalogue(shipped_faults()), "run `cellctl faults > docs/faults.md`"
+    assert written == catalogue_page(shipped_faults()), "run `cellctl faults > docs/faults.md`"
 
 
 def driver_folders() -> list[Path]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.planning.cells import random_cell
 from benchmarks.planning.mujoco_oracle import MujocoOracle
-from cellctl.errors.planning import PlanningError
+from cellctl.errors.config import PlanningError
 from cellctl.geometry.pose import MM
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways

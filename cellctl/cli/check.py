@@ -10,13 +10,13 @@ from rich.console import Console
 
 from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig, load_cell, problems_before_commissioning
+from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.document.lines import FILL_IN, left_open
+from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
-from cellctl.config.robot_drivers import robot_driver
 from cellctl.config.roles import lacking_roles
-from cellctl.config.zone_checks import taught_in_zone
 
 
 def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from cellctl.errors import CellError
-from cellctl.known_faults import known_faults
+from cellctl.fault_catalogue import known_faults
 
 Number = Annotated[int | None, typer.Argument(help="Number of a fault, without the F.")]
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
@@ -25,7 +25,7 @@ def faults(number: Number = None, *, as_json: AsJson = False) -> None:
     elif number is not None:
         typer.echo(_one(found[0]))
     else:
-        typer.echo(fault_catalogue(found), nl=False)
+        typer.echo(catalogue_page(found), nl=False)
 
 
 def _plain(fault: type[CellError]) -> dict[str, str | int]:
@@ -53,7 +53,7 @@ def _neighbours(number: int) -> str:
     return f"there is no F{number:03d}; of its hundred: {', '.join(near) or 'none'}"
 
 
-def fault_catalogue(faults: Iterable[type[CellError]]) -> str:
+def catalogue_page(faults: Iterable[type[CellError]]) -> str:
     """A catalogue of these faults as Markdown."""
     lines = [
         "# Fault catalogue",

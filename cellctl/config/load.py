@@ -10,22 +10,22 @@ from pydantic import BaseModel, ValidationError
 
 from cellctl import plugins
 from cellctl.config.base import Section
-from cellctl.config.between.addresses import address_issues
-from cellctl.config.between.robots import robot_issues
-from cellctl.config.between.units import unit_issues
 from cellctl.config.cell import CellConfig
-from cellctl.config.cross_checks import cross_issues, unpermitted
+from cellctl.config.checks.addresses import address_issues
+from cellctl.config.checks.cross_checks import cross_issues, unpermitted
+from cellctl.config.checks.plausible.findings import plausibility_issues
+from cellctl.config.checks.robot_figures import robot_issues
+from cellctl.config.checks.taught_poses import taught_pose_issues
+from cellctl.config.checks.units import unit_issues
+from cellctl.config.checks.zones import zone_issues
 from cellctl.config.document.findings import model_issues, shorten, validated
 from cellctl.config.document.lines import key_lines, line_of
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.plausible.findings import plausibility_issues
 from cellctl.config.process_definition import ProcessDefinition, process_definition
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import lacking
-from cellctl.config.taught_pose_checks import taught_pose_issues
-from cellctl.config.zone_checks import zone_issues
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
-from cellctl.known_faults import misnumbered
+from cellctl.fault_catalogue import misnumbered
 
 
 def load_cell(path: Path) -> CellConfig:

@@ -4,7 +4,7 @@ Those of a process or of another plug-in stand in the module ``faults`` of its p
 
 CellError
 ├── ConfigError       1xx   errors.config       configuration, files, arguments
-│   └── PlanningError  12x   errors.planning     planning of a cell, offline
+│   └── PlanningError  12x   errors.config       planning of a cell, offline
 ├── LinkError         2xx   errors.link         connections to devices
 │   └── CameraError   22x   errors.camera       cameras behind the library of their maker
 ├── RobotError        3xx   errors.robot        controllers and motion
@@ -31,7 +31,6 @@ from cellctl.errors import (
     line,
     link,
     local,
-    planning,
     records,
     robot,
     streamed_contact,
@@ -53,7 +52,6 @@ __all__ = [
     "line",
     "link",
     "local",
-    "planning",
     "records",
     "robot",
     "streamed_contact",

@@ -43,7 +43,7 @@ class CellError(Exception):
 def catalogue(root: type[CellError] = CellError) -> list[type[CellError]]:
     """Every numbered fault below ``root``, by number, from the modules that are imported.
 
-    ``cellctl.known_faults`` imports those that an installation has.
+    ``cellctl.fault_catalogue`` imports those that an installation has.
     """
     found: list[type[CellError]] = []
     pending = [root]

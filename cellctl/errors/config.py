@@ -1,4 +1,4 @@
-"""1xx: configuration, files and arguments."""
+"""1xx: configuration, files and arguments; planning of a cell, offline (12x)."""
 
 from cellctl.errors.base import CellError, Reaction
 
@@ -61,3 +61,79 @@ class FileInvalid(ConfigError):
     text = "Input file is not valid"
     cause = "Wrong file, wrong format, or damaged content."
     remedy = "See the detail for the place in the file."
+
+
+class PlanningError(ConfigError):
+    """What is planned does not fit the cell; nothing is written then."""
+
+
+class PlanningNotInstalled(PlanningError):
+    """The libraries of the extra ``plan`` are missing."""
+
+    number = 121
+    text = "Planning is not installed"
+    cause = "The extra `plan` of the package was left out: the daemon does not need it."
+    remedy = "Install cellctl with the extra `plan`, on any PC that has the cell file."
+
+
+class MeshNotUsable(PlanningError):
+    """A surface of the model cannot be read or is not closed."""
+
+    number = 122
+    text = "Mesh cannot be used"
+    cause = "The file is missing, of an unknown format, or its surface has holes."
+    remedy = "Export the body again as a closed surface, or write a box or a capsule around it."
+
+
+class SizeImplausible(PlanningError):
+    """A body is far larger or smaller than anything in a cell."""
+
+    number = 123
+    text = "Size of a body is implausible"
+    cause = "Figures in another unit: metres read as millimetres, or the other way round."
+    remedy = "State the unit of the mesh, or correct the figures in the detail."
+
+
+class ArmNotDescribed(PlanningError):
+    """Nothing says how the arm is built."""
+
+    number = 124
+    text = "Arm of the model is not described"
+    cause = "The robot is not in the cell file, or its driver's settings have no dh table."
+    remedy = "Correct the name, or write the dh table into the settings of the robot."
+
+
+class PlaceUnreachable(PlanningError):
+    """The arm cannot stand where a move leads."""
+
+    number = 125
+    text = "Place cannot be reached"
+    cause = "Out of reach, beyond a joint's limit or outside the workspace in the cell file."
+    remedy = "Move the part or the base, teach another pose, or correct the bounds."
+
+
+class BodiesCollide(PlanningError):
+    """Two bodies of the model touch."""
+
+    number = 126
+    text = "Bodies meet"
+    cause = "A pose or the way to it leads through something that the model has there."
+    remedy = "Teach another pose or plan a way (`cellctl plan paths`); or correct the model."
+
+
+class ClearanceTooSmall(PlanningError):
+    """Two bodies come nearer to each other than their margins."""
+
+    number = 127
+    text = "Clearance is smaller than the margin"
+    cause = "The gap at the pose or on the way is narrower than the margins of the model ask for."
+    remedy = "Widen the gap, or state smaller margins if arms and model are that exact."
+
+
+class NoFreeWay(PlanningError):
+    """No way between two places was found."""
+
+    number = 128
+    text = "No free way was found"
+    cause = "The gaps are narrower than the margins, or the search was not long enough."
+    remedy = "Look at the model with `cellctl plan show`; search longer; move what is in the way."

@@ -13,9 +13,9 @@ from typing import Any
 
 from cellctl.errors.base import CellError
 from cellctl.errors.internal import Unexpected
+from cellctl.fault_catalogue import known_fault
 from cellctl.guard.limits import CusumTouch, GuardLimits
 from cellctl.guard.report import GuardTrip, TripReason
-from cellctl.known_faults import known_fault
 
 Message = dict[str, Any]
 

@@ -15,7 +15,7 @@ from cellctl.command.arbiter import CommandArbiter
 from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
-from cellctl.known_faults import known_fault
+from cellctl.fault_catalogue import known_fault
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.unit import UnitController

@@ -21,7 +21,7 @@ from cellctl.command.arbiter import CommandArbiter
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
 from cellctl.errors.local import MessageMalformed
-from cellctl.known_faults import known_fault
+from cellctl.fault_catalogue import known_fault
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import ActiveAlarm

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from cellctl.config.devices import ForceSensorConfig
-from cellctl.config.sensor import sensor_rate_hz
+from cellctl.config.driver_settings import sensor_rate_hz
 from cellctl.guard.limits import (
     DEFAULT_FILTER_S,
     DEFAULT_RATE_WINDOW_S,

@@ -10,7 +10,7 @@ from cellctl.cell.zones.arbiter import REPORT_AGE_S, ZoneArbiter
 from cellctl.cell.zones.ways import Way, joint_way, linear_way, stream_way
 from cellctl.cell.zones.zone import zones_of
 from cellctl.config.cell import CellConfig
-from cellctl.config.robot_drivers import robot_driver
+from cellctl.config.driver_settings import robot_driver
 from cellctl.errors.robot import NotRearmed
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, StreamLimits

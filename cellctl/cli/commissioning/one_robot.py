@@ -7,7 +7,7 @@ from typing import Any, cast
 
 from cellctl.clock import now_s
 from cellctl.config import CellConfig, load_cell
-from cellctl.config.robot_drivers import robot_driver
+from cellctl.config.driver_settings import robot_driver
 from cellctl.errors.config import FileInvalid
 from cellctl.interfaces import Robot
 

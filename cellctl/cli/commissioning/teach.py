@@ -15,7 +15,7 @@ from cellctl.cell.robot_reports import joints_deg, state_as_json
 from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, problems
-from cellctl.config.taught_pose_text import with_pose
+from cellctl.config.document.taught_pose_text import with_pose
 from cellctl.errors.config import ConfigInvalid
 from cellctl.interfaces import Robot, RobotState
 

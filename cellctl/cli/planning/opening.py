@@ -7,7 +7,7 @@ import typer
 
 from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
-from cellctl.errors.planning import PlanningNotInstalled
+from cellctl.errors.config import PlanningNotInstalled
 
 if TYPE_CHECKING:
     from cellctl.planning.scene.cell_scene import CellScene

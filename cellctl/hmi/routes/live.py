@@ -6,9 +6,9 @@ from fastapi import APIRouter, Request
 from fastapi.responses import StreamingResponse
 
 from cellctl.clock import now_s
+from cellctl.fault_catalogue import known_fault
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
-from cellctl.known_faults import known_fault
 from cellctl.version import software
 
 router = APIRouter(tags=["live"])

@@ -9,8 +9,7 @@ from pydantic import ValidationError
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config.cell import CellConfig
-from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
-from cellctl.errors.planning import ArmNotDescribed, SizeImplausible
+from cellctl.errors.config import ArmNotDescribed, ConfigInvalid, ConfigUnreadable, SizeImplausible
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.planning.model.document import BodyKeys, CapsuleKeys, LinkBodyKeys, ModelDocument
 from cellctl.planning.model.shapes import BoxShape, CapsuleShape, Shape

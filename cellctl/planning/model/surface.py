@@ -4,7 +4,7 @@ from pathlib import Path
 
 import trimesh
 
-from cellctl.errors.planning import MeshNotUsable, SizeImplausible
+from cellctl.errors.config import MeshNotUsable, SizeImplausible
 from cellctl.geometry.pose import MM
 from cellctl.planning.model.document import MeshKeys
 from cellctl.planning.model.shapes import MeshShape

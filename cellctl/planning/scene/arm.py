@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.devices import RobotConfig
-from cellctl.config.robot_drivers import robot_driver
-from cellctl.errors.planning import ArmNotDescribed
+from cellctl.config.driver_settings import robot_driver
+from cellctl.errors.config import ArmNotDescribed
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.pose import Array

@@ -8,7 +8,7 @@ import numpy as np
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import WayConfig
 from cellctl.config.stated_moves import MoveKind, StatedMove
-from cellctl.errors.planning import NoFreeWay
+from cellctl.errors.config import NoFreeWay
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.cell_scene import CellScene

@@ -6,7 +6,7 @@ import numpy as np
 
 from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
 from cellctl.config.via_points import via_points
-from cellctl.errors.planning import PlaceUnreachable
+from cellctl.errors.config import PlaceUnreachable
 from cellctl.geometry.arm.linear_way import BrokenWay, WaySteps, linear_joint_way
 from cellctl.geometry.arm.reaching import joints_reaching
 from cellctl.geometry.pose import Array, pose_to_xyzabc

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from ompl import base, geometric, util
 
-from cellctl.errors.planning import NoFreeWay
+from cellctl.errors.config import NoFreeWay
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.surroundings import Surroundings
 from cellctl.planning.ways.sweep import sweep

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.robot_drivers import robot_driver
+from cellctl.config.driver_settings import robot_driver
 from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
 from cellctl.config.via_points import has_way
-from cellctl.errors.planning import ArmNotDescribed
+from cellctl.errors.config import ArmNotDescribed
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.lift_off import LIFT_M

@@ -10,7 +10,7 @@ from cellctl.cell.light import Light
 from cellctl.cell.lit_cameras import LitCamera, LitHead
 from cellctl.clock import now_s
 from cellctl.config import CellConfig
-from cellctl.config.cross_checks import cross_issues
+from cellctl.config.checks.cross_checks import cross_issues
 from cellctl.errors.digital_io import SignalUnknown
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from cellctl.interfaces.camera import CameraImage, PixelFormat

@@ -5,7 +5,7 @@ import json
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
-from cellctl.known_faults import known_faults
+from cellctl.fault_catalogue import known_faults
 
 
 def said(*words: str) -> str:

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from cellctl.cli import check
 from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
-from cellctl.config.robot_drivers import first_link_mm
+from cellctl.config.driver_settings import first_link_mm
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 
 CONFIG = Path(__file__).parents[3] / "config"

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import robot_driver
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.driver_settings import motion_bounds
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import motion_bounds
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 

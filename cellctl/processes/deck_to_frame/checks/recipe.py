@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.driver_settings import first_link_mm
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import first_link_mm
 from cellctl.processes.deck_to_frame.checks.base_frame_turns import base_frame_turn_issues
 from cellctl.processes.deck_to_frame.checks.features import feature_issues
 from cellctl.processes.deck_to_frame.checks.mating_plan import plan_issues

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.devices import RobotConfig
+from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import robot_driver
-from cellctl.config.zone_checks import taught_in_zone
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HEAD_1, HEAD_2, MAIN, MEASURING

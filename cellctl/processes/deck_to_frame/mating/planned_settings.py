@@ -4,7 +4,7 @@ that `cellctl check` can judge them."""
 import math
 
 from cellctl.config.devices import ForceSensorConfig
-from cellctl.config.sensor import sensor_rate_hz
+from cellctl.config.driver_settings import sensor_rate_hz
 from cellctl.force.contact.approach import planned_stiffness
 from cellctl.force.contact.cusum import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM

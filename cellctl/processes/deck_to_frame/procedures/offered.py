@@ -12,7 +12,7 @@ from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.guarded_motion.free_moves import free_tolerance, guarded_section
 from cellctl.cell.stereo_station import StereoStation
-from cellctl.config.robot_drivers import first_link_mm
+from cellctl.config.driver_settings import first_link_mm
 from cellctl.geometry.pose import MM
 from cellctl.procedures.arm_reference import check_arm_reference
 from cellctl.procedures.base_frame import FLANGE_TARGETS, AxisTurns, calibrate_base

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from cellctl.known_faults import known_fault
+from cellctl.fault_catalogue import known_fault
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord, RunResult
 from cellctl.records.report.text import MISSING, when
 

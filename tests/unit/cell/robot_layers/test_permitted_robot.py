@@ -13,7 +13,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.robot_layers.permitted_robot import PermittedRobot, PermittedStreamingRobot
 from cellctl.config import CellConfig
-from cellctl.config.cross_checks import cross_issues
+from cellctl.config.checks.cross_checks import cross_issues
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from cellctl.errors.robot import ControllerFault, StopFailed, TargetOutOfBounds

@@ -10,7 +10,7 @@ from cellctl.cell.robot_layers.slowed_robot import (
     SlowedStreamingRobot,
 )
 from cellctl.config import load_cell
-from cellctl.config.between.robots import robot_issues
+from cellctl.config.checks.robot_figures import robot_issues
 from cellctl.config.devices import MaintenanceSpeeds
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.interfaces import StreamLimits

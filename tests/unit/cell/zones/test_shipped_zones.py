@@ -8,7 +8,7 @@ import pytest
 from cellctl.cell.devices import Cell
 from cellctl.cell.zones.zoned_robot import ZonedRobot, ZonedStreamingRobot, zoned_robots
 from cellctl.config import CellConfig, load_cell
-from cellctl.config.robot_drivers import robot_driver
+from cellctl.config.driver_settings import robot_driver
 from cellctl.errors.robot import ZoneTaken
 from cellctl.geometry.pose import Array
 from cellctl.processes.deck_to_frame.settings import DeckSettings

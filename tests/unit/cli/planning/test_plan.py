@@ -7,8 +7,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.planning.app import app
 from cellctl.cli.planning.opening import open_scene
-from cellctl.errors.config import ConfigUnreadable
-from cellctl.errors.planning import PlanningNotInstalled
+from cellctl.errors.config import ConfigUnreadable, PlanningNotInstalled
 
 DECK = "config/deck.toml"
 

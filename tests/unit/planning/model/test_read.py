@@ -8,8 +8,13 @@ from hypothesis import strategies as st
 
 from cellctl.config import load_cell
 from cellctl.errors import CellError
-from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
-from cellctl.errors.planning import ArmNotDescribed, MeshNotUsable, SizeImplausible
+from cellctl.errors.config import (
+    ArmNotDescribed,
+    ConfigInvalid,
+    ConfigUnreadable,
+    MeshNotUsable,
+    SizeImplausible,
+)
 from cellctl.planning.model.read import read_model
 from tests.unit.planning.deck_cell import DECK, deck_scene, write_model
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
-from cellctl.errors.planning import BodiesCollide, ClearanceTooSmall, PlaceUnreachable
+from cellctl.errors.config import BodiesCollide, ClearanceTooSmall, PlaceUnreachable
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways.check_moves import check_move, stated_moves
 from tests.unit.planning.deck_cell import deck_scene

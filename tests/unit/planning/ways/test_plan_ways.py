@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.config import load_cell
-from cellctl.errors.planning import PlanningError
+from cellctl.errors.config import PlanningError
 from cellctl.planning.model.shapes import BoxShape
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid

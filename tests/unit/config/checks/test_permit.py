@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems, problems_before_commissioning
 
-CONFIG = Path(__file__).parents[3] / "config"
+CONFIG = Path(__file__).parents[4] / "config"
 PERMIT = 'permit = { device = "permit", output = "%s_permit" }\n'
 
 

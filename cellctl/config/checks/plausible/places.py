@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from cellctl.config.between.addresses import is_address, written_hosts
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.addresses import is_address, written_hosts
 from cellctl.config.issue import ConfigIssue
 from cellctl.spelling import nearest
 

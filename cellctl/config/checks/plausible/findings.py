@@ -4,12 +4,12 @@ from collections.abc import Iterator, Set
 from pathlib import Path
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.plausible.arms import arm_issues
+from cellctl.config.checks.plausible.mounted import mounted_issues
+from cellctl.config.checks.plausible.places import place_issues
+from cellctl.config.checks.plausible.sensors import sensor_issues
+from cellctl.config.checks.plausible.waits import wait_issues
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.plausible.arms import arm_issues
-from cellctl.config.plausible.mounted import mounted_issues
-from cellctl.config.plausible.places import place_issues
-from cellctl.config.plausible.sensors import sensor_issues
-from cellctl.config.plausible.waits import wait_issues
 
 
 def plausibility_issues(cell: CellConfig, folder: Path, bad: Set[str]) -> Iterator[ConfigIssue]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cellctl import known_faults, plugins
+from cellctl import fault_catalogue, plugins
 from cellctl.cli.commands import whole_app
 from cellctl.config import problems
 from cellctl.guard.messages import fault_from_json
@@ -46,7 +46,7 @@ def forgotten() -> Iterator[None]:
 
 def _forget() -> None:
     plugins.installed.cache_clear()
-    known_faults.fault_modules.cache_clear()
+    fault_catalogue.fault_modules.cache_clear()
 
 
 def install(folder: Path, package: str, faults: str) -> None:
@@ -74,7 +74,7 @@ def test_the_terminal_tells_a_fault_of_an_installed_package(site: Path) -> None:
     for words in ("F1801 The label is crooked", "The roll is worn.", "Change the roll.", "stop"):
         assert words in done.stdout
     assert "| F1801 |" in CliRunner().invoke(whole_app(), ["faults"]).stdout
-    assert 1801 not in [fault.number for fault in known_faults.shipped_faults()]
+    assert 1801 not in [fault.number for fault in fault_catalogue.shipped_faults()]
 
 
 def test_report_and_guard_know_it_without_the_process(site: Path) -> None:
@@ -89,7 +89,7 @@ def test_a_damaged_package_takes_nobody_elses_faults_away(
     site: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     install(site, "labels_damaged", "import a_library_that_is_not_there\n")
-    assert known_faults.known_fault(207) is not None
+    assert fault_catalogue.known_fault(207) is not None
     assert "labels_damaged" in caplog.text
 
 
@@ -98,7 +98,7 @@ def test_a_package_without_faults_is_no_damage(
 ) -> None:
     install(site, "labels_faultless", "")
     (site / "labels_faultless" / "faults.py").unlink()
-    assert known_faults.known_fault(207) is not None
+    assert fault_catalogue.known_fault(207) is not None
     assert caplog.text == ""
 
 
@@ -117,4 +117,4 @@ def test_a_package_does_not_take_a_number_of_cellctl(site: Path) -> None:
 
 
 def test_cellctl_itself_numbers_rightly() -> None:
-    assert list(known_faults.misnumbered()) == []
+    assert list(fault_catalogue.misnumbered()) == []

@@ -1,9 +1,9 @@
-"""What the driver of a robot says about its settings, before any robot is connected."""
+"""What the drivers of robots and force sensors say about their settings, before a connection."""
 
 from typing import Any, cast
 
 from cellctl import plugins
-from cellctl.config.devices import RobotConfig
+from cellctl.config.devices import ForceSensorConfig, RobotConfig
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import MotionBounds, Robot
 
@@ -31,3 +31,15 @@ def first_link_mm(robot: RobotConfig) -> tuple[float | None, float | None]:
         d1_mm if robot.d1_mm is None else robot.d1_mm,
         a1_mm if robot.a1_mm is None else robot.a1_mm,
     )
+
+
+def sensor_rate_hz(sensor: ForceSensorConfig) -> float:
+    """Samples a second that the sensor is set to: every sensor's ``Config`` has ``rate_hz``."""
+    driver = plugins.load(plugins.FT_SENSOR, sensor.driver)
+    settings = driver.Config.model_validate(sensor.settings)  # type: ignore[attr-defined]
+    return float(settings.rate_hz)
+
+
+def least_stale_ms(sensor: ForceSensorConfig) -> float:
+    """Silence below this is the sensor's own pace: two samples."""
+    return 2e3 / sensor_rate_hz(sensor)

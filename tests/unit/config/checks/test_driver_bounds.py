@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl import known_faults, plugins
+from cellctl import fault_catalogue, plugins
 from cellctl.config import problems
 from tests.unit.cell.bench import CELL_FILE
 
@@ -57,12 +57,12 @@ def omega(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (info / "entry_points.txt").write_text("[cellctl.robot]\nomega = omega_arm.driver:OmegaRobot\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     plugins.installed.cache_clear()
-    known_faults.fault_modules.cache_clear()
+    fault_catalogue.fault_modules.cache_clear()
     yield
     for name in ("omega_arm", "omega_arm.driver"):
         sys.modules.pop(name, None)
     plugins.installed.cache_clear()
-    known_faults.fault_modules.cache_clear()
+    fault_catalogue.fault_modules.cache_clear()
 
 
 def test_speeds_and_lengths_are_held_against_the_driver_of_any_maker(tmp_path: Path) -> None:

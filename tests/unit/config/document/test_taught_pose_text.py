@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.config.taught_pose_text import with_pose
+from cellctl.config.document.taught_pose_text import with_pose
 from cellctl.errors.config import FileInvalid
 
-CONFIG = Path(__file__).parents[3] / "config"
+CONFIG = Path(__file__).parents[4] / "config"
 JOINTS = [0.0, -90.5, 90.123456, 1e-7, 45.0, -0.0]
 WRITTEN = [0.0, -90.5, 90.12346, 0.0, 45.0, 0.0]
 ANGLES = st.lists(st.floats(-360.0, 360.0), min_size=6, max_size=6)

@@ -6,8 +6,8 @@ import numpy as np
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import RobotConfig
+from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import robot_driver
 from cellctl.errors.robot import TargetOutOfBounds
 
 

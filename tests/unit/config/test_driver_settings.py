@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 from cellctl.config import load_cell, problems
-from cellctl.config.sensor import sensor_rate_hz
+from cellctl.config.driver_settings import sensor_rate_hz
 
 CONFIG = Path(__file__).parents[3] / "config"
 

@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import CameraConfig
+from cellctl.config.driver_settings import least_stale_ms, robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import robot_driver
-from cellctl.config.sensor import least_stale_ms
 from cellctl.errors.config import MixedSimulation
 from cellctl.spelling import nearest
 

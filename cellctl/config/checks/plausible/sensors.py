@@ -4,8 +4,8 @@ from collections.abc import Iterator, Set
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import ForceSensorConfig
+from cellctl.config.driver_settings import sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.sensor import sensor_rate_hz
 
 _LEAST_RATE_HZ = 100.0
 """A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch

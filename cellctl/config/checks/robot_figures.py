@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import RobotConfig
+from cellctl.config.driver_settings import motion_bounds, robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.robot_drivers import motion_bounds, robot_driver
 from cellctl.geometry.pose import MM
 
 _SAME_MM = 0.01

@@ -1,1 +1,0 @@
-"""What one section of a cell file says, held against what another one says."""
