@@ -101,6 +101,10 @@ class FakeCameras:
         """Images that a camera has exposed since the file was made."""
         return self._get(serial, "exposures")
 
+    def begun(self, serial: str) -> int:
+        """Exposures that a camera has begun since the file was made, whatever became of them."""
+        return self._get(serial, "strobes")
+
     def opened(self, serial: str) -> int:
         """The process that controls a camera, 0 for none."""
         return self._get(serial, "opened")

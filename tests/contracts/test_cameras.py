@@ -97,7 +97,7 @@ class GigeBench(SingleCameraBench):
             camera=Selection(serial_number="G1"),
             producers=(producer,),
             exposure_s=0.001,
-            image_timeout_s=0.3,
+            image_timeout_s=1.0,
         )
         self.camera: Camera = GigeCamera("eye", settings)
 

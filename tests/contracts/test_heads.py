@@ -79,8 +79,8 @@ class GigeHeadBench(CameraBench):
             right=Selection(serial_number="GR"),
             producers=(producer,),
             exposure_s=0.001,
-            image_timeout_s=0.3,
-            max_difference_s=0.2,
+            image_timeout_s=1.0,
+            max_difference_s=2.0,
         )
         self.camera: StereoCamera = GigeHead("head_1", settings)
 

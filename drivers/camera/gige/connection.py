@@ -15,7 +15,8 @@ from drivers.camera.gige import entry, faults
 from drivers.camera.gige.protocol import Answer, Grabbed, Request, RequestFailed
 
 Block = NDArray[np.uint8]
-_END_S = 2.0
+_END_S = 5.0
+"""For a process that listens, to close its cameras: one that is killed leaves them locked."""
 
 
 class LibraryProcess:
@@ -59,7 +60,7 @@ class LibraryProcess:
         try:
             connection.send(request)
             if not connection.poll(timeout_s):
-                self.end()
+                self.end(wait_s=0.0)  # what hangs closes nothing
                 raise ReplyTimeout(f"{self._name}: the maker's library hangs; it was ended")
             answer: Answer = connection.recv()
             images = answer.images if isinstance(answer, Grabbed) else ()
@@ -71,15 +72,15 @@ class LibraryProcess:
             raise faults.of(self._name, answer)
         return answer, blocks
 
-    def end(self) -> None:
-        """End the process: in its own way if it listens, else by force."""
+    def end(self, wait_s: float = _END_S) -> None:
+        """End the process: in its own way if it does so within the time, else by force."""
         connection, process = self._connection, self._process
         self._connection = self._process = None
         if connection is not None:
             with suppress(OSError):
                 connection.close()
         if process is not None:
-            process.join(_END_S)
+            process.join(wait_s)
             if process.is_alive():
                 process.kill()
                 process.join()

@@ -1,7 +1,6 @@
 /* The stream of a camera: a thread that exposes into queued buffers. */
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "camera.h"
 #include "cell_images.h"
@@ -62,12 +61,12 @@ static bool due(const camera *self) {
     return camera_u32(self, REG_TRIGGER_MODE) ? self->triggers > 0 : true;
 }
 
-static void wait_until(camera *self, uint64_t until_ns) {
-    uint64_t now = now_ns();
-    if (now >= until_ns) return;
-    pthread_mutex_unlock(&self->mutex);
-    usleep((useconds_t)((until_ns - now) / 1000));
-    pthread_mutex_lock(&self->mutex);
+/* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
+static bool exposing(const camera *self, uint32_t starts) { return self->acquiring && self->starts == starts && !self->ending; }
+
+static void wait_until(camera *self, uint32_t starts, uint64_t until_ns) {
+    struct timespec until = {.tv_sec = (time_t)(until_ns / 1000000000u), .tv_nsec = (long)(until_ns % 1000000000u)};
+    while (exposing(self, starts) && now_ns() < until_ns) pthread_cond_timedwait(&self->changed, &self->mutex, &until);
 }
 
 /* Once for each image that a test has asked for. */
@@ -130,9 +129,8 @@ static void take(camera *self) {
     uint64_t begun_ns = now_ns(), ended_ns = begun_ns + 1000 * took_us; /* what a cell takes to render is no time of it */
     cell_image image = {.block = -1};
     bool exposed = !cell_is_there() || cell_expose(self, starts, begun_ns, &image);
-    wait_until(self, ended_ns);
-    /* A stop ends the exposure, and what was begun before it is not part of the next acquisition. */
-    if (exposed && self->acquiring && self->starts == starts && !camera_lost(self)) deliver(self, ended_ns, &image);
+    wait_until(self, starts, ended_ns);
+    if (exposed && exposing(self, starts) && !camera_lost(self)) deliver(self, ended_ns, &image);
     cell_let_go(&image);
 }
 

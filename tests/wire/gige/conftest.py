@@ -2,14 +2,14 @@
 
 import asyncio
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from drivers.camera.gige.config import GigeCameraConfig, Selection
-from drivers.camera.gige.driver import GigeCamera
+from drivers.camera.gige.driver import GigeCamera, GigeDevice
 from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
 
@@ -31,13 +31,27 @@ def fakes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeCamer
         yield fakes
 
 
-async def descriptors(process: int) -> int:
-    """What a process has open, without the images that are just on their way to the driver."""
-    counts = []
-    for _ in range(20):
-        counts.append(len(os.listdir(f"/proc/{process}/fd")))
-        await asyncio.sleep(0.01)
-    return min(counts)
+async def descriptors(device: GigeDevice, process: int) -> int:
+    """What a device's library process has open, once the images before are on their way."""
+    # Answered one after the other: what was sent before this answer is closed there.
+    await device.set_exposure(0.001)
+    return len(os.listdir(f"/proc/{process}/fd"))
+
+
+async def until(happened: Callable[[], bool], within_s: float = 60.0) -> None:
+    """Wait for what another process does; fails when it does not."""
+    async with asyncio.timeout(within_s):
+        while not happened():  # noqa: ASYNC110 - another process has no event
+            await asyncio.sleep(0.005)
+
+
+def ended(process: int) -> bool:
+    """Whether a process runs no more; nobody need have waited for it."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text("ascii").rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return True
+    return state in {"Z", "X"}
 
 
 def camera(producer: Path, **settings: Any) -> GigeCamera:
@@ -46,6 +60,6 @@ def camera(producer: Path, **settings: Any) -> GigeCamera:
         "camera": Selection(serial_number=LEFT),
         "producers": (producer,),
         "exposure_s": 0.001,
-        "image_timeout_s": 0.3,
+        "image_timeout_s": 10.0,
     } | settings
     return GigeCamera("eye", GigeCameraConfig(**asked))

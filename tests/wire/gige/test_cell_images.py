@@ -84,8 +84,8 @@ def head(producer: Path, **settings: Any) -> GigeHead:
         "right": Selection(serial_number=RIGHT),
         "producers": (producer,),
         "exposure_s": USUAL_US / 1e6,
-        "image_timeout_s": 5.0,
-        "max_difference_s": 0.5,
+        "image_timeout_s": 20.0,
+        "max_difference_s": 10.0,
         "tries": 1,
     } | settings
     return GigeHead("head", GigeHeadConfig(**asked))
@@ -115,7 +115,7 @@ async def test_the_settings_of_the_camera_reach_the_cell(producer: Path, pair: P
 
 async def test_faults_of_a_frame_server_by_their_names(producer: Path, pair: Pair) -> None:
     """Each spoils so many exposures as was said, and the cameras give images again after it."""
-    async with head(producer, image_timeout_s=0.5) as cameras:
+    async with head(producer, image_timeout_s=2.0) as cameras:
         await cameras.grab()
         for name, fault in (
             ("silent", ReplyTimeout),
@@ -137,7 +137,7 @@ async def test_faults_of_a_frame_server_by_their_names(producer: Path, pair: Pai
 
 
 async def test_a_late_image_comes_late(producer: Path, pair: Pair) -> None:
-    async with head(producer, image_timeout_s=5.0) as cameras:
+    async with head(producer) as cameras:
         await cameras.grab()
         pair.head.faults.inject("late", 0.4, replies=1)
         begun_s = asyncio.get_running_loop().time()

@@ -2,7 +2,6 @@
 
 import asyncio
 import os
-import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -217,24 +216,24 @@ async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
         right=Selection(serial_number=RIGHT),
         producers=(producer,),
         exposure_s=0.001,
-        image_timeout_s=1.0,
+        image_timeout_s=2.0,
         tries=1,
-        max_difference_s=1.0,
+        max_difference_s=2.0,
     )
     async with GigeHead("head", settings) as head:
         await head.grab()
-        before = await descriptors(fakes.opened(LEFT))
+        before = await descriptors(head, fakes.opened(LEFT))
         for _ in range(2):
             fakes.inject(RIGHT, fault, 1)
             with pytest.raises((ImagesDamaged, ReplyTimeout)):
                 await head.grab()
         await head.grab()
-        assert await descriptors(fakes.opened(LEFT)) == before
+        assert await descriptors(head, fakes.opened(LEFT)) == before
 
 
 async def test_an_image_that_comes_late_is_nobodys(producer: Path, fakes: FakeCameras) -> None:
-    async with camera(producer) as eye:
-        fakes.inject(LEFT, "slow_ms", 500)
+    async with camera(producer, image_timeout_s=2.0) as eye:
+        fakes.inject(LEFT, "slow_ms", 30_000)
         with pytest.raises(ReplyTimeout):
             await eye.grab()
         fakes.inject(LEFT, "slow_ms", 0)
@@ -283,7 +282,13 @@ async def test_a_lost_camera_that_nothing_is_sent_to_is_asked_for(
             fakes.pulse()
             await asyncio.wait({first}, timeout=0.1)
         await first
+        fakes.inject(LEFT, "slow_ms", 60_000)
+        begun = fakes.begun(LEFT)
         waiting = asyncio.create_task(eye.grab())
+        while fakes.begun(LEFT) == begun:
+            fakes.pulse()
+            await asyncio.wait({waiting}, timeout=0.1)
+        assert not waiting.done()
         fakes.inject(LEFT, "lost")
         fakes.inject(LEFT, "lost", 0)
         with pytest.raises(LinkLost):
@@ -294,31 +299,6 @@ async def test_a_camera_that_is_slow_is_not_lost(producer: Path, fakes: FakeCame
     async with camera(producer, image_timeout_s=10.0) as eye:
         fakes.inject(LEFT, "slow_ms", 1500)
         await eye.grab()
-
-
-async def test_a_library_that_hangs_costs_a_fault_and_its_process(
-    producer: Path, fakes: FakeCameras
-) -> None:
-    async with camera(producer, tries=1) as eye:
-        await eye.grab()
-        fakes.inject(LEFT, "hang")
-        with pytest.raises(ReplyTimeout, match="hangs"):
-            await eye.grab()
-        fakes.inject(LEFT, "hang", 0)
-        await eye.connect()
-        await eye.grab()
-
-
-async def test_the_library_ends_with_its_daemon(producer: Path, fakes: FakeCameras) -> None:
-    """A camera that a dead daemon keeps would be busy for the next one."""
-    async with camera(producer) as eye:
-        child = fakes.opened(LEFT)
-        assert child not in {0, os.getpid()}
-        os.kill(child, signal.SIGKILL)
-        with pytest.raises(LinkLost):
-            await eye.grab()
-        await eye.grab()
-        assert fakes.opened(LEFT) not in {0, child}
 
 
 async def test_nothing_is_left_behind(producer: Path, fakes: FakeCameras) -> None:
@@ -338,13 +318,13 @@ async def test_a_head_whose_cameras_do_not_meet(producer: Path, fakes: FakeCamer
         right=Selection(serial_number=RIGHT),
         producers=(producer,),
         exposure_s=0.001,
-        image_timeout_s=1.0,
-        max_difference_s=0.1,
+        image_timeout_s=10.0,
+        max_difference_s=1.0,
     )
     async with GigeHead("head", settings) as head:
         assert await head.serial_number() == f"{LEFT}+{RIGHT}"
         await head.grab()
-        fakes.inject(RIGHT, "slow_ms", 300)
+        fakes.inject(RIGHT, "slow_ms", 2500)
         with pytest.raises(CamerasNotTogether):
             await head.grab()
 

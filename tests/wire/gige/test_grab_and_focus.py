@@ -43,7 +43,8 @@ producers = ["{producer}"]
 left.serial_number = "GL-1"
 right.serial_number = "GR-2"
 gain_db = 3.0
-max_difference_s = 0.5
+max_difference_s = 10.0
+image_timeout_s = 20.0
 """
 FRAME_SERVER = """name = "bench"
 [{section}.eye]

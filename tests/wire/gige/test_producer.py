@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from drivers.camera.gige.driver import GigeCamera
 from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import FakeCameras
 from tests.wire.gige.conftest import LEFT, camera, descriptors
@@ -84,15 +85,15 @@ async def test_many_images_leave_nothing(producer: Path, fakes: FakeCameras) -> 
             await eye.grab()
             if number == 200:
                 child = fakes.opened(LEFT)
-                before = await _kept(child)
-        after = await _kept(child)
+                before = await _kept(eye, child)
+        after = await _kept(eye, child)
     assert after[0] <= before[0], "descriptors of the library's process"
     assert after[1] <= before[1] + 2000, "its memory, kB"
 
 
-async def _kept(process: int) -> tuple[int, int]:
+async def _kept(eye: GigeCamera, process: int) -> tuple[int, int]:
     """Open descriptors and resident memory (kB)."""
-    return await descriptors(process), _resident_kb(process)
+    return await descriptors(eye, process), _resident_kb(process)
 
 
 def _resident_kb(process: int) -> int:

@@ -24,8 +24,8 @@ def head(producer: Path, **settings: Any) -> GigeHead:
         "right": Selection(serial_number=RIGHT),
         "producers": (producer,),
         "trigger": "none",
-        "image_timeout_s": 5.0,
-        "max_difference_s": 5.0,
+        "image_timeout_s": 20.0,
+        "max_difference_s": 20.0,
     } | settings
     return GigeHead("head", GigeHeadConfig(**asked))
 
@@ -64,12 +64,12 @@ async def test_a_head_whose_second_camera_comes_late(producer: Path, fakes: Fake
 async def test_clocks_that_agree_know_better_than_this_pc(
     producer: Path, fakes: FakeCameras
 ) -> None:
-    """From the request to the third frame it takes 0.4 s and more; the frames lie closer."""
+    """From the request to the third frame it takes 2 s and more; the frames lie closer."""
     for serial in (LEFT, RIGHT):
-        fakes.inject(serial, "slow_ms", 200)
-    async with head(producer, clocks_agree=True, max_difference_s=0.3) as eyes:
+        fakes.inject(serial, "slow_ms", 1000)
+    async with head(producer, clocks_agree=True, max_difference_s=1.9) as eyes:
         await eyes.grab()
-    async with head(producer, max_difference_s=0.3) as eyes:
+    async with head(producer, max_difference_s=1.9) as eyes:
         with pytest.raises(CamerasNotTogether):
             await eyes.grab()
 

@@ -1,0 +1,104 @@
+"""The process of the maker's library: how it ends, and what its end costs the daemon."""
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cellctl.errors.link import LinkLost, ReplyTimeout
+from fakes.gentl.cameras import FakeCameras
+from tests.wire.gige.conftest import LEFT, camera, ended, until
+
+NEVER_MS = 600_000
+"""An exposure that nobody lives to see."""
+
+
+async def test_one_that_hangs_costs_a_fault_and_is_ended(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer, tries=1, image_timeout_s=3.0) as eye:
+        await eye.grab()
+        library = fakes.opened(LEFT)
+        fakes.inject(LEFT, "hang")
+        with pytest.raises(ReplyTimeout, match="hangs"):
+            await eye.grab()
+        assert ended(library)
+        fakes.inject(LEFT, "hang", 0)
+        await eye.connect()
+        await eye.grab()
+
+
+async def test_one_that_crashes_costs_a_fault(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer) as eye:
+        await eye.grab()
+        fakes.inject(LEFT, "crash")
+        with pytest.raises(LinkLost, match="crashed"):
+            await eye.grab()
+        await eye.grab()
+
+
+async def test_one_that_dies_while_it_waits_for_an_image_costs_a_fault(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer, image_timeout_s=60.0) as eye:
+        library = fakes.opened(LEFT)
+        assert library not in {0, os.getpid()}
+        fakes.inject(LEFT, "slow_ms", NEVER_MS)
+        waiting = asyncio.create_task(eye.grab())
+        await until(lambda: fakes.begun(LEFT) == 1)
+        os.kill(library, signal.SIGKILL)
+        with pytest.raises(LinkLost, match="crashed"):
+            await waiting
+        fakes.inject(LEFT, "slow_ms", 0)
+        await eye.grab()
+        assert fakes.opened(LEFT) not in {0, library}
+
+
+async def test_one_that_is_found_dead_is_started_anew_without_a_fault(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    """It had nothing to do when it died, so no image of the cell is lost with it."""
+    async with camera(producer) as eye:
+        library = fakes.opened(LEFT)
+        os.kill(library, signal.SIGKILL)
+        await until(lambda: ended(library))
+        image = await eye.grab()
+        assert fakes.opened(LEFT) not in {0, library}
+    # The first image of a camera that was opened anew.
+    assert image.pixels[0, 0] == 37
+
+
+BENCH = """name = "bench"
+[cameras.eye]
+driver = "gige"
+settings.producers = ["{producer}"]
+settings.camera.serial_number = "GL-1"
+settings.image_timeout_s = 90.0
+"""
+
+
+def test_one_that_is_busy_ends_with_its_daemon(
+    producer: Path, fakes: FakeCameras, tmp_path: Path
+) -> None:
+    """A camera that the library of a dead daemon keeps would be in use for the next one."""
+    cell = tmp_path / "bench.toml"
+    cell.write_text(BENCH.format(producer=producer))
+    fakes.inject(LEFT, "slow_ms", NEVER_MS)
+    program = "from cellctl.cli.app import main; main()"
+    daemon = subprocess.Popen(
+        [sys.executable, "-c", program, "grab", cell, "--camera", "eye", "--out", tmp_path / "out"],
+    )
+    try:
+        # While it waits for an image it does not look whether anybody waits for the answer.
+        asyncio.run(until(lambda: fakes.begun(LEFT) == 1 or daemon.poll() is not None))
+        library = fakes.opened(LEFT)
+        assert library not in {0, os.getpid(), daemon.pid}
+        assert not ended(library)
+    finally:
+        daemon.kill()
+        daemon.wait()
+    asyncio.run(until(lambda: ended(library)))
