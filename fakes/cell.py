@@ -54,12 +54,12 @@ class Cell:
         self.clock = WorldClock()
         self.world = open_world(scenario, seed)
         self.watch = MotionWatch(self.world.arms)
+        self._rack = DeviceRack(self.world, self.clock, self._ports, gentl)
         self.robots = {
             name: self._controller(name, robot)
             for name, robot in scenario.robots.items()
             if robot.controller != "rpc"
         }
-        self._rack = DeviceRack(self.world, self.clock, self._ports, gentl)
         self.stopping = asyncio.Event()
         self._control = ControlServer(Operator(self, self.commands()).handlers())
 
@@ -133,6 +133,7 @@ class Cell:
                 faults=FaultBoard(name, JOB_FAULTS),
                 statement_s=robot.statement_ms / 1000,
                 adaptation=Adaptation(robot.name, robot.step_max_mm, robot.deadman_ms),
+                contact_closed=self._rack.contact(robot.permit),
             )
         return SjlController(
             self.world.arms[name],
@@ -140,6 +141,7 @@ class Cell:
             ports,
             faults=FaultBoard(name, ROBOT_FAULTS),
             offer=_offer(robot) if robot.streams else None,
+            contact_closed=self._rack.contact(robot.permit),
         )
 
 

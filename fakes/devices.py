@@ -4,7 +4,7 @@ Job controllers of robots are not here: they connect to the PC, as the real ones
 """
 
 import asyncio
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -14,7 +14,7 @@ from fakes.clock import WorldClock
 from fakes.device import Device
 from fakes.faults import TRACKER_FAULTS, FaultBoard
 from fakes.scenario import Scenario
-from fakes.sections import DigitalIo, Gripper, Robot, Tracker
+from fakes.sections import Contact, DigitalIo, Gripper, Robot, Tracker
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import gripper_coupler
@@ -57,6 +57,13 @@ class DeviceRack:
         if self._couplers:
             commands |= {"set_input": self._set_input, "outputs": self._outputs}
         return commands
+
+    def contact(self, wired: Contact | None) -> Callable[[], bool]:
+        """Whether a contact is closed now; one that is not wired is bridged."""
+        if wired is None:
+            return lambda: True
+        coupler, output = self._couplers[wired.device], wired.output
+        return lambda: coupler.outputs[output]
 
     def shut_down(self) -> None:
         """End the renderers, once the devices have stopped."""

@@ -151,6 +151,18 @@ class Scenario(Section):
                 yield f"{name}.optics: [optics.{camera.optics}] has no stereo rig"
         if self.all_cameras() and self.rendering is None:
             yield "cameras need a section [rendering]"
+        yield from self._wiring_mistakes()
+
+    def _wiring_mistakes(self) -> Iterator[str]:
+        """Contacts in permit loops that are not there."""
+        for name, robot in self.robots.items():
+            contact = robot.permit
+            if contact is None:
+                continue
+            io = self.digital_ios.get(contact.device)
+            if io is None or contact.output not in io.outputs:
+                there = f"output {contact.output} of a digital I/O {contact.device!r}"
+                yield f"{name}.permit: there is no {there}"
 
     def _named_robots(self) -> Iterator[tuple[str, str]]:
         for name, camera in self.all_cameras().items():

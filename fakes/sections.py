@@ -46,6 +46,14 @@ class Spread(Section):
     rotation_deg: Three
 
 
+class Contact(Section):
+    """An output of a digital I/O, whose contact is wired to something else."""
+
+    device: DeviceName
+    output: int
+    """Its address there."""
+
+
 class Robot(Section):
     """An arm and its controller."""
 
@@ -91,6 +99,8 @@ class Robot(Section):
     controller: Controller = "protocol"
     statement_ms: float = 0.5
     """Of a job file; nobody has published the speed of the real interpreter."""
+    permit: Contact | None = None
+    """The PC's own contact in the permit loop of the controller; without one it is bridged."""
 
     @model_validator(mode="after")
     def _ports_fit(self) -> Self:
@@ -101,6 +111,8 @@ class Robot(Section):
         )
         if not needed <= self.ports.keys() <= allowed:
             raise ValueError(f"ports of a {self.controller} controller: {sorted(allowed)}")
+        if self.controller == "rpc" and self.permit is not None:
+            raise ValueError("permit: the fake of a collaborative arm has no permit loop")
         return self
 
 

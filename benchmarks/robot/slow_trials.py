@@ -103,7 +103,7 @@ async def _grd_silence(slow: Slow) -> None:
 
 
 async def _contact(slow: Slow) -> None:
-    slow.rig.controller.contact_closed = False
+    slow.rig.controller.contact_closed = lambda: False
 
 
 async def _one_late_answer(slow: Slow) -> None:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
-    from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
+    from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState, IoNames
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
     from cellctl.interfaces.gripper import Gripper, GripperState
     from cellctl.interfaces.motion_bounds import MotionBounds
@@ -35,6 +35,7 @@ __all__ = [
     "FtSensor",
     "Gripper",
     "GripperState",
+    "IoNames",
     "MotionBounds",
     "PixelFormat",
     "PoseStream",
@@ -55,7 +56,7 @@ __all__ = [
 
 _MODULES = {
     "camera": ("Camera", "CameraImage", "PixelFormat"),
-    "digital_io": ("DigitalIo", "DigitalIoState"),
+    "digital_io": ("DigitalIo", "DigitalIoState", "IoNames"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),
     "gripper": ("Gripper", "GripperState"),
     "motion_bounds": ("MotionBounds",),

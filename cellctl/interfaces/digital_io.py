@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from cellctl.interfaces.device import Device
 
@@ -18,6 +19,14 @@ class DigitalIoState:
     """As the device drives them, which is not always what was written."""
 
 
+@dataclass(frozen=True, slots=True)
+class IoNames:
+    """Names of the signals of a device."""
+
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
 class DigitalIo(Device):
     """Called by steps, from the daemon's event loop only.
 
@@ -30,11 +39,18 @@ class DigitalIo(Device):
 
     Methods may raise ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``, ``DeviceFault`` or
     ``OutputsDropped``; ``connect`` also ``WatchdogUnsuitable``. After any of them every call raises
-    until ``connect`` is called again, because it is open what the outputs have done.
+    until ``connect`` is called again, because it is open what the outputs have done; Clear does
+    that. ``connect`` does nothing while the link stands.
     """
 
     input_names: tuple[str, ...]
     output_names: tuple[str, ...]
+
+    @classmethod
+    def names(cls, config: Any) -> IoNames | None:  # noqa: ARG003
+        """The signals that these settings name, before anything is connected; None where only the
+        device knows them. What the cell file says of outputs is held against them."""
+        return None
 
     @abstractmethod
     async def disconnect(self) -> None:

@@ -33,6 +33,7 @@ class Gripper(Device):
 
     Every method may raise ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``, ``DeviceFault``,
     ``OutputsDropped`` or ``GripperSensorsDisagree``; ``connect`` also ``WatchdogUnsuitable``.
+    ``connect`` does nothing while the link stands; Clear calls it.
     """
 
     @abstractmethod

@@ -6,6 +6,7 @@ from cellctl import log
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
+from cellctl.cell.reconnecting import reconnect
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import StateDidNotEnd
@@ -176,6 +177,8 @@ class UnitController:
         # Whoever clears says that the robots stand: one that was given up gets its links back.
         if not self._cell.connected or self._cell.unstopped:
             await self._cell.connect()
+        else:
+            await reconnect({**self._cell.grippers, **self._cell.digital_ios})
         # Once the devices are there, whenever that is: before, nobody knows where an arm stands.
         if self._interrupted:
             await self._tell_of(self._interrupted)

@@ -43,11 +43,14 @@ class JobController:
         faults: FaultBoard | None = None,
         statement_s: float = 0.0005,
         adaptation: Adaptation | None = None,
+        contact_closed: Callable[[], bool] = lambda: True,
     ) -> None:
-        """``folder`` holds the job files; without ``adaptation`` they run as they are shipped."""
+        """``folder`` holds the job files; without ``adaptation`` they run as they are shipped.
+
+        ``contact_closed`` tells of the PC's digital output in the permit loop.
+        """
         self.faults = faults or FaultBoard("robot", JOB_FAULTS)
-        self.contact_closed = True
-        """The PC's digital output in the permit loop."""
+        self.contact_closed = contact_closed
         self.alarm = ""
         """What has ended a job; the main job starts again with ``acknowledge``."""
         self._arm, self._clock, self._ports, self._host = arm, clock, ports, host
@@ -175,4 +178,4 @@ class JobController:
     def _permit(self) -> bool:
         outputs = self.memory.outputs
         contacts = outputs["DO", _PERMIT], outputs["DO", _GUARD_PERMIT]
-        return self.contact_closed and all(contacts)
+        return self.contact_closed() and all(contacts)

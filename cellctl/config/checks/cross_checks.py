@@ -1,10 +1,10 @@
 """Checks that need several sections of a cell file at once."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.devices import CameraConfig
+from cellctl.config.checks.outputs import output_issues
 from cellctl.config.driver_settings import least_stale_ms, robot_driver
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors.config import MixedSimulation
@@ -17,8 +17,7 @@ def cross_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> list[ConfigI
         *_names(cell),
         *_recipe_ids(cell),
         *_carriers(cell),
-        *_permits(cell),
-        *_lights(cell),
+        *output_issues(cell, found),
         *_pace(cell, found),
         *_simulation(cell),
     ]
@@ -79,42 +78,6 @@ def unpermitted(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
                 "section 3"
             )
             yield ConfigIssue(f"robots.{name}.permit", "(missing)", allowed)
-
-
-def _permits(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Digital outputs that robots are permitted by."""
-    permits = {name: robot.permit for name, robot in cell.robots.items() if robot.permit}
-    used = Counter((permit.device, permit.output) for permit in permits.values())
-    for name, permit in permits.items():
-        key = f"robots.{name}.permit"
-        yield from _io_is_there(cell, permit.device, key)
-        if used[permit.device, permit.output] > 1:
-            yield ConfigIssue(f"{key}.output", repr(permit.output), "one contact for each robot")
-
-
-def _lights(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Digital outputs that light up for cameras."""
-    permits = [robot.permit for robot in cell.robots.values() if robot.permit]
-    taken = {(permit.device, permit.output) for permit in permits}
-    cameras: tuple[tuple[str, Mapping[str, CameraConfig]], ...] = (
-        ("cameras", cell.cameras),
-        ("stereo_cameras", cell.stereo_cameras),
-    )
-    for section, named in cameras:
-        for name, camera in named.items():
-            light, key = camera.light, f"{section}.{name}.light"
-            if light is None:
-                continue
-            yield from _io_is_there(cell, light.device, key)
-            # The end of an exposure would take the arm's permit away, or its beginning give it.
-            if (light.device, light.output) in taken:
-                yield ConfigIssue(f"{key}.output", repr(light.output), "not the permit of a robot")
-
-
-def _io_is_there(cell: CellConfig, device: str, key: str) -> Iterator[ConfigIssue]:
-    if device not in cell.digital_ios:
-        ios = ", ".join(cell.digital_ios) or "none"
-        yield ConfigIssue(f"{key}.device", repr(device), f"one of digital_ios: {ios}")
 
 
 def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:

@@ -1,8 +1,9 @@
 """Digital inputs and outputs behind a Modbus TCP coupler (docs/protocols/modbus-coupler.md)."""
 
 from collections.abc import Mapping
+from typing import Any
 
-from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState
+from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState, IoNames
 from drivers.io.modbus_coupler import faults, protocol
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.connection import coupler
@@ -18,6 +19,12 @@ class ModbusCouplerIo(DigitalIo):
         self.input_names = tuple(config.inputs)
         self.output_names = tuple(config.outputs)
         self._coupler = coupler(name, config)
+
+    @classmethod
+    def names(cls, config: Any) -> IoNames:
+        """As the configuration names them."""
+        settings = ModbusCouplerConfig.model_validate(config)
+        return IoNames(tuple(settings.inputs), tuple(settings.outputs))
 
     async def connect(self) -> None:
         """Connect and check the coupler's watchdog. Idempotent."""

@@ -72,11 +72,6 @@ class CouplerServer:
         await asyncio.gather(*self._clients, return_exceptions=True)
         await server.wait_closed()
 
-    def expire(self) -> None:
-        """Let the watchdog drop the outputs if its time has come: for whoever is wired to them and
-        asks for none."""
-        self._watch()
-
     @property
     def outputs(self) -> dict[int, bool]:
         """Outputs as they are driven now."""

@@ -45,11 +45,16 @@ class SjlController:
         host: str = "127.0.0.1",
         faults: FaultBoard | None = None,
         offer: StreamOffer | None = None,
+        contact_closed: Callable[[], bool] = lambda: True,
     ) -> None:
-        """``offer`` is what the job program offers for streamed motion, if anything."""
+        """``offer`` is what the job program offers for streamed motion, if anything.
+
+        ``contact_closed`` tells of the PC's digital output in the permit loop.
+        """
         self.faults = faults or FaultBoard("robot", ROBOT_FAULTS)
-        self.logic = Controller(arm, self.faults, offer, clock())
         self._arm, self._clock = arm, clock
+        self._offer, self._contact_closed = offer, contact_closed
+        self.logic = self._switched_on()
         self._host, self._ports = host, ports
         self._tasks: list[asyncio.Task[None]] = []
         self._senders: dict[Channel, Sender] = {}
@@ -71,8 +76,12 @@ class SjlController:
         """Switch off and on: channels drop, the latch is forgotten, joints stay."""
         self._arm.stop(self._clock(), latency_s=0.0)
         await self.stop()
-        self.logic = Controller(self._arm, self.faults, self.logic.offer, self._clock())
+        self.logic = self._switched_on()
         self.start()
+
+    def _switched_on(self) -> Controller:
+        booted_s = self._clock()
+        return Controller(self._arm, self.faults, self._offer, booted_s, self._contact_closed)
 
     @property
     def open_channels(self) -> list[Channel]:

@@ -1,5 +1,6 @@
 """What a controller's job programs decide, without I/O: records and times in, records out."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -53,6 +54,8 @@ class Controller:
     offer: StreamOffer | None = None
     """What is offered for streamed motion; None for a job program that cannot."""
     booted_s: float = 0.0
+    contact_closed: Callable[[], bool] = lambda: True
+    """Of the PC's digital output in the permit loop."""
     links: dict[Channel, Link] = field(default_factory=dict)
     lost: set[Channel] = field(default_factory=set)
     """Channels that were open and have not come back."""
@@ -129,6 +132,8 @@ class Controller:
         """What has become due: dead man, panel, end of a motion, end of a stop."""
         self._supervise_links(time_s)
         self._supervise_panel(time_s)
+        if not (self.latched or self.contact_closed()):
+            self._halt(time_s, "STOP")
         out = self._advance_stream(time_s)
         if self.moving(time_s) or not (self._motion or self._stops):
             return out
@@ -159,7 +164,8 @@ class Controller:
     def _rearm(self, seq: int, time_s: float) -> Outbox:
         if self.panel.emergency_stop:
             raise RefusedMotionError("ESTOP")
-        if self.lost or self._stops or (self.latched and self.arm.moving(time_s)):
+        stopping = self._stops or (self.latched and self.arm.moving(time_s))
+        if self.lost or stopping or not self.contact_closed():
             raise RefusedMotionError("LATCHED")
         if self._motion is not None:
             raise RefusedMotionError("BUSY")

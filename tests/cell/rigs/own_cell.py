@@ -19,6 +19,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from fakes.demo.control import Control
+from fakes.scenario import load
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config"
@@ -157,8 +158,7 @@ class OwnCell:
     @contextmanager
     def control(self) -> Iterator[Control]:
         """The operator's hands at the fake cell."""
-        shipped = tomllib.loads(self._shipped_scenario.read_text(encoding="utf-8"))
-        control = Control(self.ports[shipped["control_port"]])
+        control = Control(self.ports[load(self._shipped_scenario).control_port])
         try:
             yield control
         finally:

@@ -191,7 +191,7 @@ def cell(light: dict[str, str], permit: dict[str, str] | None = None) -> CellCon
             "digital_ios": {
                 "lamps": {
                     "driver": "modbus-coupler",
-                    "settings": {"host": "127.0.0.1", "outputs": {"ring": 0}},
+                    "settings": {"host": "127.0.0.1", "outputs": {"ring": 0, "arm": 1}},
                 }
             },
         }
@@ -207,7 +207,7 @@ def test_a_cell_puts_one_lamp_before_its_cameras(tmp_path: Path) -> None:
 
 
 def test_an_output_that_is_not_there(tmp_path: Path) -> None:
-    with pytest.raises(SignalUnknown, match="rung; outputs of lamps: ring"):
+    with pytest.raises(SignalUnknown, match="rung; outputs of lamps: ring, arm"):
         Cell(cell(RING | {"output": "rung"}), tmp_path)
 
 

@@ -126,3 +126,18 @@ def test_a_controller_has_its_own_ports(
     small["robots"]["arm"] |= {"controller": controller, "ports": ports}
     with pytest.raises(ValidationError, match=f"ports of a {controller} controller"):
         PlateScenario.model_validate(small)
+
+
+@pytest.mark.parametrize(
+    ("device", "output", "fits"), [("loop", 1, True), ("loop", 2, False), ("lamp", 1, False)]
+)
+def test_a_contact_in_a_permit_loop_must_be_there(
+    small: dict[str, Any], device: str, output: int, *, fits: bool
+) -> None:
+    small["digital_ios"] = {"loop": {"port": 1, "outputs": [0, 1], "watchdog_ms": 500}}
+    small["robots"]["arm"]["permit"] = {"device": device, "output": output}
+    if fits:
+        assert PlateScenario.model_validate(small).robots["arm"].permit is not None
+        return
+    with pytest.raises(ValidationError, match=f"arm.permit: there is no output {output} of"):
+        PlateScenario.model_validate(small)

@@ -60,7 +60,7 @@ def _fault(name: str) -> Callable[[JobRig], object]:
 
 
 def _open_contact(rig: JobRig) -> None:
-    rig.controller.contact_closed = False
+    rig.controller.contact_closed = lambda: False
 
 
 async def _back_after_a_loss(rig: JobRig) -> None:

@@ -1,10 +1,8 @@
 """The PC's contact in the permit loop of a controller that runs the jobs, over a real coupler."""
 
-import asyncio
 import time
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
-from typing import Any
 
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.driver import ModbusCouplerIo
@@ -23,31 +21,20 @@ async def permit_loop(
 ) -> AsyncIterator[tuple[ModbusCouplerIo, ChaosProxy]]:
     """The driver of the coupler, its contact closed, and the wire to it."""
 
-    def drive(_time_s: float, outputs: Any) -> None:
-        rig.controller.contact_closed = outputs[_ADDRESS]
-
     coupler = CouplerServer(
         time.monotonic,
         inputs=lambda _: {0: True},
         output_addresses=[_ADDRESS],
-        on_outputs=drive,
         watchdog_ms=watchdog_ms,
     )
+    # The controller asks at each of its ticks, by which the watchdog of the coupler has its clock.
+    rig.controller.contact_closed = lambda: coupler.outputs[_ADDRESS]
     async with AsyncExitStack() as stack:
         wire = await stack.enter_async_context(ChaosProxy(await coupler.start()))
         stack.push_async_callback(coupler.stop)
-        watching = asyncio.create_task(_watchdog(coupler))
-        stack.callback(watching.cancel)
         settings = ModbusCouplerConfig(
             host="127.0.0.1", port=wire.port, inputs={"ready": 0}, outputs={PERMIT: _ADDRESS}
         )
         io = await stack.enter_async_context(ModbusCouplerIo("permit", settings))
         await io.write({PERMIT: True})
         yield io, wire
-
-
-async def _watchdog(coupler: CouplerServer) -> None:
-    """The coupler's own clock, which needs nobody to ask."""
-    while True:
-        coupler.expire()
-        await asyncio.sleep(0.002)

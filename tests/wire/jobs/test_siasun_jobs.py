@@ -33,12 +33,12 @@ async def until_moving(rig: JobRig) -> None:
 async def test_the_contact_of_the_pc_stops_a_motion_and_latches(rig: JobRig) -> None:
     moving = move(rig)
     await until_moving(rig)
-    rig.controller.contact_closed = False
+    rig.controller.contact_closed = lambda: False
     async with asyncio.timeout(2.0):
         with pytest.raises(MotionAborted, match="STOP"):
             await moving
     assert not rig.controller.moving()
-    rig.controller.contact_closed = True
+    rig.controller.contact_closed = lambda: True
     await rig.robot._state.wait(lambda status: status.latched, 1.0)
     await rig.robot.rearm()
     await move(rig, 1.0)
@@ -48,7 +48,7 @@ async def test_the_contact_stops_beside_background_jobs_that_hang(rig: JobRig) -
     moving = move(rig)
     await until_moving(rig)
     rig.controller.faults.inject("frozen_stat")
-    rig.controller.contact_closed = False
+    rig.controller.contact_closed = lambda: False
     async with asyncio.timeout(2.0):
         with pytest.raises(CellError):
             await moving
@@ -68,7 +68,7 @@ async def test_a_pc_that_comes_late_finds_no_latch() -> None:
 
 async def test_an_open_loop_refuses_the_release(rig: JobRig) -> None:
     await rig.robot.stop()
-    rig.controller.contact_closed = False
+    rig.controller.contact_closed = lambda: False
     with pytest.raises(CellError):
         await rig.robot.rearm()
     assert rig.robot.state().stop_latched

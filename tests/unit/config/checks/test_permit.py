@@ -70,3 +70,39 @@ def test_an_arm_with_wrong_settings_is_reported_once(tmp_path: Path) -> None:
     path.write_text(path.read_text().replace('robot_name = "SR500A"', "", 1))
     keys = [one.key for one in problems_before_commissioning(path)]
     assert [key for key in keys if key.startswith("robots.")] == ["robots.main.settings.robot_name"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "said"),
+    [
+        ('output = "aux_1_permit"', 'output = "aux_1_permits"', "output", "aux_1_permit"),
+        ('output = "aux_1_permit"', 'output = "main_permit"', "output", "one contact"),
+        ('output = "aux_1_permit"', 'output = "loop"', "output", "loop is an input; an output of"),
+        (
+            '{ device = "permit", output = "aux_1_permit" }',
+            '{ device = "permits", output = "aux_1_permit" }',
+            "device",
+            "digital_ios: permit",
+        ),
+    ],
+)
+def test_the_contact_must_be_an_output_of_its_device_and_no_other_arms(
+    tmp_path: Path, old: str, new: str, key: str, said: str
+) -> None:
+    path = filled_in(tmp_path)
+    text = path.read_text().replace(
+        "outputs = { main_permit", "inputs = { loop = 0 }, outputs = { main_permit"
+    )
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, new))
+    found = [one for one in problems(path) if one.key == f"robots.aux_1.permit.{key}"]
+    assert len(found) == 1
+    assert said in found[0].allowed
+
+
+def test_an_output_of_a_device_with_wrong_settings_is_not_judged(tmp_path: Path) -> None:
+    path = filled_in(tmp_path)
+    text = path.read_text()
+    path.write_text(text.replace("outputs = { main_permit", "output = { main_permit"))
+    assert all(one.key.startswith("digital_ios.permit") for one in problems(path))
+    assert problems(path) != []
