@@ -1,11 +1,11 @@
-"""What the drivers of robots and force sensors say about their settings, before a connection."""
+"""What drivers say about their settings, before a connection."""
 
 from typing import Any, cast
 
 from cellctl import plugins
-from cellctl.config.devices import ForceSensorConfig, RobotConfig
+from cellctl.config.devices import DigitalIoConfig, ForceSensorConfig, RobotConfig
 from cellctl.geometry.pose import MM
-from cellctl.interfaces import MotionBounds, Robot
+from cellctl.interfaces import DigitalIo, IoNames, MotionBounds, Robot
 
 
 def robot_driver(robot: RobotConfig) -> tuple[type[Robot], Any]:
@@ -43,3 +43,10 @@ def sensor_rate_hz(sensor: ForceSensorConfig) -> float:
 def least_stale_ms(sensor: ForceSensorConfig) -> float:
     """Silence below this is the sensor's own pace: two samples."""
     return 2e3 / sensor_rate_hz(sensor)
+
+
+def io_names(io: DigitalIoConfig) -> IoNames | None:
+    """Names of its inputs and outputs, None where its driver knows them only from the device;
+    raises like ``robot_driver``."""
+    driver: Any = plugins.load(plugins.DIGITAL_IO, io.driver)
+    return cast(type[DigitalIo], driver).names(driver.Config.model_validate(io.settings))

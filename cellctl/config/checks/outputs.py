@@ -3,13 +3,11 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import cast
 
-from cellctl import plugins
 from cellctl.config.cell import CellConfig
-from cellctl.config.devices import CameraConfig, DigitalIoConfig
+from cellctl.config.devices import CameraConfig
+from cellctl.config.driver_settings import io_names
 from cellctl.config.issue import ConfigIssue
-from cellctl.interfaces import DigitalIo, IoNames
 from cellctl.spelling import nearest
 
 
@@ -68,15 +66,10 @@ def _is_there(cell: CellConfig, use: _Use, found: Sequence[ConfigIssue]) -> Iter
     section = f"digital_ios.{use.device}"
     if any(issue.key.startswith((f"{section}.driver", f"{section}.settings")) for issue in found):
         return  # its signals are not known
-    names = _io_names(cell.digital_ios[use.device])
+    names = io_names(cell.digital_ios[use.device])
     if names is None or use.output in names.outputs:
         return
     outputs = ", ".join(names.outputs) or "none"
     why = f"{use.output} is an input; " if use.output in names.inputs else ""
     allowed = f"{why}{nearest(use.output, names.outputs)}an output of {use.device}: {outputs}"
     yield ConfigIssue(f"{use.key}.output", repr(use.output), allowed)
-
-
-def _io_names(io: DigitalIoConfig) -> IoNames | None:
-    driver = cast(type[DigitalIo], plugins.load(plugins.DIGITAL_IO, io.driver))
-    return driver.names(driver.Config.model_validate(io.settings))
