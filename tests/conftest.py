@@ -14,7 +14,7 @@ _SHARED_IMAGES = (
     "tests/unit/calibration/",
     "tests/unit/cli/offline/test_calibrate.py",
 )
-_SHARED_MATING = ("tests/unit/processes/deck_to_frame/test_mate.py",)
+_SHARED_MATING = ("tests/unit/processes/deck_to_frame/mating/test_mate.py",)
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs. The same examples in every run: a commit that

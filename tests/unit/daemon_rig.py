@@ -20,8 +20,8 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.packml.unit_command import Source, UnitCommand
-from cellctl.processes.deck_to_frame import move_to_start as beginning
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
+from cellctl.processes.deck_to_frame.moves import move_to_start as beginning
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunHead, RunRecord

@@ -18,13 +18,16 @@ from benchmarks.antenna.chain.drawn_cell import (
 )
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.cell_figures import ArmFigures
-from cellctl.processes.antenna_module.chain.reference_check import (
+from cellctl.processes.antenna_module.chain.reference.reference_check import (
     ReferenceReading,
     further_looks,
     require_nothing_moved,
 )
-from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks, turn_angles
-from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
+from cellctl.processes.antenna_module.chain.reference.reference_looks import (
+    ReferenceLooks,
+    turn_angles,
+)
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.faults.calibration import (
     FixedCameraMoved,
     FlangeCameraMoved,

@@ -37,8 +37,12 @@ from cellctl.processes.antenna_module.chain.looks import (
 )
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, compose_plan
 from cellctl.processes.antenna_module.chain.schemes import Scheme
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, TeachLimits, teach_plug
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching.teaching import (
+    TaughtPlug,
+    TeachLimits,
+    teach_plug,
+)
 
 PITCH_M = 1.27e-3
 _ROWS = [(i - 3.5, 0.5) for i in range(8)] + [(i - 3.0, -0.5) for i in range(7)]

@@ -9,9 +9,9 @@ from cellctl.calibration.solvers.single_camera.single_camera_result import Singl
 from cellctl.calibration.solvers.tool.tool import ToolResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.errors.robot import ControllerFault
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
-from cellctl.processes.antenna_module.chain.tool_turn import ToolTurnResult
+from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import ToolTurnResult
 from cellctl.processes.antenna_module.faults.calibration import (
     ArmMoved,
     FixedCameraMoved,

@@ -29,10 +29,10 @@ from cellctl.processes.antenna_module.chain.cell_figures import (
     MountedCamera,
     PlugCell,
 )
-from cellctl.processes.antenna_module.chain.made_with import MadeWith, ReferenceMadeWith
+from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.teaching.made_with import MadeWith, ReferenceMadeWith
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
 from cellctl.processes.antenna_module.drawings import Drawings, Plate, read_drawings, read_plate
 from cellctl.processes.antenna_module.faults.plugging import (
     CalibrationsDoNotBelongTogether,

@@ -100,7 +100,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
 
     async def begin(self, run: "PluggingRun") -> "GripperEmpty":
         """Gripper open and empty, arm at home."""
-        from cellctl.processes.antenna_module.start import move_to_start
+        from cellctl.processes.antenna_module.moves.start import move_to_start
 
         return await move_to_start(run)
 
@@ -112,7 +112,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
 
     async def clear(self) -> None:
         """Up from tray and socket, home; a module in the gripper is the operator's."""
-        from cellctl.processes.antenna_module.start import leave_stations
+        from cellctl.processes.antenna_module.moves.start import leave_stations
         from cellctl.processes.antenna_module.stations import antenna_recipes
 
         recipes = antenna_recipes(self.services.cell.config)
@@ -128,7 +128,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
 
     def procedures(self) -> "Sequence[Procedure]":
         """What Maintenance offers: calibrations, the reference, the plug correction."""
-        from cellctl.processes.antenna_module.procedures.offered import antenna_procedures
+        from cellctl.processes.antenna_module.procedures.procedure_list import antenna_procedures
         from cellctl.processes.antenna_module.stations import antenna_recipes
 
         recipes = antenna_recipes(self.services.cell.config)

@@ -7,7 +7,7 @@ from cellctl.processes.antenna_module.drawings import Drawings
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.looking import Eyes
-from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.records.run_recorder import RunRecorder

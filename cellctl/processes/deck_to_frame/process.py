@@ -104,7 +104,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     async def begin(self, run: "OpenRun") -> "Ready":
         """The deck clear of the station, the heads over it; these count as unmoved from here on."""
-        from cellctl.processes.deck_to_frame.move_to_start import move_to_start
+        from cellctl.processes.deck_to_frame.moves.move_to_start import move_to_start
 
         return await move_to_start(run)
 
@@ -116,7 +116,7 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     async def clear(self) -> None:
         """Lift the deck off the station, wherever a recipe's deck would be low over its frame."""
-        from cellctl.processes.deck_to_frame.lift_off import lift_off
+        from cellctl.processes.deck_to_frame.moves.lift_off import lift_off
 
         for cell in self._cells():
             await lift_off(cell)
@@ -141,13 +141,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         cls, record: RunRecord, read: ReadArtefact, calibrations: Mapping[str, Calibration]
     ) -> Iterator[Replayed]:
         """Poses from the raw images, what followed from them, and the peaks of the force."""
-        from cellctl.processes.deck_to_frame.replay import replay
+        from cellctl.processes.deck_to_frame.record.replay import replay
 
         return replay(record, read, calibrations)
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibration and commissioning, 101 to 109."""
-        from cellctl.processes.deck_to_frame.procedures.offered import deck_procedures
+        from cellctl.processes.deck_to_frame.procedures.procedure_list import deck_procedures
 
         # The cell's measurements belong to its devices: they are offered once, with those of the
         # first recipe.

@@ -10,10 +10,10 @@ from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_m
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, PartMeasurer
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.record.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.interruption import Interruption

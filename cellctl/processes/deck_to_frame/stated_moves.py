@@ -16,7 +16,7 @@ from cellctl.config.via_points import has_way
 from cellctl.errors.config import ArmNotDescribed
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.processes.deck_to_frame.lift_off import LIFT_M
+from cellctl.processes.deck_to_frame.moves.lift_off import LIFT_M
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import (
     DECK_MEASURE,

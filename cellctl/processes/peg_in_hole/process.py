@@ -108,7 +108,7 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
 
     def procedures(self) -> "Sequence[Procedure]":
         """Procedure 301 measures the loop."""
-        from cellctl.processes.peg_in_hole.procedures.offered import peg_procedures
+        from cellctl.processes.peg_in_hole.procedures.procedure_list import peg_procedures
         from cellctl.processes.peg_in_hole.stations import peg_recipes
 
         recipes = peg_recipes(self.services.cell.config)

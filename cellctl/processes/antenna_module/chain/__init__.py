@@ -8,7 +8,7 @@ at the connectors, ``marks`` on the gripper, ``plate`` beside camera II.
 - ``cell_figures``: what calibrations and the robot's data sheet say
 - ``termed_pose``: a pose whose covariance is kept apart by its causes
 - ``schemes``: four ways to ``flange_T_plug``, by name
-- ``taught``: the correction from taught plugs; ``teaching`` makes it
 - ``plan``: composes, predicts, refuses
-- ``tool_turn``, ``reference_check``: the gripper marks, and which device has moved
+- ``teaching``: the correction from taught plugs, and the gripper marks by turning them
+- ``reference``: which device has moved
 """

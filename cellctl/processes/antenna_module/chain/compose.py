@@ -11,7 +11,7 @@ from cellctl.processes.antenna_module.chain.schemes import (
     base_T_socket,
     constant_errors,
 )
-from cellctl.processes.antenna_module.chain.taught import TaughtSlot
+from cellctl.processes.antenna_module.chain.teaching.taught import TaughtSlot
 from cellctl.processes.antenna_module.chain.termed_pose import Term, TermedPose
 
 

@@ -17,7 +17,6 @@ from cellctl.processes.antenna_module.chain.compose import (
     target_pose,
 )
 from cellctl.processes.antenna_module.chain.looks import Looks
-from cellctl.processes.antenna_module.chain.made_with import MadeWith
 from cellctl.processes.antenna_module.chain.requirements import (
     require_fresh,
     require_one_set,
@@ -25,7 +24,8 @@ from cellctl.processes.antenna_module.chain.requirements import (
     require_wrist,
 )
 from cellctl.processes.antenna_module.chain.schemes import Scheme, base_T_socket
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection, TaughtSlot
+from cellctl.processes.antenna_module.chain.teaching.made_with import MadeWith
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection, TaughtSlot
 from cellctl.processes.antenna_module.chain.termed_pose import Term
 from cellctl.processes.antenna_module.chain.worst_contact import (
     WorstContact,

@@ -19,10 +19,10 @@ from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.taught_check import checked_with
-from cellctl.processes.antenna_module.chain.teaching import teach_plug
-from cellctl.processes.antenna_module.chain.tool_turn import calibrate_tool_turn
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching.taught_check import checked_with
+from cellctl.processes.antenna_module.chain.teaching.teaching import teach_plug
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import calibrate_tool_turn
 from cellctl.processes.antenna_module.commands.trial_file import (
     TeachFile,
     TrialFile,
@@ -140,7 +140,7 @@ def calibrate_plug(
     _write(out, correction.to_record())
     if picture is not None:
         # Here, because every command of `cellctl` loads this module and few of them draw.
-        from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
+        from cellctl.processes.antenna_module.chain.teaching.taught_picture import taught_picture
 
         write_file(picture, taught_picture(correction))
     if not correction.passed:
@@ -159,7 +159,7 @@ def calibrate_turn(
     _show_checks(result.checks)
     _write(out, result.to_record())
     if picture is not None:
-        from cellctl.processes.antenna_module.chain.turn_picture import turn_picture
+        from cellctl.processes.antenna_module.chain.teaching.turn_picture import turn_picture
 
         write_file(picture, turn_picture(result))
     if not result.passed:

@@ -14,7 +14,7 @@ from cellctl.processes.antenna_module.chain.looks import (
     PlugLook,
     SocketLook,
 )
-from cellctl.processes.antenna_module.chain.teaching import TaughtPlug
+from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug
 from cellctl.processes.antenna_module.commands.cell_file import (
     AnyObject,
     CellEntries,

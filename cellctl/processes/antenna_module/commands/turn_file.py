@@ -7,7 +7,7 @@ from pydantic import Field, PlainValidator, model_validator
 
 from cellctl.calibration.input_file import InputFile, InputPose, numbers
 from cellctl.geometry.pose import MM, Array
-from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 
 
 def _planar_m(values: object) -> Array:

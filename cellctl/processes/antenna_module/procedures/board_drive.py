@@ -15,10 +15,10 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Camera
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.looking import Eyes
-from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.moves.start import leave_stations
 from cellctl.processes.antenna_module.procedures.board_poses import swung_poses
 from cellctl.processes.antenna_module.roles import BOARD_LOOK, BOARD_SHOW, HOME
-from cellctl.processes.antenna_module.start import leave_stations
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext
 

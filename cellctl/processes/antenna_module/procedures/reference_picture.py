@@ -9,7 +9,7 @@ from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.geometry.pose import Array
 from cellctl.plot_style import ACCENT, style
-from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks
+from cellctl.processes.antenna_module.chain.reference.reference_looks import ReferenceLooks
 
 _UM = 1e-6
 

@@ -13,19 +13,19 @@ from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, PLUG_CORRECTION
-from cellctl.processes.antenna_module.chain.taught_check import checked_with
-from cellctl.processes.antenna_module.chain.taught_picture import taught_picture
-from cellctl.processes.antenna_module.chain.teaching import TaughtPlug, teach_plug
+from cellctl.processes.antenna_module.chain.teaching.taught_check import checked_with
+from cellctl.processes.antenna_module.chain.teaching.taught_picture import taught_picture
+from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.facts import read_facts
 from cellctl.processes.antenna_module.faults.calibration import NobodyPlugged
 from cellctl.processes.antenna_module.faults.plugging import ModuleMissing
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.start import move_to_start
 from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE_S, jogged_by_hand
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
-from cellctl.processes.antenna_module.start import move_to_start
 from cellctl.processes.antenna_module.state import GripperEmpty, SocketLocated
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.processes.antenna_module.steps.find_module import find_module

@@ -1,20 +1,20 @@
 """Procedure 205: where axis, gripper marks and plate are, for later checks to compare with."""
 
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, REFERENCE
-from cellctl.processes.antenna_module.chain.made_with import ReferenceMadeWith
-from cellctl.processes.antenna_module.chain.reference_check import (
+from cellctl.processes.antenna_module.chain.reference.reference_check import (
     require_nothing_moved,
 )
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.teaching.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
 from cellctl.processes.antenna_module.looking import Eyes
-from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.moves.reference_drive import ReferenceDrive
+from cellctl.processes.antenna_module.moves.start import leave_stations
 from cellctl.processes.antenna_module.procedures.reference_picture import reference_picture
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.settings import ReferenceSection
-from cellctl.processes.antenna_module.start import leave_stations
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices

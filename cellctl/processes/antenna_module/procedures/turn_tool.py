@@ -11,21 +11,21 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.checks import LimitCheck
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL_TURN
-from cellctl.processes.antenna_module.chain.reference_looks import turn_angles
-from cellctl.processes.antenna_module.chain.tool_turn import (
+from cellctl.processes.antenna_module.chain.reference.reference_looks import turn_angles
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import (
     ToolTurnResult,
     TurnStop,
     calibrate_tool_turn,
 )
-from cellctl.processes.antenna_module.chain.turn_picture import turn_picture
+from cellctl.processes.antenna_module.chain.teaching.turn_picture import turn_picture
 from cellctl.processes.antenna_module.facts import read_facts
 from cellctl.processes.antenna_module.looking import Eyes
-from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.moves.start import leave_stations
+from cellctl.processes.antenna_module.moves.turning import TurnDrive
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
-from cellctl.processes.antenna_module.start import leave_stations
 from cellctl.processes.antenna_module.stations import AntennaCell
-from cellctl.processes.antenna_module.turning import TurnDrive
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 

@@ -7,16 +7,16 @@ from cellctl import log
 from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.calibrations import REFERENCE
-from cellctl.processes.antenna_module.chain.reference_check import (
+from cellctl.processes.antenna_module.chain.reference.reference_check import (
     ReferenceReading,
     further_looks,
     furthest_m,
     require_nothing_moved,
 )
-from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.reference.reference_looks import ReferenceLooks
+from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.moves.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.record import keys
-from cellctl.processes.antenna_module.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import GripperEmpty
 

@@ -10,7 +10,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Looks, SocketLook
 from cellctl.processes.antenna_module.faults.plugging import SocketUnsound
 from cellctl.processes.antenna_module.looking import Seen, combined, nominal, plane_by
-from cellctl.processes.antenna_module.moving import shifted
+from cellctl.processes.antenna_module.moves.moving import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.record.pictures import record_picture
 from cellctl.processes.antenna_module.roles import SOCKET_LOOK

@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.faults.connector import (
     MarksMissing,
 )
 from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
-from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.moves.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 

@@ -7,7 +7,7 @@ from cellctl.clock import now_s
 from cellctl.errors.force import TareImplausible
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moving import raised
+from cellctl.processes.antenna_module.moves.moving import raised
 from cellctl.processes.antenna_module.pushing.way import InsertionWay
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.state import OverSocket, Planned

@@ -2,9 +2,9 @@
 
 The path of an image:
 - ``pixels``: from the file to the one plane of grey values that is measured;
-- ``spots``: where something round of the right size is;
+- ``contact_fit.spots``: where something round of the right size is;
 - ``matching``: which spot is which contact, and whether another assignment fits as well;
-- ``rim_edges``, ``circle_fit``: sub-pixel edges along rays, a robust circle with its covariance;
+- ``contact_fit``: sub-pixel edges along rays, a robust circle with its covariance, tips of pins;
 - ``planar_fit``: x, y and yaw of the drawing, contacts off their place left out;
 - ``pattern``: these four one after another, for contacts and for marks;
 - ``measure``: the verdicts on contacts, orientation, place and scale; the entrance.

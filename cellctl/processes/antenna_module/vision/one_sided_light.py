@@ -16,7 +16,7 @@ from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.faults.connector import LightFromOneSide
-from cellctl.processes.antenna_module.vision.circle_fit import Circle
+from cellctl.processes.antenna_module.vision.contact_fit.circle_fit import Circle
 from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
 
 _MOST = 0.42

@@ -6,13 +6,13 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.processes.antenna_module.vision.circle_fit import Circle, fit_circle
+from cellctl.processes.antenna_module.vision.contact_fit.circle_fit import Circle, fit_circle
+from cellctl.processes.antenna_module.vision.contact_fit.rim_edges import rim_edges
+from cellctl.processes.antenna_module.vision.contact_fit.spots import Spots, find_spots
+from cellctl.processes.antenna_module.vision.contact_fit.tip_fit import fit_tip
 from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
 from cellctl.processes.antenna_module.vision.planar_fit import PlanarFit, fit_planar
 from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
-from cellctl.processes.antenna_module.vision.rim_edges import rim_edges
-from cellctl.processes.antenna_module.vision.spots import Spots, find_spots
-from cellctl.processes.antenna_module.vision.tip_fit import fit_tip
 
 _COARSE, _FINE = 0.45, 0.28
 """Range of the search for edges, of the radius: first round a spot, then round a circle."""

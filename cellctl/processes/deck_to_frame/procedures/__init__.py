@@ -1,1 +1,1 @@
-"""Maintenance on this cell: 101 to 109. ``offered`` lists them with their devices."""
+"""Maintenance on this cell: 101 to 109. ``procedure_list`` lists them with their devices."""

@@ -2,12 +2,12 @@
 
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
-from cellctl.processes.deck_to_frame.stations import DeckCell
-from cellctl.processes.deck_to_frame.taught_poses import (
+from cellctl.processes.deck_to_frame.moves.taught_poses import (
     head_to_measuring_pose,
     head_to_retracted_pose,
     main_to_home,
 )
+from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.progress import ProgressBoard
 
 

@@ -9,20 +9,20 @@ from cellctl.processes.deck_to_frame.mating.commissioning import (
     measure_contact_stiffness,
 )
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
-from cellctl.processes.deck_to_frame.mating.curves import curves_kept
-from cellctl.processes.deck_to_frame.move_to_start import move_to_start
+from cellctl.processes.deck_to_frame.moves.move_to_start import move_to_start
+from cellctl.processes.deck_to_frame.moves.taught_poses import main_to_home
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_picture import stiffness_picture
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import (
     stiffness_checks,
     stiffness_record,
 )
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.record.force_curves import curves_kept
 from cellctl.processes.deck_to_frame.run import OpenRun
 from cellctl.processes.deck_to_frame.run_facts import read_facts
 from cellctl.processes.deck_to_frame.state import Corrected, Ready
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.processes.deck_to_frame.steps import CORRECT_POSE, TO_STAND_OFF
-from cellctl.processes.deck_to_frame.taught_poses import main_to_home
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices, RunContext

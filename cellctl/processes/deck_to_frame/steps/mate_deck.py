@@ -1,9 +1,9 @@
 """Step 50: lower the deck onto the frame under force (paper 2.4.2, mission A4)."""
 
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan
-from cellctl.processes.deck_to_frame.mating.curves import curves_kept
 from cellctl.processes.deck_to_frame.mating.mate import mate_until_seated
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
+from cellctl.processes.deck_to_frame.record.force_curves import curves_kept
 from cellctl.processes.deck_to_frame.state import Corrected, Seated
 from cellctl.processes.deck_to_frame.steps.correct_pose import LABEL, NUMBER, correct_pose
 

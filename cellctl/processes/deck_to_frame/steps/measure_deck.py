@@ -3,11 +3,11 @@
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.processes.deck_to_frame.moves.taught_poses import main_to_pose
 from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
 from cellctl.processes.deck_to_frame.poses.pose_limits import require_near
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
 from cellctl.processes.deck_to_frame.state import DeckMeasured, FrameMeasured
-from cellctl.processes.deck_to_frame.taught_poses import main_to_pose
 
 
 async def measure_deck(frame: FrameMeasured) -> DeckMeasured:

@@ -5,7 +5,10 @@ import pytest
 
 from cellctl.cell.guarded_motion import settling
 from tests.unit.cell.bench import Bench, make_bench
+from tests.unit.daemon_fixtures import rig as daemon_rig
 from tests.unit.processes.deck_to_frame.rig import RunRig
+
+__all__ = ["bench", "daemon_rig", "rig"]
 
 
 @pytest.fixture

@@ -8,11 +8,11 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
-from cellctl.processes.deck_to_frame.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingOutcome, MatingResult, Reading, Tare
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, PartMeasurer
 from cellctl.processes.deck_to_frame.recipe import PoseCorrection
+from cellctl.processes.deck_to_frame.record.deck_recorder import DeckRecorder
 from cellctl.processes.deck_to_frame.run import AssemblyRun, OpenRun
 from cellctl.processes.deck_to_frame.state import Ready
 from cellctl.records.async_store import AsyncRunStore

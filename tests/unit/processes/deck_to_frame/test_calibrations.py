@@ -9,7 +9,7 @@ from cellctl.api.modbus.register_map import VALIDITY_REGISTERS
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.processes.deck_to_frame.calibrations import BOARD_TRANSFER, CALIBRATIONS
 from cellctl.processes.deck_to_frame.procedures.board_transfer import WaitingPlacements
-from cellctl.processes.deck_to_frame.procedures.offered import deck_procedures
+from cellctl.processes.deck_to_frame.procedures.procedure_list import deck_procedures
 from cellctl.processes.deck_to_frame.roles import ROLES
 from tests.unit.processes.deck_to_frame.rig import RunRig
 

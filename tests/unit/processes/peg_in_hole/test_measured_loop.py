@@ -23,7 +23,7 @@ from cellctl.force.contact.streamed.identification import StiffnessFit
 from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
 from cellctl.processes.peg_in_hole.facts import read_facts
 from cellctl.processes.peg_in_hole.procedures.contact_loop_picture import loop_picture
-from cellctl.processes.peg_in_hole.procedures.offered import peg_procedures
+from cellctl.processes.peg_in_hole.procedures.procedure_list import peg_procedures
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.record.loop_record import (
     figures_of_record,

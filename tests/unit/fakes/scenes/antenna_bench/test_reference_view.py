@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.processes.antenna_module.chain.reference_looks import turn_angles
+from cellctl.processes.antenna_module.chain.reference.reference_looks import turn_angles
 from fakes.render.optics.lens import views_of
 from fakes.render.optics.surface import to_pixels
 from fakes.scenes.antenna_bench.scenario import BenchScenario

@@ -22,7 +22,7 @@ from cellctl.processes.antenna_module.chain.looks import (
     SocketLook,
 )
 from cellctl.processes.antenna_module.chain.plan import ContactPattern
-from cellctl.processes.antenna_module.chain.teaching import TaughtPlug
+from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug
 
 JOINTS_RAD = np.radians([10.0, -40.0, 95.0, 5.0, 40.0, 20.0])
 FLANGE_T_CAM1 = pose_from_xyzabc([81, 7, -42, 12, -3, 5])

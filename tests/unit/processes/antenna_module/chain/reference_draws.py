@@ -4,8 +4,11 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.cell_figures import ArmFigures
-from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks, turn_angles
-from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
+from cellctl.processes.antenna_module.chain.reference.reference_looks import (
+    ReferenceLooks,
+    turn_angles,
+)
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 
 ARM = ArmFigures(5.53e-6, 1.745e-5, 0.26e-3, 24e-6)
 LEVER_M = 0.24

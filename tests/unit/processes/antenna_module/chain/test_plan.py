@@ -13,8 +13,8 @@ from cellctl.processes.antenna_module.chain.cell_figures import PlugCell
 from cellctl.processes.antenna_module.chain.looks import Looks
 from cellctl.processes.antenna_module.chain.plan import PlugPlan, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import ABSOLUTE, DIFFERENCE, GOLDEN
-from cellctl.processes.antenna_module.chain.taught import PlugCorrection
-from cellctl.processes.antenna_module.chain.teaching import teach_plug
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
+from cellctl.processes.antenna_module.chain.teaching.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.termed_pose import Term
 from cellctl.processes.antenna_module.chain.worst_contact import (
     contact_offsets,

@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.chain.cell_figures import MountedCamera, P
 from cellctl.processes.antenna_module.chain.compose import correction_of, target_pose
 from cellctl.processes.antenna_module.chain.looks import Looks
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
-from cellctl.processes.antenna_module.chain.teaching import teach_plug
+from cellctl.processes.antenna_module.chain.teaching.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.termed_pose import Term, TermedPose
 from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete, SocketImplausible
 from tests.unit.processes.antenna_module.chain import exact_cell as exact

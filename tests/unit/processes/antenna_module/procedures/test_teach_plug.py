@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.calibrations import PLUG_CORRECTION
 from cellctl.processes.antenna_module.chain.schemes import DIFFERENCE
-from cellctl.processes.antenna_module.chain.teaching import TaughtPlug
+from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug
 from cellctl.processes.antenna_module.faults.calibration import TeachScatter
 from cellctl.processes.antenna_module.procedures import teach_plug
 from cellctl.processes.antenna_module.record import keys

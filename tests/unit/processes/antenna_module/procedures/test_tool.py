@@ -13,10 +13,10 @@ from cellctl.errors.calibration import PosesNotDiverse
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL, TOOL_TURN
-from cellctl.processes.antenna_module.chain.tool_turn import TurnStop
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
 from cellctl.processes.antenna_module.procedures import by_hand, touch_tool, turn_tool
-from cellctl.processes.antenna_module.procedures.offered import antenna_procedures
+from cellctl.processes.antenna_module.procedures.procedure_list import antenna_procedures
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext
 from tests.unit.processes.antenna_module.steps.bench import Bench

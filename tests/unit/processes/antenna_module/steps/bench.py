@@ -24,7 +24,7 @@ from cellctl.processes.antenna_module.drawings import Drawings, read_drawings
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.looking import Eyes, Seen, nominal
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moving import Mover
+from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.stations import antenna_recipes

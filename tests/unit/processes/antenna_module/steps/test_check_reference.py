@@ -12,9 +12,9 @@ import pytest
 
 from cellctl.clock import utc_now
 from cellctl.geometry.pose import Array
-from cellctl.processes.antenna_module.chain.made_with import ReferenceMadeWith
-from cellctl.processes.antenna_module.chain.reference_looks import ReferenceLooks
-from cellctl.processes.antenna_module.chain.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.reference.reference_looks import ReferenceLooks
+from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
+from cellctl.processes.antenna_module.chain.teaching.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.faults.calibration import GripperMarksMoved
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.looking import Eyes

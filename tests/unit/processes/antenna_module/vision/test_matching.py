@@ -15,9 +15,9 @@ from cellctl.processes.antenna_module.faults.connector import (
     ImageMirrored,
 )
 from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
+from cellctl.processes.antenna_module.vision.contact_fit.spots import Spots
 from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
 from cellctl.processes.antenna_module.vision.pattern import Candidates
-from cellctl.processes.antenna_module.vision.spots import Spots
 
 PLUG = read_connector(Path("config/connectors/micro-d-15-pins.toml")).positions_m
 MARKS = read_marks(Path("config/connectors/gripper.toml")).positions_m

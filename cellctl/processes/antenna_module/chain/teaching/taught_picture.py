@@ -1,0 +1,55 @@
+"""The evidence of a plug correction as one picture."""
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
+from cellctl.geometry.pose import MM
+from cellctl.plot_style import LIMIT, style
+from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection, TaughtSlot
+from cellctl.processes.antenna_module.chain.teaching.teaching import TeachLimits
+
+_UM = 1e-6
+
+
+@style()
+def taught_picture(correction: PlugCorrection, limits: TeachLimits | None = None) -> bytes:
+    """PNG: each taught plug beside the mean of its slot in x, y and yaw, limits, checks."""
+    limits = limits or TeachLimits()
+    figure = new_figure(14, 5)
+    plane, yaw, text = figure.subplots(1, 3)
+    title(figure, "Plug correction", passed=correction.passed)
+    for slot in correction.slots:
+        _draw(plane, yaw, slot)
+    _bound(plane, correction, limits.scatter_m / _UM)
+    for sign in (-1.0, 1.0):
+        yaw.axhline(sign * float(np.degrees(limits.scatter_rad)), color=LIMIT, linestyle="--")
+    plane.set_title("taught plugs beside their mean")
+    plane.set_xlabel("x of the socket, µm")
+    plane.set_ylabel("y of the socket, µm")
+    yaw.set_title("their yaw")
+    yaw.set_xlabel("plug")
+    yaw.set_ylabel("yaw from the mean, °")
+    plane.legend(loc="upper right")
+    text.set_title(f"holds within {correction.range_m / MM:.0f} mm of a taught slot")
+    list_checks(text, correction.checks, ())
+    return as_png(figure)
+
+
+def _draw(plane: Axes, yaw: Axes, slot: TaughtSlot) -> None:
+    off = slot.from_mean
+    (points,) = plane.plot(off[:, 0] / _UM, off[:, 1] / _UM, "o", label=f"slot {slot.name}")
+    numbers = np.arange(1, len(off) + 1)
+    yaw.plot(numbers, np.degrees(off[:, 2]), "o", color=points.get_color())
+    yaw.set_xticks(numbers)
+
+
+def _bound(axes: Axes, correction: PlugCorrection, limit_um: float) -> None:
+    """The standard deviation per axis that is allowed, and room for what is beyond it."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    axes.plot(
+        limit_um * np.cos(turn), limit_um * np.sin(turn), "--", color=LIMIT, label="limit, 1 σ"
+    )
+    farthest_m = max(np.abs(slot.from_mean[:, :2]).max(initial=0.0) for slot in correction.slots)
+    reach_um = 1.3 * max(limit_um, float(farthest_m) / _UM)
+    axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")

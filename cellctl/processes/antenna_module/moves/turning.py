@@ -1,0 +1,106 @@
+"""Turns the gripper's marks over camera II, about the last joint alone."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.interfaces import Camera
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
+from cellctl.processes.antenna_module.connector.marks import Marks
+from cellctl.processes.antenna_module.facts import PluggingFacts
+from cellctl.processes.antenna_module.faults.connector import MarksMissing
+from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
+from cellctl.processes.antenna_module.looking import Eyes, Seen, plane_by
+from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.recipe import Place
+from cellctl.processes.antenna_module.roles import INSPECT_PLUG
+from cellctl.processes.antenna_module.vision.measure import measure_marks
+from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
+from cellctl.vision.camera.single_camera import SingleCamera
+
+_LAST_JOINT = 5
+
+
+@dataclass(frozen=True, slots=True)
+class Eye:
+    """A camera and what is known of its lens."""
+
+    camera: Camera
+    model: SingleCamera
+
+
+@dataclass(frozen=True, slots=True)
+class TurnDrive:
+    """What turning needs of a run or a procedure; the gripper is open and empty."""
+
+    facts: PluggingFacts
+    eyes: Eyes
+    mover: Mover
+
+    async def stop(self, angle_rad: float, name: str) -> TurnStop:
+        """Turn there and look: marks less reported flange axis, in the axes of the base.
+
+        ``angle_rad`` is from the taught pose over camera II. Raises ``LooksIncomplete`` where the
+        marks are not seen, and what moves and images raise.
+        """
+        await self.mover.to_joints(self._turned(angle_rad))
+        return await self._marks(name, angle_rad)
+
+    def _turned(self, angle_rad: float) -> Array:
+        """Joints with the gripper over camera II, the last one turned."""
+        joints = np.radians(self.facts.cell.arm.config.poses_deg[INSPECT_PLUG])
+        # Towards the middle of the joint's range: half a turn outwards may be beyond it.
+        inwards = -1.0 if joints[_LAST_JOINT] > 0 else 1.0
+        joints[_LAST_JOINT] += inwards * angle_rad
+        return np.asarray(joints)
+
+    async def _marks(self, name: str, angle_rad: float) -> TurnStop:
+        facts, cell = self.facts, self.facts.cell
+        recipe, base_T_cam2 = facts.recipe, facts.plug_cell.cam2.pose.pose
+        place = Place(pose=recipe.flange_T_plug, height_sigma_mm=recipe.plug_height_sigma_mm)
+        base_T_plug = cell.arm.robot.state().base_T_flange * pose_from_xyzabc(recipe.flange_T_plug)
+        expected = base_T_cam2.inv() * base_T_plug
+        seen = await look_at_marks(
+            self.eyes,
+            name,
+            camera_2_of(facts),
+            facts.drawings.gripper,
+            expected=expected,
+            place=place,
+        )
+        marks_m = (base_T_cam2 * first_pose(seen)).translation
+        return TurnStop(angle_rad, np.asarray((marks_m - seen.base_T_flange.translation)[:2]))
+
+
+def camera_2_of(facts: PluggingFacts) -> Eye:
+    """Camera II with its intrinsics."""
+    return Eye(facts.cell.camera_2, facts.camera_2)
+
+
+async def look_at_marks(
+    eyes: Eyes, name: str, eye: Eye, marks: Marks, *, expected: RigidTransform, place: Place
+) -> Seen[MeasuredMarks]:
+    """Marks in a plane that lies as ``expected``, in the camera, and is as certain as ``place``.
+
+    Raises ``LooksIncomplete`` where they are not seen.
+    """
+    measure: Callable[[Image], MeasuredMarks] = partial(
+        measure_marks,
+        camera=eye.model,
+        calibration=plane_by(eye.model, expected, place),
+        marks=marks,
+    )
+    try:
+        return await eyes.look(name, eye.camera, measure)
+    except MarksMissing as fault:
+        raise LooksIncomplete(f"{marks.name}: {fault.detail}") from fault
+
+
+def first_pose(seen: Seen[MeasuredMarks]) -> RigidTransform:
+    """camera_T_marks of the first frame."""
+    return seen.frames[0].camera_T_marks.pose

@@ -1,0 +1,46 @@
+"""Reset lifts a deck off its seat under the guard; what holds it is a fault, and it stays."""
+
+import asyncio
+
+from cellctl.daemon.supervision import LinkMonitor
+from cellctl.errors.force import LiftOffHeld
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
+from cellctl.packml.state import State
+from tests.unit.daemon_rig import DaemonRig
+
+HELD = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.30 N, limit 50.00 N", 2, -50.3)
+
+
+async def reset_while_it_is_held(daemon_rig: DaemonRig) -> None:
+    main, guard = daemon_rig.bench.cell.main, daemon_rig.bench.cell.guard
+    main.flange = daemon_rig.bench.flange_over_seat(0.0)
+    main.road_is_free = asyncio.Event()
+    watch = LinkMonitor(daemon_rig.bench.as_cell, daemon_rig.unit)
+    assert await daemon_rig.take(Command.RESET) is RejectCode.NONE
+    await main.on_the_way.wait()
+    guard.trip = HELD
+    await watch.look()
+    await daemon_rig.until(lambda: main.stops > 0)
+    main.road_is_free.set()
+    await daemon_rig.to(State.ABORTED)
+    await watch.look()
+
+
+async def test_a_deck_that_is_held_ends_the_reset_with_one_fault(daemon_rig: DaemonRig) -> None:
+    await reset_while_it_is_held(daemon_rig)
+    main = daemon_rig.bench.cell.main
+    assert [type(fault) for fault in daemon_rig.unit.machine.faults] == [LiftOffHeld]
+    assert daemon_rig.unit.alarms.numbers == (LiftOffHeld.number,)
+    assert len(main.moves) == 1
+    assert main.latched
+
+
+async def test_after_clear_and_reset_it_goes_on_from_a_new_zero(daemon_rig: DaemonRig) -> None:
+    await reset_while_it_is_held(daemon_rig)
+    main, guard = daemon_rig.bench.cell.main, daemon_rig.bench.cell.guard
+    main.road_is_free = None
+    await daemon_rig.idle()
+    assert guard.asked.count("tare") == 3, "pressed, and after the new start pressed and free"
+    assert len(main.moves) == 4

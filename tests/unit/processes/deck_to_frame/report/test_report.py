@@ -1,0 +1,149 @@
+"""The pages of an assembly: drawings, holes, and everything that an auditor asks."""
+
+import json
+import re
+import shutil
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime
+from math import isclose
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from cellctl.force.contact.curve import ForceCurve
+from cellctl.plot_style import envelope
+from cellctl.processes.deck_to_frame.report.force_plot import (
+    force_by_time,
+    force_by_travel,
+)
+from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
+from cellctl.processes.deck_to_frame.report.pages import pages
+from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
+from cellctl.records import RunStore
+from cellctl.records.entries import Document, Gauge
+from cellctl.records.files.curve_file import encode_curve
+from cellctl.records.files.mcap_reading import MEDIA_TYPE
+from cellctl.records.parts import MATE_SERIAL, PARTS
+from cellctl.records.report.export import export_run
+from tests.unit.records.conftest import start
+from tests.unit.records.page import read, text_of
+from tests.unit.records.sample import force_curve, good_run
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[RunStore]:
+    store = RunStore(tmp_path / "runs")
+    yield store
+    store.close()
+
+
+def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
+    record = store.run(good_run(store))
+    curve = force_curve(seconds=2.0)
+    drawings: tuple[Callable[[], str], ...] = (
+        lambda: errors_by_pass(record.passes),
+        lambda: plug_gauges(record.gauges),
+        lambda: force_by_time(curve, 35.0, 50.0),
+        lambda: force_by_travel(curve, None, None),
+    )
+    for draw in drawings:
+        drawing = draw()
+        assert ET.fromstring(drawing).tag.endswith("svg")
+        assert drawing == draw()
+
+
+def test_a_name_of_a_hole_is_no_formula() -> None:
+    gauge = Gauge(datetime(2026, 1, 1, tzinfo=UTC), r"P$\q$", 5.97, "operator")
+    assert ET.fromstring(plug_gauges([gauge])).tag.endswith("svg")
+
+
+def test_curves_without_samples_or_travel_are_drawn() -> None:
+    empty = ForceCurve(np.zeros(0), np.zeros((0, 6)), np.zeros(0))
+    assert "<svg" in force_by_time(empty, 35.0, 50.0)
+    unknown = ForceCurve(np.arange(3.0), np.ones((3, 6)), np.full(3, np.nan))
+    assert "<svg" in force_by_time(unknown, 35.0, 50.0)
+
+
+def test_thinning_a_curve_keeps_its_peaks() -> None:
+    x = np.arange(50_000.0)
+    y = np.random.default_rng(1).normal(size=50_000)
+    y[31_415], y[27_182] = 99.0, -99.0
+    thin_x, thin_y = envelope(x, y)
+    assert len(thin_x) <= 1400
+    assert (thin_y.max(), thin_y.min()) == (99.0, -99.0)
+    assert (np.diff(thin_x) > 0).all()
+
+
+def test_a_recording_that_was_cut_is_shown_as_far_as_it_goes(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store)
+    data = encode_curve(force_curve(), datetime.now(UTC), {})
+    store.add_artefact(run, "force-1.mcap", data[: len(data) // 2], MEDIA_TYPE)
+    store.add_artefact(run, "force-2.mcap", b"nothing", MEDIA_TYPE)
+    text = text_of(export_run(store, run, tmp_path, pages=pages))
+    assert "recording cut off" in text
+    assert "force 2" not in text
+
+
+def test_the_report_says_what_an_auditor_asks(store: RunStore, tmp_path: Path) -> None:
+    exported = tmp_path / "out"
+    page = read(export_run(store, good_run(store), exported, pages=pages))
+    text = " ".join(page.texts)
+    for expected in (
+        "SAT-0042", "Good part", "Simulated", "OP-7", "cellctl 0.1.0", "ab" * 32, "cd" * 32,
+        "Transforms", "−712.300", "179.0221", "−0.0112", "5.93 mm", "limit 50 N", "812.4 N/mm",
+        "No", "F_peak", "this entry", "P5 outlier",
+    ):  # fmt: skip
+        assert expected in text, expected
+    assert "script" not in page.tags
+    local = [address for address in page.addresses if not address.startswith("#")]
+    assert all((exported / address).is_file() for address in local)
+    assert len([a for a in local if a.endswith(".png")]) == 8
+
+
+def test_deck_and_frame_have_their_serial_numbers(store: RunStore, tmp_path: Path) -> None:
+    run = start(store, "SAT-0042")
+    store.add(run, Document(PARTS, {MATE_SERIAL: "FRAME-0007"}))
+    text = " ".join(text_of(export_run(store, run, tmp_path / "a", pages=pages)).split())
+    assert "serial number, deck SAT-0042 serial number, frame FRAME-0007" in text
+    nameless = " ".join(text_of(export_run(store, start(store), tmp_path, pages=pages)).split())
+    assert "serial number, frame not recorded" in nameless
+
+
+def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
+    store: RunStore, tmp_path: Path
+) -> None:
+    text = text_of(export_run(store, start(store), tmp_path, pages=pages))
+    for section in ("Holes", "Measure and compensate", "Mating under force", "Pin holes"):
+        assert section not in text
+
+
+OLD = Path(__file__).parents[5] / "data" / "store-v1"
+
+
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(1, marks=pytest.mark.long), 2, pytest.param(3, marks=pytest.mark.long), 4, 5],
+)
+def test_every_number_of_an_old_report_is_in_the_new_one(tmp_path: Path, number: int) -> None:
+    shutil.copytree(OLD, tmp_path / "old")
+    migrated = RunStore(tmp_path / "old")
+    page = read(export_run(migrated, number, tmp_path / "out", pages=pages))
+    migrated.close()
+    words = OLD / "expected" / f"run-{number}" / "report-words.json"
+    before = numbers_of(json.loads(words.read_text(encoding="utf-8")))
+    assert len(before) > 20
+    after = numbers_of(page.texts)
+    # Some were written with all their digits, and are written with four now.
+    missing = [
+        one for one in before - after if not any(isclose(one, two, rel_tol=5e-4) for two in after)
+    ]
+    assert missing == []
+
+
+def numbers_of(texts: list[str]) -> set[float]:
+    """Every number, whatever sign or word stands beside it."""
+    return {float(found) for text in texts for found in re.findall(r"\d+(?:\.\d+)?", text)}
