@@ -121,7 +121,7 @@ def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
         assert section not in text
 
 
-OLD = Path(__file__).parents[5] / "data" / "store-v1"
+OLD = Path(__file__).parents[4] / "data" / "store-v1"
 
 
 @pytest.mark.parametrize(
