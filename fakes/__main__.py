@@ -8,9 +8,9 @@ from typing import Annotated
 
 import typer
 
-from fakes import scenario as scenarios
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
-from fakes.sections import JobController
+from fakes.scenario_file import scenario as scenarios
+from fakes.scenario_file.sections import JobController
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")

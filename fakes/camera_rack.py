@@ -10,8 +10,8 @@ from fakes.device import Device
 from fakes.render.look import options_of
 from fakes.render.options import RenderOptions
 from fakes.render.worker import make_pool
-from fakes.scenario import Scenario
-from fakes.sections import SingleCamera, StereoCamera
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import SingleCamera, StereoCamera
 from fakes.wire.cameras.cfs_server import MONO8, RGB8, CfsServer
 from fakes.wire.cameras.frame_server import FrameServer
 from fakes.wire.cameras.gentl_rack import GentlRack

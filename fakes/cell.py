@@ -20,9 +20,9 @@ from fakes.jobs.installation import Adaptation
 from fakes.motion_watch import MotionWatch
 from fakes.operator import Operator
 from fakes.priority import stand_apart
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import Robot
 from fakes.scenes.registry import open_world
-from fakes.sections import Robot
 from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.world import Command

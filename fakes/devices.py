@@ -13,8 +13,8 @@ from fakes.camera_rack import CameraRack
 from fakes.clock import WorldClock
 from fakes.device import Device
 from fakes.faults import TRACKER_FAULTS, FaultBoard
-from fakes.scenario import Scenario
-from fakes.sections import Contact, DigitalIo, Gripper, Robot, Tracker
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import Contact, DigitalIo, Gripper, Robot, Tracker
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import gripper_coupler

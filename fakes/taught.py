@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.world.arm import forward, inverse, nominal_links
 from fakes.world.frames import from_written, to_written
 

@@ -3,6 +3,7 @@
 import ast
 import statistics
 import tomllib
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -43,6 +44,11 @@ def test_files_stay_small() -> None:
     written = [size for size in sizes.values() if size > 2]
     assert statistics.median(written) < 100
     assert [str(path) for path, size in sizes.items() if size > 300] == []
+
+
+def test_folders_can_be_read_at_a_glance() -> None:
+    folders = Counter(path.parent for path in SOURCES)
+    assert {str(folder): files for folder, files in folders.items() if files > 16} == {}
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))

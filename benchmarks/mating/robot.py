@@ -9,7 +9,7 @@ from cellctl.errors.link import LinkLost, StaleData
 from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, StopFailed
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import Robot, RobotMode, RobotState
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.logic import Controller, Record
 
 SESSION = 1

@@ -29,8 +29,8 @@ from scipy.spatial.transform import RigidTransform
 from benchmarks.robot.far_controllers import Ports, serve_controller
 from benchmarks.robot.rpc_bench import far_end
 from cellctl.interfaces.robot import Robot
+from drivers.robot.siasun.channels.running_command import RunningCommand
 from drivers.robot.siasun.driver import SiasunRobot
-from drivers.robot.siasun.running_command import RunningCommand
 from drivers.robot.siasun_rpc.motion import Motion
 from tests.ports import free_ports
 from tests.wire.siasun.sjl_rig import arm_settings

@@ -4,7 +4,7 @@ import asyncio
 from multiprocessing.connection import Connection
 
 from fakes.jobs.controller import JobController
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.controller import SjlController
 from tests.wire.standing_arm import standing_arm
 

@@ -11,7 +11,6 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from fakes import scenario as scenarios
 from fakes.demo import registry
 from fakes.demo.children import ChildFailed, Family
 from fakes.demo.control import Refused
@@ -22,8 +21,9 @@ from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, req
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.gentl.build import NoCompilerError
 from fakes.imperfections import UnknownImperfection, parsed_scale
+from fakes.scenario_file import scenario as scenarios
+from fakes.scenario_file.sections import JobController
 from fakes.scenes.registry import UnknownScene
-from fakes.sections import JobController
 
 DEFAULT_PROCESS = "deck-to-frame"
 _REFUSALS = (

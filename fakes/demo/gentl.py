@@ -11,7 +11,7 @@ from typing import Any, Literal
 from fakes.gentl.build import NAME, NoCompilerError, build_producer
 from fakes.gentl.cameras import FakeCamera
 from fakes.gentl.shown import shown
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 
 Cameras = Literal["gentl", "frame-server"]
 """How the images of the fake cell come to the daemon."""

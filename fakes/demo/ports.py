@@ -5,7 +5,7 @@ import socket
 import tomllib
 from pathlib import Path
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 
 HOST = "127.0.0.1"
 DEFAULT_MODBUS_PORT = 502

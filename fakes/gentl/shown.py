@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from fakes.gentl.cameras import FakeCamera
-from fakes.scenario import Scenario
-from fakes.sections import Camera, SingleCamera, StereoCamera
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import Camera, SingleCamera, StereoCamera
 
 
 def shown(scenario: Scenario) -> dict[str, tuple[FakeCamera, ...]]:

@@ -12,7 +12,7 @@ from fakes.jobs.memory import Memory
 from fakes.jobs.motion import Motions
 from fakes.jobs.sockets import JobSocket
 from fakes.jobs.task import Shared, Task
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm
 

@@ -2,8 +2,8 @@
 
 from typing import Final
 
-from fakes.appearance import Rendering
 from fakes.render.options import RenderOptions
+from fakes.scenario_file.appearance import Rendering
 
 _IMAGE_WIDTH_M: Final = 0.34
 _IMAGE_AREA_M2: Final = 0.097

@@ -3,7 +3,7 @@
 from importlib.metadata import entry_points
 from typing import Any
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.world.world import World
 
 GROUP = "fakes.scene"

@@ -15,7 +15,7 @@ from math import acos, atan2, cos, hypot, sin, tau
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.sections import Chain
+from fakes.scenario_file.sections import Chain
 from fakes.world.frames import MM, Array
 
 _FIRST, _SECOND = np.array([[0, 2, 2, 1, 2, 1], [1, 0, 0, 2, 0, 2]])

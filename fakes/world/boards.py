@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
-from fakes.sections import ChessboardPrint
+from fakes.scenario_file.sections import ChessboardPrint
 from fakes.world.frames import MM, stream, stream_seed
 from fakes.world.scene import SceneChessboard
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import RigidTransform, Rotation, Slerp
 
-from fakes.sections import Chain
+from fakes.scenario_file.sections import Chain
 from fakes.world.arm import inverse
 from fakes.world.frames import Array, distance
 

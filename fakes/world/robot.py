@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.sections import Robot
+from fakes.scenario_file.sections import Robot
 from fakes.world.arm import (
     OutOfReachError,
     forward,

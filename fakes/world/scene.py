@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
-from fakes.sections import RingLamp
+from fakes.scenario_file.sections import RingLamp
 from fakes.world.connector.scene import SceneConnector, SceneMarks
 
 Array = NDArray[np.float64]

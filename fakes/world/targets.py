@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.sections import Tracker
+from fakes.scenario_file.sections import Tracker
 from fakes.world.frames import MM, Array
 
 UP = np.array([0.0, 0.0, 1.0])

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from fakes.scenario import Scenario
-from fakes.sections import (
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import (
     Camera,
     ForceSensor,
     Optics,

@@ -12,17 +12,17 @@ from typing import Any, ClassVar, Generic, TypeVar
 from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
-from fakes.scenario import Scenario
-from fakes.sections import RingLamp
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import RingLamp
 from fakes.world.flaws.arm import ArmFlaws
 from fakes.world.flaws.camera import CameraFlaws
 from fakes.world.flaws.sensor import SensorFlaws
 from fakes.world.frames import Array, stream, stream_seed
 from fakes.world.gripper import PneumaticJaws
-from fakes.world.mounted_sensor import STEP_S, MountedSensor
+from fakes.world.load.mounted_sensor import STEP_S, MountedSensor
+from fakes.world.load.sensor import ForceReading
 from fakes.world.robot import RobotArm
 from fakes.world.scene import CameraScene, Seen
-from fakes.world.sensor import ForceReading
 from fakes.world.targets import SeenTarget, Target, flange_targets, seen_targets
 from fakes.world.truth import draw, stream_keys
 

@@ -1,6 +1,6 @@
 """Scenarios for tests on the wire."""
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 
 
 def as_on_a_real_cell(scenario: Scenario) -> Scenario:

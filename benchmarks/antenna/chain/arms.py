@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
-from fakes.sections import Chain
+from fakes.scenario_file.sections import Chain
 from fakes.world.arm import Links, forward, inverse, nominal_links, perturbed_links
 from fakes.world.flaws.transmission import Transmission
 

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.errors.link import LinkLost, ReplyTimeout
-from drivers.camera.gige import entry, faults
+from drivers.camera.gige import faults
+from drivers.camera.gige.library_process import entry
 from drivers.camera.gige.protocol import Answer, Grabbed, Request, RequestFailed
 
 Block = NDArray[np.uint8]

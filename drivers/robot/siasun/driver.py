@@ -29,13 +29,13 @@ from cellctl.interfaces.streaming_robot import (
 )
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.bounds import Bounds
-from drivers.robot.siasun.command_channel import CommandChannel
+from drivers.robot.siasun.channels.command_channel import CommandChannel
+from drivers.robot.siasun.channels.running_command import RunningCommand
+from drivers.robot.siasun.channels.state_channel import StateChannel
+from drivers.robot.siasun.channels.stream import SiasunStream
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.described_arm import DescribedArm
 from drivers.robot.siasun.link_facts import link_facts
-from drivers.robot.siasun.running_command import RunningCommand
-from drivers.robot.siasun.state_channel import StateChannel
-from drivers.robot.siasun.stream import SiasunStream
 from drivers.robot.siasun.targets import MotionTarget, Targets
 
 

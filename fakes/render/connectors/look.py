@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fakes.render.options import RenderOptions
-from fakes.sections import RingLamp
+from fakes.scenario_file.sections import RingLamp
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from fakes.scenario import Scenario
-from fakes.sections import (
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import (
     ChessboardPrint,
     DeviceName,
     Pair,

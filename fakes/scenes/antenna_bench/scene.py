@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import Optics
 from fakes.scenes.antenna_bench.boards import (
     plate_dots,
     plate_pose,
@@ -20,12 +21,11 @@ from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, pla
 from fakes.scenes.antenna_bench.scenario import BenchScenario
 from fakes.scenes.antenna_bench.shifts import shifted
 from fakes.scenes.antenna_bench.truth import truth_of
-from fakes.sections import Optics
 from fakes.world.boards import chessboard_as_made
 from fakes.world.connector.made import gripper_marks
 from fakes.world.flaws.warmth import warmed
 from fakes.world.frames import MM, Array, from_written, inverse_matrix, stream
-from fakes.world.payload import Payload
+from fakes.world.load.payload import Payload
 from fakes.world.scene import Seen
 from fakes.world.truth import drawn_spread
 from fakes.world.views import in_view

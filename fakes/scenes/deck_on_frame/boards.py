@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from fakes.scenario_file.sections import Optics, StereoRig
 from fakes.scenes.deck_on_frame.scenario import DeckScenario, TargetBoard
-from fakes.sections import Optics, StereoRig
 from fakes.world.frames import MM, displacement, from_written, stream
 from fakes.world.scene import SceneDisc
 

@@ -6,9 +6,9 @@ from fakes.faults import FaultBoard
 from fakes.scenes.deck_on_frame.parts import PartsTruth
 from fakes.scenes.deck_on_frame.pins import pin_faces
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
-from fakes.world.contact import ContactPoints
 from fakes.world.frames import MM, Array
-from fakes.world.suspension import Contacts
+from fakes.world.load.contact import ContactPoints
+from fakes.world.load.suspension import Contacts
 
 _DOWEL_N_M = 1e6
 """A steel dowel jammed in its hole; the arm behind it is no stiffer."""

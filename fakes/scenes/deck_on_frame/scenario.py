@@ -4,8 +4,17 @@ from typing import Any, Self
 
 from pydantic import model_validator
 
-from fakes.scenario import Scenario
-from fakes.sections import ChessboardPrint, DeviceName, Pair, Pose, Section, Spread, Springs, Three
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import (
+    ChessboardPrint,
+    DeviceName,
+    Pair,
+    Pose,
+    Section,
+    Spread,
+    Springs,
+    Three,
+)
 
 
 class HoleSpec(Section):

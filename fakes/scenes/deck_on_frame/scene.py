@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.faults import FaultBoard
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenes.deck_on_frame.boards import (
     board_discs,
     chessboard_view,
@@ -21,9 +21,9 @@ from fakes.scenes.deck_on_frame.parts import PartsTruth, draw_parts, grip_slips
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.views import plates, seen_target_board
 from fakes.world.boards import chessboard_as_made
-from fakes.world.contact import Touch
 from fakes.world.frames import MM, Array, from_written, to_written
-from fakes.world.payload import Payload
+from fakes.world.load.contact import Touch
+from fakes.world.load.payload import Payload
 from fakes.world.scene import Body
 from fakes.world.targets import UP, Target
 from fakes.world.truth import ForceSensorTruth

@@ -4,8 +4,8 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
-from fakes.scenario import Scenario
-from fakes.sections import DeviceName, Pair, Pose, Section, Spread, Springs, Three
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import DeviceName, Pair, Pose, Section, Spread, Springs, Three
 
 
 class PlateHole(Section):

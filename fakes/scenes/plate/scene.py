@@ -6,11 +6,11 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenes.plate.bodies import LyingBoard, LyingPlate, draw_board, draw_plate
 from fakes.scenes.plate.scenario import PlateScenario
 from fakes.world.frames import MM, Array, from_written, to_written
-from fakes.world.payload import Payload
+from fakes.world.load.payload import Payload
 from fakes.world.scene import Body
 from fakes.world.views import in_view
 from fakes.world.world import Command, World

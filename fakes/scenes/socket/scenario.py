@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from fakes.scenario import Scenario
-from fakes.sections import DeviceName, Pose, Section, Spread, Springs, Three
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import DeviceName, Pose, Section, Spread, Springs, Three
 
 
 class KeySection(Section):

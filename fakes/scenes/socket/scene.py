@@ -10,14 +10,14 @@ from typing import Any, ClassVar
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenes.socket.part import FAULTS, draw_part, fit_with, grip_force_n, nominal_fit
 from fakes.scenes.socket.peaks import ForcePeaks
 from fakes.scenes.socket.scenario import SocketScenario
 from fakes.scenes.socket.truth import truth_of
 from fakes.world.frames import MM, Array, from_written, inverse_matrix
-from fakes.world.mounted_sensor import STEP_S
-from fakes.world.payload import Payload
+from fakes.world.load.mounted_sensor import STEP_S
+from fakes.world.load.payload import Payload
 from fakes.world.peg.attitude import pose_of
 from fakes.world.peg.held_peg import HeldPeg
 from fakes.world.scene import Seen

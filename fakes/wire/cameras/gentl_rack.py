@@ -12,7 +12,7 @@ from fakes.gentl.exposures import Asked, Exposed, ExposureServer
 from fakes.gentl.shown import shown
 from fakes.render.options import RenderOptions
 from fakes.render.worker import Frame
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.wire.cameras.gentl_camera import GentlCamera, Take
 from fakes.wire.cameras.gentl_faults import GentlFaults
 from fakes.wire.cameras.rendering import rendered

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.logic import Controller, Outbox
 from fakes.wire.sjl.records import (
     RECORD_MAX,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fakes.faults import FaultBoard
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.panel import Panel
 from fakes.wire.sjl.records import RecordError, integer, number, pose_fields
 from fakes.wire.sjl.stream import Stream, StreamLimits, StreamOffer

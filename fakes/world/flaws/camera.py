@@ -5,7 +5,7 @@ from typing import Self
 
 import numpy as np
 
-from fakes.scenario import Scenario
+from fakes.scenario_file.scenario import Scenario
 from fakes.world.flaws.drift import ThermalDrift
 from fakes.world.frames import MM, Array, stream
 from fakes.world.scene import Exposure

@@ -5,8 +5,8 @@ from typing import Self
 
 import numpy as np
 
-from fakes.scenario import Scenario
-from fakes.sections import ForceSensor
+from fakes.scenario_file.scenario import Scenario
+from fakes.scenario_file.sections import ForceSensor
 from fakes.world.frames import Array, stream
 
 STEP_S = 1e-3

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from fakes.sections import Chain
+from fakes.scenario_file.sections import Chain
 from fakes.world.frames import Array
 
 CYCLES = 40.0

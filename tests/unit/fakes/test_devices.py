@@ -7,8 +7,8 @@ import pytest
 
 from fakes.cell import Cell, PortTaken
 from fakes.operator import Operator
+from fakes.scenario_file.sections import DigitalIo, Gripper
 from fakes.scenes.plate.scenario import PlateScenario
-from fakes.sections import DigitalIo, Gripper
 
 SCENARIO = PlateScenario(
     scene="plate",

@@ -7,7 +7,7 @@ import pytest
 from pydantic import ValidationError
 
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
-from fakes.scenario import load
+from fakes.scenario_file.scenario import load
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 

@@ -17,8 +17,8 @@ import numpy as np
 from genicam import genapi, gentl
 from harvesters.core import Harvester
 
-from drivers.camera.gige.delivered import delivered
-from drivers.camera.gige.producers import Producers
+from drivers.camera.gige.library_process.delivered import delivered
+from drivers.camera.gige.library_process.producers import Producers
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 
 LEFT, RIGHT = "GL-1", "GR-2"

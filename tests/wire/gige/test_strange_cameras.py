@@ -11,7 +11,7 @@ from cellctl.clock import now_s
 from cellctl.errors.camera import CameraFeatureRefused
 from cellctl.interfaces.camera import PixelFormat
 from drivers.camera.gige.config import GigeCameraConfig, Region, Selection
-from drivers.camera.gige.features import Features
+from drivers.camera.gige.library_process.features import Features
 from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import FakeCameras, expected_image
 from fakes.gentl.formats import Format

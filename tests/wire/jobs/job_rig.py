@@ -10,7 +10,7 @@ from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from fakes.jobs.controller import JobController
 from fakes.jobs.program import load_program
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.world.robot import RobotArm
 from tests.ports import free_ports
 from tests.wire.proxy import ChaosProxy

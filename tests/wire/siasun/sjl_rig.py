@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.robot import RobotArm

@@ -14,7 +14,7 @@ from cellctl.errors.robot import (
     NotRearmed,
     RobotNotReady,
 )
-from fakes.sections import Channel
+from fakes.scenario_file.sections import Channel
 from tests.wire.siasun.any_rig import AnyRig, Make, above, move, rearm, until_moving, within
 from tests.wire.siasun.sjl_rig import Rig, sjl_rig
 

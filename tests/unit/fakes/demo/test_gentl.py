@@ -7,11 +7,11 @@ from typing import Any
 import pytest
 
 from cellctl.config.load import load_cell
-from fakes import scenario as scenarios
 from fakes.demo import gentl
 from fakes.demo.gentl import GentlPath, UnusualCellFile, way_of_images
 from fakes.gentl.build import NAME, NoCompilerError
-from fakes.scenario import Scenario
+from fakes.scenario_file import scenario as scenarios
+from fakes.scenario_file.scenario import Scenario
 
 CONFIG = Path(__file__).parents[4] / "config"
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from fakes import scenario as scenarios
 from fakes.gentl.shown import shown
+from fakes.scenario_file import scenario as scenarios
 
 CONFIG = Path(__file__).parents[4] / "config"
 

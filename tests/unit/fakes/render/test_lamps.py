@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from fakes.render.connectors import api
 from fakes.render.options import RenderOptions
 from fakes.render.worker import render_frame
-from fakes.sections import RingLamp
+from fakes.scenario_file.sections import RingLamp
 from fakes.world.scene import CameraScene
 
 SIZE_PX = (360, 160)

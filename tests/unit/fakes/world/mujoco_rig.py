@@ -15,7 +15,7 @@ from fakes.faults import FaultBoard
 from fakes.scenes.deck_on_frame.parts import draw_parts
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import FAULTS, deck_payload
-from fakes.world.payload import STEP_S, Payload
+from fakes.world.load.payload import STEP_S, Payload
 from fakes.world.truth import draw
 
 mujoco = pytest.importorskip("mujoco")

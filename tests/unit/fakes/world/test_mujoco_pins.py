@@ -13,7 +13,7 @@ import pytest
 
 from cellctl.force.contact.seat import SeatFinding, SeatVerdict, judge_seat, seat_limits
 from fakes.scenes.deck_on_frame.scenario import Pins
-from fakes.world.payload import STEP_S
+from fakes.world.load.payload import STEP_S
 from tests.unit.fakes.world.mujoco_rig import (
     DT_S,
     MASS_KG,

@@ -10,7 +10,7 @@ from fakes.faults import FaultBoard
 from fakes.scenes.deck_on_frame.parts import draw_parts
 from fakes.scenes.deck_on_frame.scenario import DeckScenario, Pins
 from fakes.scenes.deck_on_frame.scene import FAULTS, deck_payload
-from fakes.world.payload import Payload
+from fakes.world.load.payload import Payload
 from fakes.world.truth import draw
 
 ARM_N_M = 1e6

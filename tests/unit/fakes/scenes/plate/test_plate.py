@@ -11,9 +11,9 @@ from fakes.render.look import options_of
 from fakes.render.optics.lens import views_of
 from fakes.render.optics.surface import to_pixels
 from fakes.render.worker import render_frame
+from fakes.scenario_file.sections import Spread
 from fakes.scenes.plate.scenario import PlateScenario, PrintedBoard
 from fakes.scenes.plate.scene import PlateScene
-from fakes.sections import Spread
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
 from fakes.world.scene import MonoTruth, SceneChessboard, ScenePlate
