@@ -21,6 +21,7 @@ from fakes.wire.couplers.gripper_coupler import gripper_coupler
 from fakes.wire.duco.controller import DucoController
 from fakes.wire.duco.logic import DucoLogic
 from fakes.wire.sri.box import SriBox
+from fakes.world.frames import MM
 from fakes.world.targets import SeenTarget
 from fakes.world.world import Command, World
 
@@ -89,8 +90,12 @@ class DeviceRack:
 
     # -- robots ---------------------------------------------------------------------------------
     def _collaborative_arm(self, name: str, robot: Robot) -> Device:
+        logic = DucoLogic(self._world.arms[name], self._clock)
+        if robot.selected_load is not None:
+            com_m = [value * MM for value in robot.selected_load.com_mm]
+            logic.tool_load = [robot.selected_load.mass_kg, *com_m]
         controller = DucoController(
-            DucoLogic(self._world.arms[name], self._clock),
+            logic,
             rpc_port=self._port(f"{name}.RPC", robot.ports["RPC"]),
             state_port=self._port(f"{name}.FRAMES", robot.ports["FRAMES"]),
         )

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from cellctl.clock import now_s
-from cellctl.geometry.pose import pose_to_xyzabc
-from cellctl.interfaces import Robot, RobotState
+from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
+from cellctl.interfaces import PendantSelection, Robot, RobotState
 
 ANY_AGE_S = 1e9
 _LOOK_S = 0.005
+_NOT_TOLD = "not told by this controller"
 
 
 @dataclass(slots=True)
@@ -26,6 +27,7 @@ class RobotReports:
     """Greatest age that the newest report has had."""
     round_trips_s: tuple[float, ...] = ()
     """From a question or command to its first answer, the newest ones."""
+    selection: PendantSelection = field(default_factory=PendantSelection)
 
     def as_json(self) -> dict[str, dict[str, Any]]:
         """By part and name, in ms, mm and degrees."""
@@ -40,6 +42,7 @@ class RobotReports:
                 "count": len(self.round_trips_s),
                 **_percentiles("ms", self.round_trips_s),
             },
+            "selected_at_the_pendant": selection_as_json(self.selection),
             "state": state_as_json(self.state),
         }
 
@@ -57,7 +60,33 @@ async def listen(robot: Robot, seconds: float) -> RobotReports:
         await asyncio.sleep(_LOOK_S)
     # Again, as a hello of a second channel may have come later.
     heard.facts, heard.round_trips_s = robot.link_facts(), robot.round_trips_s()
+    heard.selection = await robot.selection()
     return heard
+
+
+def selection_as_json(selection: PendantSelection) -> dict[str, Any]:
+    """Load in kg and mm of the flange, frames as x, y, z, A, B, C in mm and degrees."""
+    frames = {
+        "flange_T_tool_xyzabc_mm_deg": selection.flange_T_tool,
+        "base_T_work_xyzabc_mm_deg": selection.base_T_work,
+    }
+    written = {
+        name: _NOT_TOLD if frame is None else _numbers(pose_to_xyzabc(frame))
+        for name, frame in frames.items()
+    }
+    load = selection.load
+    if load is None:
+        return {"load_kg": _NOT_TOLD, **written}
+    com_m = load.flange_r_com_m
+    return {
+        "load_kg": round(load.mass_kg, 3),
+        "load_com_mm": _NOT_TOLD if com_m is None else _numbers(com_m / MM),
+        **written,
+    }
+
+
+def _numbers(values: Array) -> list[float]:
+    return [round(float(value), 4) for value in values]
 
 
 def state_as_json(state: RobotState) -> dict[str, Any]:
@@ -71,7 +100,7 @@ def state_as_json(state: RobotState) -> dict[str, Any]:
         "error_code": state.error_code,
         "error_words": state.error_words,
         "override_percent": round(100.0 * state.speed_override_ratio, 1),
-        "flange_xyzabc_mm_deg": [round(float(v), 4) for v in pose_to_xyzabc(state.base_T_flange)],
+        "flange_xyzabc_mm_deg": _numbers(pose_to_xyzabc(state.base_T_flange)),
         "joints_deg": joints_deg(state),
     }
 

@@ -4,13 +4,14 @@ The name of a device is its table's name: ``[robots.main]`` is the robot ``main`
 for its devices by such names (``cellctl.config.roles``).
 """
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field, StringConstraints
+from pydantic import Field, StringConstraints, model_validator
 
 from cellctl import plugins
 from cellctl.config.base import JointsDeg, Section, WrittenPose
 
+ComMm = Annotated[float, Field(ge=-3000, le=3000)]
 DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 
 
@@ -62,6 +63,29 @@ class MaintenanceSpeeds(Section):
     up to 8 mm/s, and would take a slower move for a quicker stop."""
 
 
+class LoadConfig(Section):
+    """Everything that hangs on the flange, force sensor and gripped part included.
+
+    A person selects it on the controller; with a wrong one the arm sags and overshoots."""
+
+    mass_kg: Annotated[float, Field(gt=0, le=2000)]
+    com_mm: tuple[ComMm, ComMm, ComMm]
+    """Its centre of mass in the flange."""
+    tolerance_kg: Annotated[float, Field(gt=0, le=200)]
+    """By which what the controller reckons with, or what was weighed, may differ."""
+    tolerance_mm: Annotated[float, Field(gt=0, le=500)]
+    """The same for each coordinate of the centre of mass."""
+    not_weighed_kg: Annotated[float, Field(ge=0, le=200)] = 0.0
+    """Share that the force sensor does not feel: its own body and what is between it and the
+    flange. Its centre of mass is taken at the sensor's frame."""
+
+    @model_validator(mode="after")
+    def _something_is_weighed(self) -> Self:
+        if self.not_weighed_kg >= self.mass_kg:
+            raise ValueError("not_weighed_kg must be less than mass_kg")
+        return self
+
+
 class RobotConfig(DeviceConfig):
     """A robot, with the poses that were taught and the speeds between them."""
 
@@ -71,6 +95,8 @@ class RobotConfig(DeviceConfig):
     """Of joint moves between taught poses; where none is stated, such a move goes straight."""
     permit: PermitConfig | None = None
     """Opened with every stop, closed when the robot is re-armed."""
+    load: LoadConfig | None = None
+    """Compared with what the controller reckons with, where it tells, and with what is weighed."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
     """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0

@@ -172,6 +172,21 @@ class ArmOffReference(RobotError):
     reaction = Reaction.STOP
 
 
+class OtherLoadSelected(RobotError):
+    """A controller reckons with another load than the cell file states."""
+
+    number = 336
+    text = "Controller reckons with another load than the cell file states"
+    cause = (
+        "Another tool is chosen at the pendant, its load was never entered, or gripper or part are "
+        "others than the cell file says."
+    )
+    remedy = (
+        "Choose tool and load at the pendant, or correct `load` of the robot; then Clear and Reset."
+    )
+    reaction = Reaction.STOP
+
+
 class ArmReferenceMissing(RobotError):
     """There is nothing to compare an arm with."""
 

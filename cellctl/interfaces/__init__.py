@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from cellctl.interfaces.arm_load import ArmLoad, PendantSelection
     from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
     from cellctl.interfaces.digital_io import DigitalIo, DigitalIoState, IoNames
     from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from cellctl.interfaces.target_tracker import Target, TargetTracker
 
 __all__ = [
+    "ArmLoad",
     "Camera",
     "CameraImage",
     "DigitalIo",
@@ -37,6 +39,7 @@ __all__ = [
     "GripperState",
     "IoNames",
     "MotionBounds",
+    "PendantSelection",
     "PixelFormat",
     "PoseStream",
     "Robot",
@@ -55,6 +58,7 @@ __all__ = [
 ]
 
 _MODULES = {
+    "arm_load": ("ArmLoad", "PendantSelection"),
     "camera": ("Camera", "CameraImage", "PixelFormat"),
     "digital_io": ("DigitalIo", "DigitalIoState", "IoNames"),
     "ft_sensor": ("FtHealth", "FtSensor", "WrenchSample"),

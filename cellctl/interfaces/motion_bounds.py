@@ -16,3 +16,5 @@ class MotionBounds:
     speed_m_s: float | None = None
     """Of the flange in straight moves."""
     acceleration_m_s2: float | None = None
+    load_kg: float | None = None
+    """Greatest load at the flange."""

@@ -11,6 +11,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.pose import Array
+from cellctl.interfaces.arm_load import PendantSelection
 from cellctl.interfaces.device import Device
 from cellctl.interfaces.motion_bounds import MotionBounds
 
@@ -134,6 +135,13 @@ class Robot(Device):
         Asked by `cellctl robot`; empty where a driver does not measure it, or had none yet.
         """
         return ()
+
+    async def selection(self) -> PendantSelection:
+        """What is chosen at the pendant, asked now; nothing where the controller does not tell.
+
+        A driver never changes it: a person selects load and frames.
+        """
+        return PendantSelection()
 
     @abstractmethod
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:

@@ -8,6 +8,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.calibration.payload import IdentifiedPayload
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.cell.arm_loads import weighed_checks
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
@@ -72,6 +73,10 @@ async def identify_payload_on_cell(
         wrenches.append(wrench)
         roles.append(pose.role)
     result = _evaluate(rotations, wrenches, roles)
+    if arm.config.load is not None:
+        rigid = result.identification.rigid
+        weighed = rigid.mass_kg, rigid.centre_of_mass_m
+        result = result.also(weighed_checks(arm.config.load, *weighed, arm.flange_T_sensor))
     return ProcedureOutcome(
         kind=kind,
         record=payload_document(result),

@@ -4,6 +4,7 @@ import asyncio
 
 from cellctl import log
 from cellctl.calibration.store.store import CalibrationStore
+from cellctl.cell.arm_loads import require_selected_loads
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
 from cellctl.cell.reconnecting import reconnect
@@ -196,6 +197,7 @@ class UnitController:
         # moves before somebody has asked for a Reset.
         await self._cell.rearm()
         require_ready(self._cell.robots.values())
+        await require_selected_loads(self._cell.robots.values(), self._cell.config.robots)
         for process in self._processes.values():
             await process.clear()
 

@@ -54,6 +54,14 @@ class Contact(Section):
     """Its address there."""
 
 
+class Load(Section):
+    """What hangs on a flange."""
+
+    mass_kg: float = Field(ge=0, le=35)
+    com_mm: Three
+    """Centre of mass in the flange."""
+
+
 class Robot(Section):
     """An arm and its controller."""
 
@@ -99,6 +107,8 @@ class Robot(Section):
     controller: Controller = "protocol"
     statement_ms: float = 0.5
     """Of a job file; nobody has published the speed of the real interpreter."""
+    selected_load: Load | None = None
+    """Chosen at the pendant of a collaborative arm, whose controller tells it."""
     permit: Contact | None = None
     """The PC's own contact in the permit loop of the controller; without one it is bridged."""
 
@@ -113,6 +123,8 @@ class Robot(Section):
             raise ValueError(f"ports of a {self.controller} controller: {sorted(allowed)}")
         if self.controller == "rpc" and self.permit is not None:
             raise ValueError("permit: the fake of a collaborative arm has no permit loop")
+        if self.controller != "rpc" and self.selected_load is not None:
+            raise ValueError("selected_load: a job controller tells nobody what is selected")
         return self
 
 

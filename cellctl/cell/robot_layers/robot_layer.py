@@ -6,7 +6,14 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import Array
-from cellctl.interfaces import PoseStream, Robot, RobotState, StreamingRobot, StreamLimits
+from cellctl.interfaces import (
+    PendantSelection,
+    PoseStream,
+    Robot,
+    RobotState,
+    StreamingRobot,
+    StreamLimits,
+)
 from cellctl.interfaces.streaming_robot import StreamOffer
 
 
@@ -40,6 +47,10 @@ class RobotLayer(Robot):
     def round_trips_s(self) -> tuple[float, ...]:
         """Those of the robot behind it."""
         return self._robot.round_trips_s()
+
+    async def selection(self) -> PendantSelection:
+        """That of the robot behind it."""
+        return await self._robot.selection()
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """As the robot behind it."""

@@ -14,6 +14,8 @@ from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.config import CellConfig
+from cellctl.config.devices import RobotConfig
+from cellctl.config.driver_settings import motion_bounds
 from cellctl.errors.local import DaemonNotReached, MessageMalformed
 from cellctl.procedures.stop_latency import stored_stop_latencies
 
@@ -38,6 +40,7 @@ def robot(
     source = "asked through the daemon"
     if heard is None:
         heard, source = asyncio.run(_from_robot(cell, name, seconds)), "connected without a daemon"
+    heard["load"] = _load(cell.robots[name])
     heard["stop_latency"] = _stop_latency(cell, cell_file, name)
     if as_json:
         typer.echo(json.dumps({"source": source, **heard}, indent=2))
@@ -81,6 +84,16 @@ def _stop_latency(cell: CellConfig, cell_file: Path, name: str) -> dict[str, Any
         f"valid until {stored.valid_until:%Y-%m-%d %H:%M} UTC"
         for stored in stored_stop_latencies(folder)
     } or {"stored": "none; the bound of the recipe counts"}
+
+
+def _load(robot: RobotConfig) -> dict[str, Any]:
+    stated, most_kg = robot.load, motion_bounds(robot).load_kg
+    shown: dict[str, Any] = {"in_the_cell_file": "none stated"}
+    if stated is not None:
+        com = ", ".join(f"{value:g}" for value in stated.com_mm)
+        shown["in_the_cell_file"] = f"{stated.mass_kg:g} kg at {com} mm of the flange"
+        shown["may_differ_by"] = f"{stated.tolerance_kg:g} kg, {stated.tolerance_mm:g} mm"
+    return shown if most_kg is None else shown | {"at_most": f"{most_kg:g} kg"}
 
 
 def _text(value: object) -> str:

@@ -14,7 +14,7 @@ _SAME_RATIO = 1e-9
 
 
 def robot_issues(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
-    """Speeds beyond the driver's bounds, or faster in Maintenance, and two kinematics of one arm.
+    """Speeds and loads beyond the driver's bounds, more speed in Maintenance, two kinematics.
 
     ``bad`` holds the paths of devices whose settings are wrong themselves.
     """
@@ -22,6 +22,7 @@ def robot_issues(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
         yield from _maintenance(f"robots.{name}", robot)
         if f"robots.{name}" not in bad:
             yield from _speeds(f"robots.{name}", robot)
+            yield from _load(f"robots.{name}", robot)
             yield from _lengths(f"robots.{name}", robot)
 
 
@@ -38,6 +39,14 @@ def _speeds(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
             # The driver would refuse the first move; that is too late to hear of it.
             allowed = f"at most {bound * units:g}, by the bounds in {path}.settings"
             yield ConfigIssue(f"{path}.{key}", f"{value:g}", allowed)
+
+
+def _load(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    most_kg = motion_bounds(robot).load_kg
+    if robot.load is None or most_kg is None or robot.load.mass_kg <= most_kg:
+        return
+    allowed = f"at most {most_kg:g}, which is all that arms of this driver carry"
+    yield ConfigIssue(f"{path}.load.mass_kg", f"{robot.load.mass_kg:g}", allowed)
 
 
 def _maintenance(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:

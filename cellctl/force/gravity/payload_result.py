@@ -1,7 +1,7 @@
 """From a record of poses to an accepted payload: the one function behind procedure and command."""
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +37,10 @@ class PayloadResult:
     def accepted(self) -> bool:
         """True when every test was passed."""
         return all(check.passed for check in self.checks)
+
+    def also(self, checks: tuple[PayloadCheck, ...]) -> "PayloadResult":
+        """The same with further tests that it has to pass."""
+        return replace(self, checks=(*self.checks, *checks))
 
 
 def evaluate_payload(

@@ -1,6 +1,6 @@
 """What the settings of an arm say of it before it is connected, whatever its controller speaks."""
 
-from typing import Any
+from typing import Any, ClassVar
 
 from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.box import Box
@@ -12,6 +12,9 @@ from drivers.robot.siasun.kinematics import arm_chain
 
 class DescribedArm(Robot):
     """Answers by the settings, which are ``MotionLimits``."""
+
+    most_load_kg: ClassVar[float | None] = None
+    """Of any arm with this driver; None where arms of many sizes have it."""
 
     @classmethod
     def checks_joint_ways(cls, config: Any) -> bool:
@@ -26,6 +29,7 @@ class DescribedArm(Robot):
             joint_speed_ratio=config.max_joint_speed_percent / 100,
             speed_m_s=config.max_speed_mm_s * MM,
             acceleration_m_s2=config.max_acceleration_mm_s2 * MM,
+            load_kg=cls.most_load_kg,
         )
 
     @classmethod

@@ -21,6 +21,7 @@ from cellctl.errors.robot import (
     TargetOutOfBounds,
 )
 from cellctl.geometry.pose import MM, Array
+from cellctl.interfaces.arm_load import PendantSelection
 from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import (
     PoseStream,
@@ -40,6 +41,7 @@ from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.motion import Motion
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready
+from drivers.robot.siasun_rpc.selection import MOST_LOAD_KG, selection
 from drivers.robot.siasun_rpc.stream import ServoStream
 
 
@@ -52,6 +54,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
     """
 
     Config = SiasunRpcConfig
+    most_load_kg = MOST_LOAD_KG
 
     def __init__(self, name: str, config: SiasunRpcConfig) -> None:
         self.name = name
@@ -104,6 +107,11 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
     def round_trips_s(self) -> tuple[float, ...]:
         """Of the questions for its state, which are asked all the time."""
         return tuple(self._link.watch.round_trips_s)
+
+    async def selection(self) -> PendantSelection:
+        """Poses do not depend on it: each is asked for and sent with the frames of the settings."""
+        self._check_link()
+        return await selection(self._link, self._config.euler)
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """movej. With a dh table, refused when the flange would leave its box on the way."""

@@ -20,6 +20,7 @@ from fakes.world.robot import RefusedMotionError, RobotArm
 Client = int
 """A connection, as long as it stands."""
 REMOTE, ENABLED, SAFETY_RUN, SAFETY_STOP_0 = 2, 6, 5, 9
+MOST_LOAD_KG = 35.0
 _SERVO_S = 0.008
 """Time in which the arm reaches a streamed setpoint that is one small step away."""
 
@@ -47,6 +48,10 @@ class DucoLogic:
         """Stops that were asked for."""
         self.motions = 0
         """Calls that were told to move the arm."""
+        self.tool_load = [0.0] * 4
+        """Mass (kg) and centre of mass (m) of the tool that is chosen at the pendant."""
+        self.tool_frame, self.work_object = [0.0] * 6, [0.0] * 6
+        """Frames that are chosen there, in m and rad."""
         self._frames = {"tool": tool, "work object": work_frame}
         self._deadlines: dict[Client, float] = {}
         self._stopping = False
@@ -102,6 +107,13 @@ class DucoLogic:
         self.stops += 1
         if not self.faults.active("stop_ignored"):
             self._halt()
+        return self.tasks.begin(TaskEnd.FINISHED).number
+
+    def set_load(self, load: list[float]) -> int:
+        """set_load_data: mass (kg) and centre of mass (m)."""
+        if not 0.0 <= load[0] <= MOST_LOAD_KG:
+            return self._refuse(TaskEnd.PARAMETERS, f"load of {load[0]:g} kg")
+        self.tool_load = list(load)
         return self.tasks.begin(TaskEnd.FINISHED).number
 
     def move_joint(self, joints_rad: list[float], percent: float) -> int:

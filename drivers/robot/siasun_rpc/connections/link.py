@@ -7,7 +7,7 @@ from typing import cast
 
 from cellctl.errors.base import CellError
 from cellctl.errors.link import ConnectTimeout, LinkError, LinkLost
-from drivers.robot.siasun_rpc.codec.messages import MethodUnknown
+from drivers.robot.siasun_rpc.codec.messages import MethodUnknown, Request, Value
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.background import BackgroundTasks
@@ -78,7 +78,7 @@ class RpcLink:
                 for one in (self.motion, self.control, self._asking, self._beating):
                     await one.open(config.host, config.rpc_port)
                 await self._frames.open(config.host, config.state_port)
-                self.features = await self._ask_version()
+                self.features = features(cast(str | None, await self.ask_if_known(VERSION)))
                 self._jobs.start(self._keep(self._beat()))
                 self._jobs.start(self._keep(self.watch.run()))
                 await self._first_state(self._down)
@@ -187,14 +187,15 @@ class RpcLink:
         finally:
             first.cancel()
 
-    async def _ask_version(self) -> ControllerFeatures:
+    async def ask_if_known(self, question: Request) -> Value:
+        """The answer to a question that a controller may not know; None then."""
         try:
-            (version,) = await self.control.exchange(
-                VERSION, timeout_s=self._config.reply_timeout_s
+            (answer,) = await self.control.exchange(
+                question, timeout_s=self._config.reply_timeout_s
             )
         except MethodUnknown:
-            return features(None)
-        return features(cast(str, version))
+            return None
+        return answer
 
     async def _keep(self, job: Coroutine[None, None, None]) -> None:
         """A job that ends, by whatever, takes the link with it: nobody would watch the arm."""

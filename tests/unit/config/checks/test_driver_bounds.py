@@ -76,3 +76,16 @@ def test_speeds_and_lengths_are_held_against_the_driver_of_any_maker(tmp_path: P
     assert found["robots.main.linear_speed_mm_s"].startswith("at most 20,")
     assert found["robots.main.d1_mm"].startswith("800,")
     assert "robots.main.linear_acceleration_mm_s2" not in found
+
+
+def test_a_load_is_held_against_what_arms_of_this_driver_carry(tmp_path: Path) -> None:
+    text = (CELL_FILE.parent / "antenna-rpc.toml").read_text()
+    for folder in CELL_FILE.parent.iterdir():
+        if folder.is_dir():
+            (tmp_path / folder.name).symlink_to(folder)
+    path = tmp_path / "cell.toml"
+    for mass_kg, fits in ((35.0, True), (35.1, False)):
+        path.write_text(text.replace("mass_kg = 1.5", f"mass_kg = {mass_kg}"))
+        found = {issue.key: issue.allowed for issue in problems(path)}
+        assert ("robots.arm.load.mass_kg" not in found) is fits
+    assert found["robots.arm.load.mass_kg"].startswith("at most 35,")

@@ -101,7 +101,7 @@ def test_a_file_may_be_like_another(tmp_path: Path) -> None:
     assert set(arm.ports) == {"RPC", "FRAMES"}, (
         "what a device says takes the place of the lower one"
     )
-    changes = {"controller": "protocol", "ports": below.robots["arm"].ports}
+    changes = {"controller": "protocol", "ports": below.robots["arm"].ports, "selected_load": None}
     assert arm.model_copy(update=changes) == below.robots["arm"]
     assert above.model_copy(update={"robots": below.robots}) == below
     alone = tmp_path / "alone.toml"
