@@ -151,11 +151,15 @@ class Scenario(Section):
                 yield f"{name}.optics: [optics.{camera.optics}] has no stereo rig"
         if self.all_cameras() and self.rendering is None:
             yield "cameras need a section [rendering]"
-        yield from self._wiring_mistakes()
+        yield from self._robot_mistakes()
 
-    def _wiring_mistakes(self) -> Iterator[str]:
-        """Contacts in permit loops that are not there."""
+    def _robot_mistakes(self) -> Iterator[str]:
+        """What an arm of its kind does not have, and contacts that are not there."""
         for name, robot in self.robots.items():
+            if robot.controller != "rpc" and robot.selected_load is not None:
+                yield f"{name}.selected_load: a job controller tells nobody what is selected"
+            if robot.controller == "rpc" and robot.permit is not None:
+                yield f"{name}.permit: the fake of a collaborative arm has no permit loop"
             contact = robot.permit
             if contact is None:
                 continue

@@ -141,3 +141,20 @@ def test_a_contact_in_a_permit_loop_must_be_there(
         return
     with pytest.raises(ValidationError, match=f"arm.permit: there is no output {output} of"):
         PlateScenario.model_validate(small)
+
+
+@pytest.mark.parametrize(
+    ("name", "arm", "key", "value"),
+    [
+        ("antenna.scenario.toml", "arm", "selected_load", {"mass_kg": 1.0, "com_mm": (0, 0, 0)}),
+        ("antenna-rpc.scenario.toml", "arm", "permit", {"device": "loop", "output": 0}),
+    ],
+)
+def test_an_arm_has_only_what_its_kind_has(
+    name: str, arm: str, key: str, value: dict[str, Any]
+) -> None:
+    scenario = load(CONFIG / name)
+    written = scenario.model_dump(exclude_none=True)
+    written["robots"][arm][key] = value
+    with pytest.raises(ValidationError, match=f"{arm}.{key}: "):
+        type(scenario).model_validate(written)
