@@ -1,5 +1,6 @@
 """Structured logs: for people on a terminal, JSON otherwise; run and step on every line."""
 
+import atexit
 import logging
 import sys
 from collections.abc import Iterator
@@ -10,6 +11,8 @@ from typing import TextIO, cast
 import structlog
 from structlog.stdlib import ProcessorFormatter
 from structlog.typing import EventDict, Processor, WrappedLogger
+
+from cellctl.log_thread import LogThread
 
 QUIET_LOGGERS = ("pymodbus.logging", "asyncio", "can", "transitions.core", "transitions")
 
@@ -55,14 +58,18 @@ class UnfailingStream:
         return self._stream.isatty()
 
 
-def configure(*, level: LogLevel = LogLevel.INFO) -> None:
+def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
     """Set up logging for this process; call once, first.
 
-    Drivers and libraries log by the standard library; their lines look like all others.
+    Drivers and libraries log by the standard library; their lines look like all others. With
+    ``beside`` a thread writes them, so that nobody who logs waits for the disk.
     """
     for name in QUIET_LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    stream = UnfailingStream(sys.stderr)
+    stream: UnfailingStream | LogThread = (unfailing := UnfailingStream(sys.stderr))
+    if beside:
+        stream = LogThread(unfailing)
+        atexit.register(stream.close)
     before: list[Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.processors.add_log_level,
@@ -72,7 +79,7 @@ def configure(*, level: LogLevel = LogLevel.INFO) -> None:
     structlog.configure(
         processors=[*before, *after],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level)),
-        logger_factory=structlog.PrintLoggerFactory(cast(TextIO, stream)),
+        logger_factory=structlog.WriteLoggerFactory(cast(TextIO, stream)),
         # Loggers are made at import, before this function runs. One that was used by then would
         # otherwise keep the old set-up.
         cache_logger_on_first_use=False,

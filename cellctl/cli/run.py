@@ -29,6 +29,6 @@ def run(
     # Imported here, so that ``--help`` and the other commands need not load the daemon.
     from cellctl.daemon.app import Overrides, serve
 
-    log.configure(level=log_level)
+    log.configure(level=log_level, beside=True)
     overrides = Overrides(data_dir, calibration_dir, modbus_port)
     sys.exit(asyncio.run(serve(cell_file, overrides)))

@@ -8,6 +8,7 @@ from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.disk_watch import DiskWatch
+from cellctl.daemon.loop_watch import watch_loop
 from cellctl.daemon.notify import Watchdog
 from cellctl.errors import CellError
 from cellctl.errors.force import GuardNotRealTime
@@ -37,6 +38,7 @@ async def supervise(
         tasks.create_task(_watch_links(cell, unit))
         tasks.create_task(_poll_devices(cell, unit))
         tasks.create_task(_watch_disk(DiskWatch(store, unit)))
+        tasks.create_task(watch_loop())
 
 
 def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:

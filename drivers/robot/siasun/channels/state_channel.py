@@ -49,6 +49,8 @@ class StateChannel:
         self._on_stopped = on_stopped
         self._on_lost = on_lost
         self._status: Status | None = None
+        self._state: RobotState | None = None
+        """What the newest report says in SI, once somebody has asked for it."""
         self._time_s = 0.0
         self._waiters: dict[asyncio.Future[None], Callable[[Status], bool]] = {}
         self._stops: dict[asyncio.Future[None], int] = {}
@@ -66,9 +68,12 @@ class StateChannel:
         if self._status is None or age_s > max_age_s:
             facts = "none yet" if self._status is None else f"{age_s:.3f} s old"
             raise StaleData(f"state of {self._robot}: {facts}, allowed {max_age_s:g} s")
-        words = self._error_words(self._status.error_code)
-        order = self.channel.hello.euler_order
-        return _to_state(self._status, self._time_s, words, order)
+        # Asked by everything that watches the arm, many times for each report.
+        if self._state is None:
+            words = self._error_words(self._status.error_code)
+            order = self.channel.hello.euler_order
+            self._state = _to_state(self._status, self._time_s, words, order)
+        return self._state
 
     async def wait(self, condition: Callable[[Status], bool], timeout_s: float) -> None:
         """Wait until a report that arrives from now on meets a condition; else ``StaleData``."""
@@ -161,7 +166,7 @@ class StateChannel:
     def _up(self) -> None:
         # A report of the session before says nothing about a controller that may have been
         # restarted.
-        self._status = None
+        self._status = self._state = None
         self._time_s = now_s()
         self.forget_pauses()
         self._beat()
@@ -178,7 +183,7 @@ class StateChannel:
         """Not of a report that is no news."""
         if self._status is not None and not status.follows(self._status):
             return
-        self._status, self._time_s = status, now_s()
+        self._status, self._state, self._time_s = status, None, now_s()
         # A slow interpreter reads one record in each of its rounds. Unasked heartbeats would
         # queue up before it, and a stop behind them.
         if self.channel.hello.compact:

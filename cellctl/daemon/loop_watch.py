@@ -1,0 +1,37 @@
+"""Notes when the event loop was held: every sign of life to a robot waits for it."""
+
+import asyncio
+import resource
+
+from cellctl import log
+from cellctl.clock import now_s
+
+_log = log.get(__name__)
+
+PERIOD_S = 0.05
+HELD_S = 0.25
+"""A robot's dead man waits for a second and more: this is noted long before an arm stops."""
+
+
+async def watch_loop(period_s: float = PERIOD_S, held_s: float = HELD_S) -> None:
+    """Log each turn that took longer than ``held_s``, and what it was spent on; until cancelled.
+
+    Much processor time means that something computed on the loop. Little of it means that the loop
+    waited: for the disk, or for a processor that other programs had.
+    """
+    while True:
+        began_s, before = now_s(), resource.getrusage(resource.RUSAGE_THREAD)
+        await asyncio.sleep(period_s)
+        took_s, after = now_s() - began_s, resource.getrusage(resource.RUSAGE_THREAD)
+        if took_s - period_s > held_s:
+            _log.warning(
+                "event loop held",
+                seconds=round(took_s, 3),
+                computed_s=round(_processor_s(after) - _processor_s(before), 3),
+                displaced=after.ru_nivcsw - before.ru_nivcsw,
+                page_faults=after.ru_majflt - before.ru_majflt,
+            )
+
+
+def _processor_s(used: resource.struct_rusage) -> float:
+    return used.ru_utime + used.ru_stime
