@@ -128,3 +128,54 @@ def test_import_contracts_name_every_package_of_the_core() -> None:
         "fakes",
         *(f"cellctl.{name}" for name in core - FOR_DRIVERS),
     }
+
+
+def imported(path: Path) -> set[str]:
+    """Modules and names that a file imports, as dotted names."""
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {name.name for name in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found |= {f"{node.module}.{name.name}" for name in node.names}
+    return found
+
+
+def importing(folder: str, unwanted: str, *, but: str = "-") -> list[str]:
+    """Files in the folder that import what they should not."""
+    return [
+        str(path.relative_to(ROOT))
+        for path in sorted((ROOT / folder).rglob("*.py"))
+        if not str(path.relative_to(ROOT)).startswith(but)
+        and any(
+            f"{name}.".startswith(unwanted) and not name.startswith("tests.rigs")
+            for name in imported(path)
+        )
+    ]
+
+
+def test_tests_and_benchmarks_share_rigs_alone() -> None:
+    assert importing("benchmarks", "tests.") == []
+    assert importing("tests/rigs", "tests.") == []
+    assert importing("tests", "benchmarks.", but="tests/unit/benchmarks") == []
+
+
+def mirrored(test: Path) -> Path:
+    """The folder of the code that a unit test is about."""
+    inside = test.parent.relative_to(ROOT / "tests" / "unit")
+    of_the_core = not inside.parts or inside.parts[0] not in {"drivers", "fakes", "benchmarks"}
+    return ROOT / "cellctl" / inside if of_the_core else ROOT / inside
+
+
+def test_unit_tests_mirror_the_tree() -> None:
+    tests = sorted((ROOT / "tests" / "unit").rglob("test_*.py"))
+    nowhere = [str(test) for test in tests if not mirrored(test).is_dir()]
+    assert nowhere == []
+    too_high = {
+        str(test.relative_to(ROOT)): [str(module.relative_to(ROOT)) for module in deeper]
+        for test in tests
+        if not (mirrored(test) / (name := test.name.removeprefix("test_"))).exists()
+        and not (mirrored(test) / name.removesuffix(".py")).is_dir()
+        and (deeper := sorted(mirrored(test).rglob(name)))
+    }
+    assert too_high == {}

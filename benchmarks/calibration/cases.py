@@ -23,9 +23,9 @@ from cellctl.vision.camera.lens import project, undistort
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard
-from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case
-from tests.unit.calibration.solvers.hand_eye import test_hand_eye as hand_eye_case
-from tests.unit.calibration.solvers.stereo import synthetic
+from tests.rigs.calibration import hand_eye_views as hand_eye_case
+from tests.rigs.calibration import stereo_views as synthetic
+from tests.rigs.calibration import turned_arm as base_frame_case
 
 Array = NDArray[np.float64]
 

@@ -17,13 +17,13 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from benchmarks.cameras.kept import Kept, kept
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError
 from drivers.camera.gige.config import GigeCameraConfig, Selection
 from drivers.camera.gige.driver import GigeCamera
 from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
+from tests.rigs.kept import Kept, kept
 
 SERIAL = "GL"
 _SETTLE_S = 3.0

@@ -15,7 +15,7 @@ from benchmarks.faults.daemon import CLOCK_FILE
 from benchmarks.faults.line import Shown, WatchingPlc
 from cellctl.records.store import RunStore
 from fakes.demo.control import Control
-from tests.cell.rigs.own_cell import OwnCell, Program
+from tests.rigs.whole_cell.own_cell import OwnCell, Program
 
 LINE_FAILURES = (ModbusException, AssertionError, OSError)
 """How the daemon's silence looks from the line; ``OutsidePlc`` asserts every answer."""

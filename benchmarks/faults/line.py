@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from pymodbus.exceptions import ModbusException
 
-from tests.cell.rigs.outside_plc import INPUT, STATES, OutsidePlc
+from tests.rigs.whole_cell.outside_plc import INPUT, STATES, OutsidePlc
 
 _ALARMS = [f"alarm_{number}" for number in range(1, 9)]
 _NO_VALUE = -(2**31)

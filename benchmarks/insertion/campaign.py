@@ -17,10 +17,10 @@ from rich.progress import track
 from rich.table import Table
 
 from benchmarks.insertion.cases import CASES, SearchCase
-from benchmarks.insertion.traps import PegState, TrapOutcome, run_trap
 from benchmarks.insertion.trials import SearchTrialOutcome, run_search
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
+from tests.rigs.insertion.traps import PegState, TrapOutcome, run_trap
 
 WORKERS = 2
 TRIALS, QUICK_TRIALS = 300, 10

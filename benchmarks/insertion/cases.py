@@ -5,25 +5,15 @@ from dataclasses import dataclass, replace
 
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.task import (
-    CellFigures,
     FitGeometry,
     ForceLimits,
     SearchTask,
 )
+from tests.rigs.insertion.study_cell import STUDY_CELL
 
 _SPIRAL, _VALLEY, _MAP = SearchName.SPIRAL, SearchName.TILTED_VALLEY, SearchName.PARTICLE_MAP
 _ARC = SearchName.ARC
 _MIDPOINT, _CIRCUMCENTRE = SearchName.PATENT_MIDPOINT, SearchName.PATENT_CIRCUMCENTRE
-
-STUDY_CELL = CellFigures(
-    stiffness_n_m=1e6,
-    dead_time_s=24e-3,
-    uncertainty_m=3e-3,
-    repeatability_m=0.02e-3,
-    height_sigma_m=0.015e-3,
-    force_sigma_n=0.3,
-    friction=0.2,
-)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.processes.peg_in_hole.faults import ByTouchError
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
@@ -14,6 +13,7 @@ from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.patent import PatentMidpoint
 from cellctl.processes.peg_in_hole.search.probe import TouchProbe
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 
 LIMIT_S = 120.0
 """Of the reference's table, for all strategies alike."""

@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.mating.failures import FAILURES, run_failure
-from benchmarks.mating.trial import Trial, draw_trial, run_trial
+from tests.rigs.mating.trial import Trial, draw_trial, run_trial
 
 LIMIT_N = 50.0
 WORKERS = 2

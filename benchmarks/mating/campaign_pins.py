@@ -16,23 +16,14 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from benchmarks.mating.cell import THRESHOLD
-from benchmarks.mating.trial import Trial, draw_trial, run_trial
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.mating.settings import PinSettings
-from fakes.scenes.deck_on_frame.scenario import Pins
+from tests.rigs.mating.cell import THRESHOLD
+from tests.rigs.mating.trial import PINS, Trial, draw_trial, run_trial
 
 LIMIT_N = 50.0
 WORKERS = 2
 RESULT = Path("runs") / "campaign-mating-pins.json"
-PINS = Pins(
-    length_mm=1.2,
-    radius_mm=3.0,
-    clearance_mm=0.03,
-    chamfer_mm=0.8,
-    chamfer_deg=45.0,
-    stiffness_n_m=2e7,
-)
 BESIDE_MM = (0.04, 0.15)
 """From the clearance to the middle of the chamfer; the measuring loop allows 0.05 on each axis."""
 YAW_DEG = 0.008

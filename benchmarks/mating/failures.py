@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from benchmarks.mating.cell import MatingCell, SensorFault
-from benchmarks.mating.trial import Hook, Trial, run_trial
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
+from tests.rigs.mating.cell import MatingCell, SensorFault
+from tests.rigs.mating.trial import Hook, Trial, run_trial
 
 STIFFNESS_N_M = 3e6
 STOP_LATENCY_MS = 250.0

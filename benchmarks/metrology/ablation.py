@@ -29,7 +29,6 @@ from benchmarks.metrology.accuracy import MACHINED_GREY
 from benchmarks.metrology.drawn_scenes import Scene, drawn_scene
 from benchmarks.metrology.figures import HoleErrors
 from benchmarks.metrology.looks import measure
-from benchmarks.metrology.scenes import parts
 from cellctl.vision.features.countersink import Countersink
 from cellctl.vision.features.pin import Pin
 from cellctl.vision.features.thread import Thread
@@ -45,6 +44,7 @@ from cellctl.vision.rim import (
     stereo_fit,
 )
 from fakes.render import api
+from tests.rigs.metrology.scenes import parts
 
 PARTS: dict[str, Literal["deck", "frame"]] = {"deck": "deck", "frame": "frame"}
 WALLS = ("lit wall", "bright wall", "fading wall", "faint wall")

@@ -22,14 +22,14 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.metrology.figures import HoleErrors, PoseErrors, band
-from benchmarks.metrology.scenes import parts
-from benchmarks.metrology.views import NOISE_GREY, HeadView, PartView
 from cellctl.errors.vision import VisionError
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.registration.average import average
 from cellctl.vision.registration.part_pose import part_pose
 from fakes.render import api
+from tests.rigs.metrology.scenes import parts
+from tests.rigs.metrology.views import NOISE_GREY, HeadView, PartView
 
 CLEAN_GREY = {"pin": 132.0, "countersink": 100.0, "thread": 132.0}
 MACHINED_GREY = {"pin": 90.0, "countersink": 80.0, "thread": 80.0}

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from benchmarks.metrology.drawn_looks import LOOKS, PLATE, Array, Look, disc
-from benchmarks.metrology.views import NOISE_GREY, HeadView
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.features.hole import Hole
+from tests.rigs.metrology.views import NOISE_GREY, HeadView
 
 _SUB = 8
 _MARGIN_PX = 8

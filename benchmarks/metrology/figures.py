@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import chi2
 
-from benchmarks.metrology.views import NOISE_GREY, HeadView, PartView
 from cellctl.geometry.pose import pose_error
 from cellctl.vision.measurement import HoleMeasurement
 from cellctl.vision.registration.part_pose import PartPose
+from tests.rigs.metrology.views import NOISE_GREY, HeadView, PartView
 
 Array = NDArray[np.float64]
 

@@ -13,11 +13,11 @@ from itertools import pairwise, product
 import numpy as np
 
 from benchmarks.planning.cells import random_cell
-from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.errors.config import PlanningError
 from cellctl.geometry.pose import MM
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways
+from tests.rigs.mujoco_oracle import MujocoOracle
 
 _LOOK_M = 0.001
 

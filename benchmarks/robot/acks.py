@@ -32,8 +32,8 @@ from cellctl.interfaces.robot import Robot
 from drivers.robot.siasun.channels.running_command import RunningCommand
 from drivers.robot.siasun.driver import SiasunRobot
 from drivers.robot.siasun_rpc.motion import Motion
-from tests.ports import free_ports
-from tests.wire.siasun.sjl_rig import arm_settings
+from tests.rigs.wire.ports import free_ports
+from tests.rigs.wire.sjl_rig import arm_settings
 
 STEP_M, SPEED_M_S = 0.0002, 0.02
 RECORD_BYTES = 119

@@ -6,7 +6,7 @@ from multiprocessing.connection import Connection
 from fakes.jobs.controller import JobController
 from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.controller import SjlController
-from tests.wire.standing_arm import standing_arm
+from tests.rigs.wire.standing_arm import standing_arm
 
 Ports = dict[Channel, int]
 

@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 
 from fakes.wire.duco.controller import DucoController
 from fakes.wire.duco.logic import DucoLogic
-from tests.wire.standing_arm import standing_arm
+from tests.rigs.wire.standing_arm import standing_arm
 
 WATCH_S = 0.001
 

@@ -13,7 +13,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.link import LinkError
 from drivers.robot.siasun.codec.records import Record, Status
 from drivers.robot.siasun.connection import SjlChannel
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
 
 SPEED_M_S = 0.02
 LATE_S = 0.25

@@ -10,10 +10,10 @@ from cellctl.errors.base import CellError
 from cellctl.interfaces.robot import Robot
 from fakes.faults import FaultBoard
 from fakes.world.robot import RobotArm
-from tests.wire.jobs.job_rig import job_rig
-from tests.wire.proxy import Chaos, ChaosProxy
-from tests.wire.siasun.sjl_rig import sjl_rig
-from tests.wire.siasun_rpc.duco_rig import duco_rig
+from tests.rigs.wire.duco_rig import duco_rig
+from tests.rigs.wire.job_rig import job_rig
+from tests.rigs.wire.proxy import Chaos, ChaosProxy
+from tests.rigs.wire.sjl_rig import sjl_rig
 
 STATEMENT_S = 0.001
 DELAY_S = 0.05

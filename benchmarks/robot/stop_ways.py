@@ -13,9 +13,9 @@ from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
 from fakes.world.robot import RobotArm
-from tests.wire.jobs.job_rig import job_rig
-from tests.wire.jobs.permit_loop import PERMIT, permit_loop
-from tests.wire.siasun_rpc.duco_rig import duco_rig
+from tests.rigs.wire.duco_rig import duco_rig
+from tests.rigs.wire.job_rig import job_rig
+from tests.rigs.wire.permit_loop import PERMIT, permit_loop
 
 STATEMENT_S = 0.001
 WATCHDOG_MS = 300

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from cellctl.geometry.pose import MM
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard, SceneHole, ScenePlate, StereoTruth
-from tests.unit.processes.antenna_module import pictures
+from tests.rigs.antenna import small_pictures as pictures
 
 PAIRS, SQUARE_MM, CORNERS = 8, 20.0, (9, 6)
 _SHRINK = 4

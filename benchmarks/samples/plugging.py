@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.samples.poses import write_json
-from tests.unit.processes.antenna_module.chain import exact_cell
-from tests.unit.processes.antenna_module.commands.test_plugging import (
+from tests.rigs.antenna import exact_cell
+from tests.rigs.antenna.curves import Shape, as_csv, curve
+from tests.rigs.antenna.plugging_files import (
     cell_entries,
     look_entries,
     teach_content,
 )
-from tests.unit.processes.antenna_module.insertion.curves import Shape, as_csv, curve
 
 CONNECTORS = Path(__file__).parents[2] / "config" / "connectors"
 _PINS, _HOLES = "micro-d-15-pins.toml", "micro-d-15-holes.toml"

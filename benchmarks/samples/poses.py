@@ -13,11 +13,11 @@ from cellctl.calibration.pose_record import covariance_to_written
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
-from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case
-from tests.unit.calibration.solvers.hand_eye import test_hand_eye as hand_eye_case
-from tests.unit.calibration.solvers.tool import test_tool as tool_case
-from tests.unit.calibration.solvers.transfer import test_board_transfer as transfer_case
-from tests.unit.force.gravity.world import format_pose_file, imperfect, record
+from tests.rigs.calibration import board_placements as transfer_case
+from tests.rigs.calibration import hand_eye_views as hand_eye_case
+from tests.rigs.calibration import tool_touches as tool_case
+from tests.rigs.calibration import turned_arm as base_frame_case
+from tests.rigs.payload_world import format_pose_file, imperfect, record
 
 
 def write_hand_eye(path: Path) -> None:

@@ -4,11 +4,11 @@ import time
 
 import numpy as np
 
-from benchmarks.mating.cell import MatingCell
-from benchmarks.mating.trial import Trial, run_trial
 from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
 from fakes.demo.processes.deck_to_frame import LIMITED
+from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.trial import Trial, run_trial
 
 STIFFNESS_N_M = 3e6
 """The stiffest contact of the scenario: forces grow fastest."""

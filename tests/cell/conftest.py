@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 
 @pytest.fixture

@@ -25,7 +25,7 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.frames import from_written
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(300), pytest.mark.long]
 G_M_S2 = 9.80665

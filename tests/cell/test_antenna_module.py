@@ -13,7 +13,7 @@ from cellctl.processes.antenna_module.calibrations import TOOL_TURN
 from cellctl.processes.antenna_module.record import keys
 from cellctl.records import RunStore
 from cellctl.records.entries import RunResult
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "antenna-module")

@@ -9,7 +9,7 @@ from cellctl.clock import utc_now
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.runtime.jobs.factory import PLANNED
 from fakes.demo.processes.deck_calibration import PROCEDURES
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(900), pytest.mark.long]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 PROCESS = ("--process", "antenna-module")
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.rigs.own_cell import ROOT, OwnCell
+from tests.rigs.whole_cell.own_cell import ROOT, OwnCell
 
 pytestmark = [pytest.mark.timeout(600), pytest.mark.long]
 

@@ -10,8 +10,8 @@ import pytest
 
 from cellctl.records.store import RunStore
 from cellctl.vision.picture import INSET_PX
-from tests.cell.rigs.own_cell import OwnCell, cellctl
-from tests.wire.jobs.job_rig import JOBS
+from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
+from tests.rigs.wire.job_rig import JOBS
 
 pytestmark = pytest.mark.timeout(300)
 

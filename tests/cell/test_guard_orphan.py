@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from fakes.wire.sri.box import SriBox
-from tests.cell.rigs.guard_rig import Robot, noisy, until
-from tests.ports import free_ports
-from tests.wire.siasun.siasun_peer import Peer
+from tests.rigs.whole_cell.guard_rig import Robot, noisy, until
+from tests.rigs.wire.ports import free_ports
+from tests.rigs.wire.siasun_peer import Peer
 
 ROOT = Path(__file__).parents[2]
 
@@ -36,7 +36,13 @@ async def test_a_killed_daemon(how: signal.Signals) -> None:
     sensor_port = await box.start_tcp()
     (guard_port,) = free_ports(1)
     daemon = await asyncio.create_subprocess_exec(
-        *(sys.executable, "-m", "tests.cell.rigs.guard_daemon", str(sensor_port), str(guard_port)),
+        *(
+            sys.executable,
+            "-m",
+            "tests.rigs.whole_cell.guard_daemon",
+            str(sensor_port),
+            str(guard_port),
+        ),
         stdout=asyncio.subprocess.PIPE,
         cwd=ROOT,
     )

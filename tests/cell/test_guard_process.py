@@ -17,8 +17,8 @@ from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
 from fakes.wire.sri.box import SriBox
-from tests.cell.rigs.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
-from tests.ports import free_ports
+from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
+from tests.rigs.wire.ports import free_ports
 
 
 async def test_it_publishes_and_beats_without_being_armed() -> None:

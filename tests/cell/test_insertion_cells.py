@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = pytest.mark.timeout(120)
 

@@ -4,7 +4,7 @@ import pytest
 
 from cellctl.packml.reject import RejectCode
 from fakes.demo.processes.deck_calibration import PROCEDURES
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 # Procedure 103 alone takes two minutes; the comparison has tests of its own.
 pytestmark = [pytest.mark.timeout(600), pytest.mark.long]

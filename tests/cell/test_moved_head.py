@@ -6,7 +6,7 @@ import pytest
 
 from cellctl.packml.reject import RejectCode
 from cellctl.records.store import RunStore
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = pytest.mark.timeout(200)
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "peg-in-hole")

@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from fakes.demo.control import Control
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import OwnCell, Program
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import OwnCell, Program
 
 pytestmark = [pytest.mark.timeout(200)]
 

@@ -3,7 +3,7 @@
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 

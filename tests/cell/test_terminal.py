@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import OwnCell, cellctl
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
 from tests.unit.command.test_arbiter import audit
 
 pytestmark = pytest.mark.timeout(300)

@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(300), pytest.mark.long]
 

@@ -8,9 +8,9 @@ from shutil import copytree
 import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration, write_stored
-from tests.cell.rigs.endings import refuses, taken, waits
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import ROOT, OwnCell, cellctl
+from tests.rigs.whole_cell.endings import refuses, taken, waits
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import ROOT, OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(120)
 

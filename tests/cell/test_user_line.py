@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from tests.cell.rigs.outside_plc import HOLDING, INPUT, OutsidePlc
-from tests.cell.rigs.own_cell import OwnCell, cellctl
+from tests.rigs.whole_cell.outside_plc import HOLDING, INPUT, OutsidePlc
+from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(180)
 

@@ -7,8 +7,8 @@ import time
 import pytest
 
 from cellctl.records.store import RunStore
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import OwnCell, cellctl
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(180)
 

@@ -12,9 +12,9 @@ import pytest
 
 from cellctl.records.entries import RunRecord
 from cellctl.records.store import RunStore
-from tests.cell.rigs.outside_plc import OutsidePlc
-from tests.cell.rigs.own_cell import Program, free_port
 from tests.guides.package import ROOT, install, run, write_files
+from tests.rigs.whole_cell.outside_plc import OutsidePlc
+from tests.rigs.whole_cell.own_cell import Program, free_port
 
 GUIDE = ROOT / "docs" / "writing-a-process.md"
 MOST_LINES = 200

@@ -12,7 +12,7 @@ from drivers.io.modbus_coupler.driver import ModbusCouplerIo
 from fakes.wire.couplers.coupler import CouplerServer
 from tests.contracts.inprocess.digital_io import InProcessIo
 from tests.contracts.suites.digital_io import INPUTS, OUTPUTS, DigitalIoBench, DigitalIoContract
-from tests.wire.proxy import ChaosProxy
+from tests.rigs.wire.proxy import ChaosProxy
 
 INPUT_ADDRESSES = {"door": 3, "tray": 12}
 OUTPUT_ADDRESSES = {"lamp": 0, "air": 1, "clamp": 9}

@@ -18,8 +18,8 @@ from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
 from tests.contracts.suites.robot import RobotBench, RobotContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
-from tests.wire.jobs.job_rig import JobRig, job_rig
-from tests.wire.siasun.sjl_rig import Rig, sjl_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
+from tests.rigs.wire.sjl_rig import Rig, sjl_rig
 
 
 class InProcessBench(RobotBench):

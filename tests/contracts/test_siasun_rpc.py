@@ -14,8 +14,8 @@ from tests.contracts.loop_thread import LoopThread
 from tests.contracts.suites.robot import RobotBench, RobotContract
 from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
-from tests.wire.siasun_rpc.duco_rig import DucoRig, duco_rig
-from tests.wire.standing_arm import READY_DEG
+from tests.rigs.wire.duco_rig import DucoRig, duco_rig
+from tests.rigs.wire.standing_arm import READY_DEG
 
 
 class RpcBench(RobotBench):

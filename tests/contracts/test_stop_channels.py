@@ -11,9 +11,9 @@ from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from tests.contracts.inprocess.stop_channel import InProcessStopChannel
 from tests.contracts.loop_thread import LoopThread
 from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
-from tests.wire.jobs.job_rig import JobRig, job_rig
-from tests.wire.siasun.sjl_rig import Rig, sjl_rig
-from tests.wire.standing_arm import READY_DEG
+from tests.rigs.wire.job_rig import JobRig, job_rig
+from tests.rigs.wire.sjl_rig import Rig, sjl_rig
+from tests.rigs.wire.standing_arm import READY_DEG
 
 
 class InProcessBench(StopBench):

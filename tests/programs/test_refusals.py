@@ -7,8 +7,8 @@ import os
 
 import pytest
 
-from tests.cell.rigs.endings import refuses, taken
-from tests.cell.rigs.own_cell import OwnCell, cellctl
+from tests.rigs.whole_cell.endings import refuses, taken
+from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
 
 pytestmark = pytest.mark.timeout(120)
 

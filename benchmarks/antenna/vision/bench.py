@@ -6,15 +6,6 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.antenna.pictures import Conditions
-from benchmarks.antenna.vision.outcomes import (
-    Outcome,
-    both,
-    false_alarms,
-    quantiles,
-    refusal,
-    words,
-)
 from benchmarks.antenna.vision.report import Report
 from cellctl.errors.base import CellError
 from cellctl.processes.antenna_module.faults.connector import (
@@ -24,12 +15,16 @@ from cellctl.processes.antenna_module.faults.connector import (
     LightFromOneSide,
     WrongConnector,
 )
+from tests.rigs.antenna.outcomes import (
+    Outcome,
+    both,
+    false_alarms,
+    quantiles,
+    refusal,
+    words,
+)
+from tests.rigs.antenna.pictures import CLEAN, HOLES, POOR, Conditions
 
-CLEAN = Conditions()
-POOR = Conditions(noise_grey=4.0, blur_px=(2.0, 2.0), um_per_px=(25.0, 25.0))
-HOLES = Conditions(kind="holes", height_sigma_m=0.2e-3)
-"""The height as uncertain as a recipe states it. The far wall of a bore is lit, so that its rim
-appears nearer to the camera's axis, as of a plane that is 0.3 mm deeper."""
 WRONG_UM = 10.0
 """A measurement that is farther off is a wrong result: it ought to have been refused."""
 

@@ -7,10 +7,9 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from benchmarks.antenna.pictures import Trial, trial
-from benchmarks.antenna.vision.bench import CLEAN
 from benchmarks.antenna.vision.report import Report
 from cellctl.processes.antenna_module.vision.measure import measure_connector, measure_marks
+from tests.rigs.antenna.pictures import CLEAN, Trial, trial
 
 MARK_IMAGES, PLUG_IMAGES, SOCKET_IMAGES = 9, 3, 9
 """Of one run, three frames a look: module on the tray twice and after the release, plug with

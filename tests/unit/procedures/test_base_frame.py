@@ -14,7 +14,7 @@ from cellctl.interfaces import Target
 from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, BOARD_TRANSFER
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.steps import HeldMeanwhile
-from tests.unit.calibration.solvers.base_frame.test_base_frame import (
+from tests.rigs.calibration.turned_arm import (
     C_T_BASE,
     RING,
     SIGMA_M,

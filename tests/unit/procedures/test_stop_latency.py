@@ -6,8 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.mating.cell import MatingCell
-from benchmarks.mating.simulated_loop import run_simulated
 from cellctl.errors.force import CommissioningFailed, NotSettled
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.interfaces import RobotState
@@ -19,6 +17,8 @@ from cellctl.procedures.stop_latency import (
     stored_stop_latencies,
 )
 from cellctl.runtime.steps import HeldMeanwhile
+from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.simulated_loop import run_simulated
 
 UP = np.array([0.0, 0.0, 1.0])
 SAME_STOPS = {"latency_jitter": 0.0, "stop_jitter": 0.0}

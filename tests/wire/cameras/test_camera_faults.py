@@ -22,7 +22,7 @@ from drivers.camera.target_server.driver import TargetServerTracker
 from fakes.wire.cameras.frame_server import FrameServer
 from fakes.wire.cameras.target_server import TargetServer
 from fakes.world.targets import SeenTarget
-from tests.wire.proxy import ChaosProxy
+from tests.rigs.wire.proxy import ChaosProxy
 from tests.wire.ramp import HEIGHT, WIDTH, Ramp
 
 

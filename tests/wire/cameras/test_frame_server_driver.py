@@ -21,7 +21,7 @@ from drivers.camera.frame_server import protocol
 from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerHead
 from drivers.camera.frame_server.protocol import ServerCommand
-from tests.ports import free_ports
+from tests.rigs.wire.ports import free_ports
 from tests.wire.scripted_server import Script, serving
 
 OFFSETS = {"version": (4, 2), "status": (6, 2), "id": (8, 4), "frame_id": (12, 4),

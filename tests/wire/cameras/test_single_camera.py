@@ -17,9 +17,9 @@ from drivers.camera.frame_server.config import FrameServerConfig
 from drivers.camera.frame_server.driver import FrameServerCamera, FrameServerHead
 from drivers.camera.frame_server.protocol import ServerCommand
 from fakes.wire.cameras.image_server import ImageServer, Picture
+from tests.rigs.wire.proxy import ChaosProxy
 from tests.wire.cameras import cfs_golden as golden
 from tests.wire.cameras.camera_bench import HEIGHT, WIDTH, PictureTaker
-from tests.wire.proxy import ChaosProxy
 
 
 @dataclass

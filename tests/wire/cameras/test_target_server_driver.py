@@ -17,7 +17,7 @@ from cellctl.errors.link import (
 from drivers.camera.target_server import protocol
 from drivers.camera.target_server.config import TargetServerConfig
 from drivers.camera.target_server.driver import TargetServerTracker
-from tests.ports import free_ports
+from tests.rigs.wire.ports import free_ports
 from tests.wire.scripted_server import Script, serving
 
 IDENTITY = (

@@ -8,7 +8,7 @@ from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
-from tests.wire.scenarios import as_on_a_real_cell
+from tests.rigs.wire.scenarios import as_on_a_real_cell
 
 HOME = "0,-90,90,0,90,90"
 WORK = "0,-52.766,109.14,0,33.626,90"

@@ -13,7 +13,7 @@ from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.records import decode, encode
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
-from tests.wire.scenarios import as_on_a_real_cell
+from tests.rigs.wire.scenarios import as_on_a_real_cell
 
 WAIT_S = 5.0
 SCENARIO = as_on_a_real_cell(load(Path(__file__).parents[3] / "config" / "deck.scenario.toml"))

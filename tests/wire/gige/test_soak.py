@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from benchmarks.cameras.kept import Kept, kept
+from tests.rigs.kept import Kept, kept
 
 
 def test_a_short_soak() -> None:

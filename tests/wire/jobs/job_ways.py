@@ -13,7 +13,7 @@ import pytest
 
 from cellctl.errors.base import CellError
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
-from tests.wire.jobs.job_rig import JobRig
+from tests.rigs.wire.job_rig import JobRig
 from tests.wire.siasun.any_rig import above, move, rearm, stands, until_moving, within
 
 STARTED = {"LINK", "READ", "MORE"}

@@ -10,8 +10,8 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.robot_layers.permitted_robot import PermittedRobot
 from cellctl.errors.link import LinkLost
 from cellctl.interfaces import Robot, RobotState
-from tests.wire.jobs.job_rig import JobRig, job_rig
-from tests.wire.jobs.permit_loop import PERMIT, permit_loop
+from tests.rigs.wire.job_rig import JobRig, job_rig
+from tests.rigs.wire.permit_loop import PERMIT, permit_loop
 
 WATCHDOG_MS = 300
 STANDS_S = 0.5

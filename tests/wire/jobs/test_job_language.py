@@ -17,8 +17,8 @@ from fakes.scenario_file.scenario import load
 from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
-from tests.wire.jobs.job_rig import JOBS
-from tests.wire.standing_arm import SCENARIO
+from tests.rigs.wire.job_rig import JOBS
+from tests.rigs.wire.standing_arm import SCENARIO
 
 
 def job(folder: Path, *lines: str) -> Path:

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from drivers.robot.siasun.codec.records import REPORT_COUNTS, Status
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
 
 SILENCE_MAX_MS = 1_000_000
 CLOCK, COUNT, SILENCE = 304, 309, 303

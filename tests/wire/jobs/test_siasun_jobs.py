@@ -10,7 +10,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError
 from cellctl.errors.robot import ControllerFault, MotionAborted, MotionRejected, NotRearmed
 from cellctl.interfaces.robot import RobotState
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
 
 
 @pytest.fixture

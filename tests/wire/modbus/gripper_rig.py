@@ -10,7 +10,7 @@ from drivers.gripper.pneumatic.driver import PneumaticGripper
 from fakes.wire.couplers.coupler import CouplerServer
 from fakes.wire.couplers.gripper_coupler import CLOSE_COIL, OPEN_COIL, SENSORS, gripper_coupler
 from fakes.world.gripper import PneumaticJaws
-from tests.wire.proxy import ChaosProxy
+from tests.rigs.wire.proxy import ChaosProxy
 
 
 @dataclass

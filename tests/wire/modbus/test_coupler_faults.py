@@ -15,8 +15,8 @@ from drivers.gripper.pneumatic.config import PneumaticGripperConfig
 from drivers.io.modbus_coupler.config import ModbusCouplerConfig
 from drivers.io.modbus_coupler.driver import ModbusCouplerIo
 from fakes.wire.couplers.coupler import CouplerServer
+from tests.rigs.wire.proxy import ChaosProxy
 from tests.wire.modbus.gripper_rig import GripperRig, gripper_rig
-from tests.wire.proxy import ChaosProxy
 
 WATCHDOG_MS = 300
 

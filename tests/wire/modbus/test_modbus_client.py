@@ -19,7 +19,7 @@ from drivers.modbus.client import ModbusClient
 from drivers.modbus.settings import CouplerSettings
 from fakes.wire.couplers import modbus_pdu
 from fakes.wire.couplers.modbus_pdu import ExceptionCode, Request
-from tests.ports import free_ports
+from tests.rigs.wire.ports import free_ports
 from tests.wire.modbus import modbus_golden as golden
 from tests.wire.scripted_server import serving
 

@@ -10,8 +10,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.interfaces.robot import RobotState
-from tests.wire.jobs.job_rig import JobRig
-from tests.wire.siasun.sjl_rig import Rig
+from tests.rigs.wire.job_rig import JobRig
+from tests.rigs.wire.sjl_rig import Rig
 
 Value = TypeVar("Value")
 AnyRig = Rig | JobRig

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from cellctl.geometry.pose import pose_from_xyzabc
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from tests.ports import free_ports
-from tests.wire.siasun.siasun_peer import POSE, Peer
+from tests.rigs.wire.ports import free_ports
+from tests.rigs.wire.siasun_peer import POSE, Peer
 
 HERE = [1900.0, -0.125, 927.0, 90.0, 0.0, 180.0]
 THERE = [1900.0, 0.0, 930.0, 90.0, 0.0, 180.0]

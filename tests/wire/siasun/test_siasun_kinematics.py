@@ -18,8 +18,8 @@ from drivers.robot.siasun.driver import SiasunRobot
 from drivers.robot.siasun.kinematics import arm_chain
 from fakes.scenario_file.scenario import load
 from fakes.world.arm import forward_matrix, nominal_links
-from tests.wire.siasun.sjl_rig import sjl_rig
-from tests.wire.standing_arm import SCENARIO
+from tests.rigs.wire.sjl_rig import sjl_rig
+from tests.rigs.wire.standing_arm import SCENARIO
 
 CELL = SCENARIO.parent / "deck.toml"
 ROBOTS = ("main", "aux_1", "aux_2")

@@ -12,10 +12,10 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.stated_moves import deck_moves
 from drivers.robot.siasun.bounds import LINEAR_STEPS, Bounds
 from drivers.robot.siasun.config import SiasunConfig
+from tests.rigs.wire.sjl_rig import sjl_rig
+from tests.rigs.wire.standing_arm import READY_DEG
 from tests.unit.planning.deck_cell import DECK, deck_scene
-from tests.wire.siasun.sjl_rig import sjl_rig
 from tests.wire.siasun.test_siasun_kinematics import chain_of, config_of, standing_at
-from tests.wire.standing_arm import READY_DEG
 
 READY_RAD = np.radians(READY_DEG)
 

@@ -4,7 +4,7 @@ import pytest
 
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import ControllerFault, MotionAborted, MotionRejected, NotRearmed
-from tests.wire.jobs.job_rig import JobRig
+from tests.rigs.wire.job_rig import JobRig
 from tests.wire.siasun.any_rig import AnyRig, Make, above, move, rearm, stands, until_moving, within
 from tests.wire.siasun.refusals import REFUSALS
 

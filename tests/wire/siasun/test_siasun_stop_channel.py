@@ -21,11 +21,11 @@ from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.stop_channel import FlangeState
 from drivers.robot.siasun.config import SiasunStopChannelConfig
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
-from tests.ports import free_ports
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
+from tests.rigs.wire.ports import free_ports
+from tests.rigs.wire.siasun_peer import POSE, Peer
+from tests.rigs.wire.sjl_rig import Rig, sjl_rig
 from tests.wire.siasun.siasun_angles import rotation_by_hand
-from tests.wire.siasun.siasun_peer import POSE, Peer
-from tests.wire.siasun.sjl_rig import Rig, sjl_rig
 
 
 def config(timeout_s: float = 2.0) -> SiasunStopChannelConfig:

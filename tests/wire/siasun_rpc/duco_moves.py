@@ -7,7 +7,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.errors.link import LinkError
 from cellctl.errors.robot import NotRearmed
 from cellctl.interfaces.robot import RobotState
-from tests.wire.siasun_rpc.duco_rig import DucoRig
+from tests.rigs.wire.duco_rig import DucoRig
 
 
 def up(rig: DucoRig, dz_mm: float) -> RigidTransform:

@@ -10,8 +10,8 @@ from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
 from drivers.robot.siasun_rpc.vendor import TaskState
 from drivers.robot.siasun_rpc.watch import write_pose
+from tests.rigs.wire.duco_rig import DucoRig, duco_rig
 from tests.wire.siasun_rpc.duco_moves import stands, up
-from tests.wire.siasun_rpc.duco_rig import DucoRig, duco_rig
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ from drivers.robot.siasun_rpc.codec.messages import MethodUnknown
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.protocol import request
 from fakes.wire.duco.codec import write_reply, write_unknown
-from tests.wire.siasun_rpc.duco_rig import duco_rig
+from tests.rigs.wire.duco_rig import duco_rig
 
 MOVING, STOP = request("robotmoving"), request("stop", False)
 YES, NO = (write_reply("robotmoving", TType.BOOL, value) for value in (True, False))

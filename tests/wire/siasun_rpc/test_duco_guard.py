@@ -11,8 +11,8 @@ from cellctl.errors.link import LinkError
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.interfaces.stop_channel import FlangeState
 from drivers.robot.siasun_rpc.stop_channel import WORDS, SiasunRpcStopChannel
+from tests.rigs.wire.duco_rig import DucoRig, duco_rig
 from tests.wire.siasun_rpc.duco_moves import begun, move, rearm, stands
-from tests.wire.siasun_rpc.duco_rig import DucoRig, duco_rig
 
 
 @asynccontextmanager

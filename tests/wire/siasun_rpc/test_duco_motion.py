@@ -24,8 +24,8 @@ from cellctl.interfaces.robot import RobotMode
 from drivers.robot.siasun_rpc import faults
 from drivers.robot.siasun_rpc.features import features
 from drivers.robot.siasun_rpc.vendor import SafetyState, TaskState, name
+from tests.rigs.wire.duco_rig import duco_rig
 from tests.wire.siasun_rpc.duco_moves import begun, move, rearm, stands, up
-from tests.wire.siasun_rpc.duco_rig import duco_rig
 
 DH = load_cell(Path(__file__).parents[3] / "config" / "deck.toml").robots["main"].settings["dh"]
 """Of the fake arm."""

@@ -9,7 +9,7 @@ from thrift.Thrift import TMessageType, TType
 from thrift.transport.TTransport import TMemoryBuffer
 
 from fakes.wire.duco.tasks import TaskEnd
-from tests.wire.siasun_rpc.duco_rig import DucoRig, duco_rig
+from tests.rigs.wire.duco_rig import DucoRig, duco_rig
 
 LOAD = [4.2, 0.0, 0.01, 0.06]
 

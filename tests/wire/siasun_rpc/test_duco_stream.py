@@ -5,8 +5,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import NotRearmed, SetpointRefused, TargetOutOfBounds
+from tests.rigs.wire.duco_rig import DucoRig, duco_rig
 from tests.wire.siasun_rpc.duco_moves import move, rearm
-from tests.wire.siasun_rpc.duco_rig import DucoRig, duco_rig
 
 GOOD = 4
 

@@ -15,9 +15,9 @@ from cellctl.errors.link import (
     StaleData,
 )
 from cellctl.errors.robot import NotRearmed
-from tests.ports import free_port
+from tests.rigs.wire.duco_rig import duco_rig
+from tests.rigs.wire.ports import free_port
 from tests.wire.siasun_rpc.duco_moves import begun, move, rearm, stands, up
-from tests.wire.siasun_rpc.duco_rig import duco_rig
 
 
 @pytest.mark.parametrize("way", ["split", "merged", "delayed"])

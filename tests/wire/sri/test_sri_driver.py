@@ -12,7 +12,7 @@ from cellctl.errors.force import SensorSetupWrong
 from cellctl.errors.link import ConnectTimeout, LinkLost, ReplyTimeout, StaleData
 from drivers.ftsensor.sri.driver import SriSensor
 from fakes.wire.sri.box import SriBox
-from tests.ports import free_ports
+from tests.rigs.wire.ports import free_ports
 from tests.wire.sri.sri_rig import WRENCH, blocking, noisy, read_until, tcp_sensor
 
 

@@ -9,7 +9,7 @@ from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, shape
 from cellctl.calibration.solvers.shape_choice import with_chosen_shape
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
-from tests.unit.calibration.solvers.stereo.synthetic import IMAGE_SIZE, make_views
+from tests.rigs.calibration.stereo_views import IMAGE_SIZE, make_views
 from tests.unit.calibration.solvers.stereo.test_stereo import parameter_errors
 
 SMALL = CalibrationBoard(8, 6, 0.026)

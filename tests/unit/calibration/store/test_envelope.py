@@ -33,9 +33,8 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_2,
 )
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
-from tests.unit.calibration.solvers.base_frame import test_base_frame
-from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
-from tests.unit.calibration.solvers.transfer import test_board_transfer
+from tests.rigs.calibration import board_placements, turned_arm
+from tests.rigs.calibration.stereo_views import BOARD, IMAGE_SIZE, make_views
 from tests.unit.calibration.store.shipped import spoil
 
 MADE = datetime(2026, 11, 21, 8, tzinfo=UTC)
@@ -62,8 +61,8 @@ def folder(tmp_path: Path, head: StereoResult) -> Path:
     results: list[StereoResult | BaseFrameResult | TransferResult] = [
         head,
         head,
-        test_base_frame.calibrate(0),
-        test_board_transfer.calibrate(0),
+        turned_arm.calibrate(0),
+        board_placements.calibrate(0),
     ]
     for kind, result in zip(GEOMETRY, results, strict=True):
         record, serial = result.to_record(), f"SN-{kind.name}"
@@ -79,7 +78,7 @@ def test_what_is_written_is_what_production_reads(folder: Path, head: StereoResu
     assert second.covariance is not None
     assert head.head.covariance is not None
     np.testing.assert_allclose(second.covariance, head.head.covariance, rtol=1e-9)
-    transfer = test_board_transfer.calibrate(0)
+    transfer = board_placements.calibrate(0)
     np.testing.assert_allclose(
         found.c1_T_c2.pose.as_matrix(), transfer.c1_T_c2.pose.as_matrix(), atol=1e-12
     )

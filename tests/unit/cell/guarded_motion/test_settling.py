@@ -5,11 +5,11 @@ from typing import cast
 import numpy as np
 import pytest
 
-from benchmarks.mating.simulated_loop import run_simulated
 from cellctl.cell.guarded_motion.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
 from cellctl.errors.force import GuardDied, NotSettled, SensorFrozen
 from cellctl.guard.client import GuardClient
 from cellctl.guard.report import GuardSamples
+from tests.rigs.mating.simulated_loop import run_simulated
 
 PERIOD_S = 1e-3
 

@@ -26,7 +26,7 @@ from cellctl.cli.commands import whole_app
 from cellctl.cli.commissioning.teach import write_pose
 from cellctl.errors.config import ConfigInvalid, FileInvalid
 from fakes.demo.control import Control
-from tests.ports import free_ports
+from tests.rigs.wire.ports import free_ports
 
 CONFIG = Path(__file__).parents[4] / "config"
 

@@ -25,10 +25,10 @@ from cellctl.vision.camera.lens import project
 from cellctl.vision.camera.stereo_head import read_stereo_head
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard, StereoTruth
-from tests.unit.calibration.solvers.base_frame import test_base_frame as base_frame_case
-from tests.unit.calibration.solvers.hand_eye import test_hand_eye as hand_eye_case
-from tests.unit.calibration.solvers.tool import test_tool as tool_case
-from tests.unit.calibration.solvers.transfer import test_board_transfer as transfer_case
+from tests.rigs.calibration import board_placements as transfer_case
+from tests.rigs.calibration import hand_eye_views as hand_eye_case
+from tests.rigs.calibration import tool_touches as tool_case
+from tests.rigs.calibration import turned_arm as base_frame_case
 
 
 def call(*arguments: object) -> Result:

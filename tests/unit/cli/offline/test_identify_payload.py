@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.offline.identify_payload import identify_payload
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
-from tests.unit.force.gravity.world import LoadedSensor, format_pose_file, imperfect, record
+from tests.rigs.payload_world import LoadedSensor, format_pose_file, imperfect, record
 
 app = typer.Typer()
 app.command()(identify_payload)

@@ -12,7 +12,7 @@ from fakes.demo import registry
 from fakes.demo.app import app
 from fakes.demo.demo import Evidence, Judgement
 from fakes.demo.processes.deck_to_frame import DeckToFrameDemo
-from tests.cell.rigs.own_cell import OwnCell
+from tests.rigs.whole_cell.own_cell import OwnCell
 
 CONFIG = Path(__file__).parents[4] / "config"
 

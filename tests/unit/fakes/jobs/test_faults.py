@@ -10,7 +10,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.robot import ControllerFault, MotionAborted
 from cellctl.interfaces.robot import RobotState
 from drivers.robot.siasun.codec.records import Status
-from tests.wire.jobs.job_rig import JobRig, job_rig
+from tests.rigs.wire.job_rig import JobRig, job_rig
 
 
 @pytest.fixture

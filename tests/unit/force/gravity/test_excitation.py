@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 from cellctl.errors.force import PosesDegenerate, TooFewPoses
 from cellctl.force.gravity.excitation import excitation, require_excitation
 from cellctl.force.gravity.payload import fit_affine24, fit_rigid12
-from tests.unit.force.gravity.world import MATING, cone, rotations
+from tests.rigs.payload_world import MATING, cone, rotations
 
 
 def test_condition_numbers_are_those_of_the_reference_table() -> None:

@@ -11,7 +11,7 @@ from cellctl.force.gravity.payload_result import (
     mass_kg,
     payload_document,
 )
-from tests.unit.force.gravity.world import (
+from tests.rigs.payload_world import (
     LoadedSensor,
     compensation_of,
     cone,

@@ -4,7 +4,7 @@ import pytest
 from cellctl.errors.force import PayloadFileInvalid
 from cellctl.force.gravity.pose_file import parse_pose_file
 from cellctl.force.gravity.poses import PoseRole
-from tests.unit.force.gravity.world import LoadedSensor, format_pose_file, record
+from tests.rigs.payload_world import LoadedSensor, format_pose_file, record
 
 HEADER = "qx,qy,qz,qw,fx_n,fy_n,fz_n,mx_nm,my_nm,mz_nm"
 GOOD = "0,0,0,1,1,2,3,4,5,6"

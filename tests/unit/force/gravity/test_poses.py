@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from cellctl.force.gravity.poses import PoseRole
-from tests.unit.force.gravity.world import MATING, PIVOT, cone
+from tests.rigs.payload_world import MATING, PIVOT, cone
 
 
 def test_the_plan_starts_and_ends_at_the_mating_orientation() -> None:

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.planning.scene.cell_scene import Standpoint
+from tests.rigs.mujoco_oracle import MujocoOracle
 from tests.unit.planning.deck_cell import deck_scene
 
 SCENE = deck_scene()

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.planning.mujoco_oracle import MujocoOracle
 from cellctl.config import load_cell
 from cellctl.errors.config import PlanningError
 from cellctl.planning.model.shapes import BoxShape
@@ -15,6 +14,7 @@ from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways.plan_ways import PlannedWay, plan_ways, with_ways
 from cellctl.planning.ways.write_ways import with_ways_written
+from tests.rigs.mujoco_oracle import MujocoOracle
 from tests.unit.planning.deck_cell import DECK, deck_scene
 
 BODY_STEP_M = 0.01

@@ -3,8 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
-from benchmarks.insertion.cases import STUDY_CELL
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry, ForceLimits, SearchTask
+from tests.rigs.insertion.study_cell import STUDY_CELL
 
 
 def pin(clearance_mm: float = 0.02, *, chamfer_mm: float = 0.0, **cell: Any) -> SearchTask:

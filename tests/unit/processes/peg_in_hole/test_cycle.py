@@ -4,7 +4,6 @@ import json
 import numpy as np
 import pytest
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.processes.peg_in_hole.cycle import CyclePlan, run_cycle
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegSlipped, SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.choice import choose_search
@@ -12,6 +11,7 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 SOFT_PIN = pin(stiffness_n_m=1e5)

@@ -5,12 +5,12 @@ from typing import Literal
 import numpy as np
 import pytest
 
-from benchmarks.metrology.scenes import HEAD_HOLES, stereo_head
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import PairMeasurement
 from fakes.render import api
 from fakes.render.bodies.holes import rim_depth
+from tests.rigs.metrology.scenes import HEAD_HOLES, stereo_head
 
 Errors = list[tuple[str, np.ndarray, float]]
 

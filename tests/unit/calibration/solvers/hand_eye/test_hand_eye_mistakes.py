@@ -12,7 +12,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_mistakes import explanation
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
 from cellctl.errors.calibration import RobotCameraMismatch
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
-from tests.unit.calibration.solvers.hand_eye.test_hand_eye import make_poses
+from tests.rigs.calibration.hand_eye_views import make_poses
 
 Change = Callable[[RigidTransform], RigidTransform]
 

@@ -24,7 +24,7 @@ from cellctl.errors.calibration import (
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.lens import project, undistort
 from cellctl.vision.camera.stereo_head import StereoHead
-from tests.unit.calibration.solvers.stereo.synthetic import (
+from tests.rigs.calibration.stereo_views import (
     BOARD,
     IMAGE_SIZE,
     hanging_together,

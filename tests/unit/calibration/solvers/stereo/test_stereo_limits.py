@@ -9,7 +9,7 @@ from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
-from tests.unit.calibration.solvers.stereo.synthetic import BOARD, IMAGE_SIZE, make_views
+from tests.rigs.calibration.stereo_views import BOARD, IMAGE_SIZE, make_views
 
 
 @cache

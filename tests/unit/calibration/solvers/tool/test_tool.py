@@ -2,41 +2,16 @@ import json
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 from scipy.stats import chi2
 
 from cellctl.calibration.solvers.tool.tool import ToolResult, calibrate_tool
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.errors.calibration import IllConditioned, PosesNotDiverse
 from cellctl.geometry.pose import pose_error, pose_from_xyzabc
+from tests.rigs.calibration.tool_touches import FLANGE_T_TOOL, orienting, touching
 
-FLANGE_T_TOOL = pose_from_xyzabc([12, -7, 180, 30, 5, -10])
-POINT_M = np.array([1.5, 0.2, 0.4])
 SIGMA_M = 1e-4
-ANGLES_DEG = [(0, 0, 180), (20, 30, 170), (-40, -25, 190), (60, 10, 150), (10, -35, 200)]
-
-
-def touching(rng: np.random.Generator, count: int, sigma_m: float) -> list[RigidTransform]:
-    poses = []
-    for angles in ANGLES_DEG[:count]:
-        turn = Rotation.from_euler("ZYX", angles, degrees=True)
-        tip = POINT_M + rng.normal(0, sigma_m, 3)
-        poses.append(
-            RigidTransform.from_components(tip - turn.apply(FLANGE_T_TOOL.translation), turn)
-        )
-    return poses
-
-
-def orienting(rng: np.random.Generator, sigma_m: float) -> list[RigidTransform]:
-    turn = Rotation.from_euler("ZYX", [5, 10, 175], degrees=True)
-    axes = turn * FLANGE_T_TOOL.rotation
-    poses = []
-    for step in ([0, 0, 0], [0.1, 0, 0], [0.03, 0.08, 0]):
-        tip = POINT_M + axes.apply(step) + rng.normal(0, sigma_m, 3)
-        poses.append(
-            RigidTransform.from_components(tip - turn.apply(FLANGE_T_TOOL.translation), turn)
-        )
-    return poses
 
 
 def test_exact_from_four_and_three_points() -> None:

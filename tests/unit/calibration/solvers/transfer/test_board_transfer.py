@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 from scipy.stats import chi2
 
 from cellctl.calibration.boards.board_pose import (
@@ -10,7 +10,6 @@ from cellctl.calibration.boards.board_pose import (
     BoardPose,
     fit_board,
     points_from_targets,
-    target_board_discs,
 )
 from cellctl.calibration.solvers.pose_average import average
 from cellctl.calibration.solvers.transfer.board_transfer import (
@@ -21,50 +20,22 @@ from cellctl.calibration.solvers.transfer.board_transfer import (
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.errors.calibration import BoardPoseInvalid
-from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.target_tracker import Target
 from cellctl.processes.deck_to_frame.poses.deck_on_flange import deck_on_flange
-
-DISCS = target_board_discs()
-C_T_BASE = pose_from_xyzabc([1300, 30, 6000, 10, 1, 179]).inv()
-BASE_T_C1 = pose_from_xyzabc([1700, -480, 920, 90, 0, 180])
-BASE_T_C2 = pose_from_xyzabc([2100, 480, 925, -88, 1, 179])
-C1_T_BOARD = pose_from_xyzabc([0, 5, 508, 3, -170, 2])
-C2_T_BOARD = pose_from_xyzabc([10, -5, 500, -5, 172, -3])
-LARGE_SIGMA_M, SMALL_SIGMA = 1.1e-5, np.array([1e-6, 1e-6, 5e-6])
-BASE_SIGMA = np.array([2e-5] * 3 + [2e-5] * 3)
-
-
-def board_points(rng: np.random.Generator, pose: RigidTransform, sigma: Array) -> list[BoardPoint]:
-    return [
-        BoardPoint(name, pose.apply(place) + rng.normal(0, sigma, 3), np.diag(sigma**2))
-        for name, place in DISCS.items()
-    ]
-
-
-def placement(rng: np.random.Generator, base_T_head: RigidTransform, head_T_board: RigidTransform,
-              ) -> BoardPlacement:  # fmt: skip
-    c_T_board = C_T_BASE * base_T_head * head_T_board
-    large = board_points(rng, c_T_board, np.full(3, LARGE_SIGMA_M))
-    small = board_points(rng, head_T_board, SMALL_SIGMA)
-    return BoardPlacement(
-        fit_board(DISCS, large, disc_sigma_m=0), fit_board(DISCS, small, disc_sigma_m=0)
-    )
-
-
-def calibrate(seed: int, placements: int = 1) -> TransferResult:
-    rng = np.random.default_rng(seed)
-    noise = rng.normal(0, BASE_SIGMA)
-    c_T_base = RigidTransform.from_components(
-        C_T_BASE.translation + noise[:3], Rotation.from_rotvec(noise[3:]) * C_T_BASE.rotation
-    )
-    tilts = [pose_from_xyzabc([10 * n, 0, 5 * n, 3 * n, 2, n]) for n in range(placements)]
-    return calibrate_board_transfer(
-        UncertainPose(c_T_base, np.diag(BASE_SIGMA**2)),
-        [placement(rng, BASE_T_C1, C1_T_BOARD * tilt) for tilt in tilts],
-        [placement(rng, BASE_T_C2, C2_T_BOARD * tilt) for tilt in tilts],
-    )
+from tests.rigs.calibration.board_placements import (
+    BASE_T_C1,
+    BASE_T_C2,
+    C1_T_BOARD,
+    C2_T_BOARD,
+    C_T_BASE,
+    DISCS,
+    SMALL_SIGMA,
+    board_points,
+    calibrate,
+    placement,
+)
 
 
 def nees(truth: RigidTransform, measured: UncertainPose) -> float:

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.antenna.pictures import exact_model
 from cellctl.geometry.pose import pose_error
 from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.vision.measure import measure_connector
@@ -20,6 +19,7 @@ from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.connector.scene import SceneConnector, SceneMarks
 from fakes.world.frames import distance, from_written
 from fakes.world.scene import MonoTruth, ScenePlate
+from tests.rigs.antenna.pictures import exact_model
 from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at
 
 CONFIG = Path(__file__).parents[5] / "config"

@@ -27,7 +27,7 @@ from cellctl.processes.antenna_module.faults.plugging import (
     PlugUncertain,
     StaleLook,
 )
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 
 NOW_S = 30.0
 

@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
 from cellctl.geometry.pose import pose_from_xyzabc
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 
 MEAN_UM = 37.689
 TOLERANCE_UM = 50.0

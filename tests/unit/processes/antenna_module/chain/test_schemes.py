@@ -15,7 +15,7 @@ from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
 from cellctl.processes.antenna_module.chain.teaching.teaching import teach_plug
 from cellctl.processes.antenna_module.chain.termed_pose import Term, TermedPose
 from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete, SocketImplausible
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 
 NM, NRAD = 1e-9, 1e-9
 ALL = [pytest.param(scheme, id=name) for name, scheme in SCHEMES.items()]

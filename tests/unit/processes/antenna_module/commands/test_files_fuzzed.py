@@ -23,7 +23,7 @@ from cellctl.processes.antenna_module.commands.trial_file import (
 from cellctl.processes.antenna_module.commands.turn_file import TurnFile
 from cellctl.processes.antenna_module.faults.connector import PlaneFileInvalid
 from cellctl.processes.antenna_module.vision.plane import read_plane
-from tests.unit.processes.antenna_module.commands.test_plugging import teach_content
+from tests.rigs.antenna.plugging_files import teach_content
 
 TEACH = teach_content()
 TRIAL = {

@@ -13,7 +13,7 @@ from typer.testing import CliRunner, Result
 from cellctl.cli.root import new_app
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.commands.measure_connector import add
-from tests.unit.processes.antenna_module.pictures import CONNECTOR, picture
+from tests.rigs.antenna.small_pictures import CONNECTOR, picture
 
 
 def run(folder: Path, *words: str) -> Result:

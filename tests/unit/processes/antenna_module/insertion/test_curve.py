@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import parse_curve
-from tests.unit.processes.antenna_module.insertion.curves import as_csv, curve
+from tests.rigs.antenna.curves import as_csv, curve
 
 TEXT = as_csv(curve())
 LINES = TEXT.splitlines()

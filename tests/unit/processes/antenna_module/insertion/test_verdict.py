@@ -18,7 +18,7 @@ from cellctl.processes.antenna_module.faults.plugging import (
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, InsertionPhase
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch, TripCause
-from tests.unit.processes.antenna_module.insertion.curves import Shape, curve
+from tests.rigs.antenna.curves import Shape, curve
 
 CONNECTOR = read_connector(Path("config/connectors/micro-d-15-pins.toml"))
 LIMITS = InsertionLimits.of(CONNECTOR)

@@ -23,7 +23,7 @@ from cellctl.processes.antenna_module.moves import reference_drive
 from cellctl.processes.antenna_module.moves.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
-from tests.unit.processes.antenna_module.chain.exact_cell import (
+from tests.rigs.antenna.exact_cell import (
     FLANGE_T_CAM1,
     SEEN,
     cell,

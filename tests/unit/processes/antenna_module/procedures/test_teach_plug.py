@@ -14,7 +14,7 @@ from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug
 from cellctl.processes.antenna_module.faults.calibration import TeachScatter
 from cellctl.processes.antenna_module.procedures import teach_plug
 from cellctl.processes.antenna_module.record import keys
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 from tests.unit.processes.antenna_module.steps.notes import Notes
 
 SEATED = pose_from_xyzabc([0.03, -0.05, 0.2, 0.1, 0, 0])

@@ -14,7 +14,7 @@ from cellctl.records import RunStore
 from cellctl.records.entries import Document
 from cellctl.records.figures import Limit, figure
 from cellctl.records.report.export import export_run
-from tests.unit.processes.antenna_module.insertion.curves import curve
+from tests.rigs.antenna.curves import curve
 from tests.unit.records.conftest import start
 from tests.unit.records.page import text_of
 

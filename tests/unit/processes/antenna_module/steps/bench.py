@@ -36,9 +36,9 @@ from cellctl.processes.antenna_module.vision.plane import PlaneCalibration
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.progress import ProgressBoard
+from tests.rigs.antenna.exact_cell import JOINTS_RAD, SEEN
+from tests.rigs.antenna.exact_cell import cell as exact_cell
 from tests.unit.cell.guard import TinyGuard
-from tests.unit.processes.antenna_module.chain.exact_cell import JOINTS_RAD, SEEN
-from tests.unit.processes.antenna_module.chain.exact_cell import cell as exact_cell
 from tests.unit.processes.antenna_module.steps.notes import Notes
 from tests.unit.processes.antenna_module.steps.shown import connector_shown, seen_in
 

@@ -14,7 +14,7 @@ from cellctl.processes.antenna_module.vision.measurement import (
     MeasuredMarks,
 )
 from cellctl.processes.antenna_module.vision.plane import PlaneCalibration
-from tests.unit.processes.antenna_module.chain.exact_cell import SEEN
+from tests.rigs.antenna.exact_cell import SEEN
 
 
 def seen_in(

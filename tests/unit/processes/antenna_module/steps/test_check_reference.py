@@ -21,7 +21,7 @@ from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import GripperEmpty
-from tests.unit.processes.antenna_module.chain.exact_cell import cell
+from tests.rigs.antenna.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import drawn_looks
 
 MOVED: Mapping[str, Array] = {"marks": np.array([60e-6, 0.0])}

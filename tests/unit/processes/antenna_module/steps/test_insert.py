@@ -22,7 +22,7 @@ from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.record import insertion as recorded
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.state import HeldModule, OverSocket
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 from tests.unit.processes.antenna_module.pushing.contact import (
     SEATED,
     STAND_OFF_M,

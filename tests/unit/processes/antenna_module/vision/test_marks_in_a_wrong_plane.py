@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.antenna.pictures import Conditions, trial
 from cellctl.processes.antenna_module.vision.measure import measure_marks
+from tests.rigs.antenna.pictures import Conditions, trial
 
 HEIGHT_SIGMA_M = 0.2e-3
 

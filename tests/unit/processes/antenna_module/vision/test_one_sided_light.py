@@ -5,11 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.antenna.pictures import Conditions, trial
-from benchmarks.antenna.vision.bench import CLEAN, HOLES
 from cellctl.geometry.pose import pose_error
 from cellctl.processes.antenna_module.faults.connector import LightFromOneSide
 from cellctl.processes.antenna_module.vision.measure import measure_connector
+from tests.rigs.antenna.pictures import CLEAN, HOLES, Conditions, trial
 
 SMALL = (35.0, 35.0)
 

@@ -5,11 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from benchmarks.antenna.pictures import trial
-from benchmarks.antenna.vision.bench import CLEAN, HOLES
-from benchmarks.antenna.vision.outcomes import outcome
 from cellctl.processes.antenna_module.vision.measure import contact_pattern, measure_connector
 from cellctl.processes.antenna_module.vision.pattern import find_pattern, surplus
+from tests.rigs.antenna.outcomes import outcome
+from tests.rigs.antenna.pictures import CLEAN, HOLES, trial
 
 TWICE = 39
 """Seed of a picture in which two holes of a good socket are found as two spots each."""

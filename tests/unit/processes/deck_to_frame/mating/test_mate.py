@@ -6,9 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from benchmarks.mating.cell import MatingCell
-from benchmarks.mating.simulated_loop import run_simulated
-from benchmarks.mating.trial import ARM_STIFFNESS_N_M, nominal_settings, plan_for
 from cellctl.errors.force import ContactPlanInvalid, NotSettled, TareImplausible
 from cellctl.errors.line import LineLostInContact
 from cellctl.processes.deck_to_frame.faults import DeckNotSeated
@@ -22,6 +19,9 @@ from cellctl.processes.deck_to_frame.mating.result import (
     MatingResult,
 )
 from cellctl.runtime.interruption import Interruption
+from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.simulated_loop import run_simulated
+from tests.rigs.mating.trial import ARM_STIFFNESS_N_M, nominal_settings, plan_for
 
 LATENCY_S = 0.25
 SOON_S = 0.05

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from benchmarks.mating.campaign_pins import PINS
-from benchmarks.mating.trial import Hook, Trial, run_trial
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.mating.settings import PinSettings
+from tests.rigs.mating.trial import PINS, Hook, Trial, run_trial
 
 BESIDE_MM, YAW_DEG = 0.08, 0.004
 ENGAGED_M = (PINS.length_mm + 0.1) * MM

@@ -9,9 +9,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.mating.cell import MatingCell
-from benchmarks.mating.simulated_loop import run_simulated
-from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_robot import GuardedRobot
@@ -27,6 +24,9 @@ from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.processes.deck_to_frame.stations import DeckCell, FrameMemory, deck_recipes
 from cellctl.runtime.interruption import Interruption
+from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.simulated_loop import run_simulated
+from tests.rigs.mating.trial import nominal_settings, plan_for
 from tests.unit.cell.bench import CELL_FILE
 
 LATENCY_S = 0.05

@@ -5,9 +5,6 @@ from collections.abc import Awaitable, Callable
 
 import pytest
 
-from benchmarks.mating.cell import MatingCell
-from benchmarks.mating.simulated_loop import run_simulated
-from benchmarks.mating.trial import nominal_settings, plan_for
 from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
 from cellctl.errors.force import LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M
@@ -15,6 +12,9 @@ from cellctl.processes.deck_to_frame.mating.attempt import Attempt
 from cellctl.processes.deck_to_frame.mating.back_off import back_off
 from cellctl.processes.deck_to_frame.mating.phases import settle_and_tare
 from cellctl.processes.deck_to_frame.moves.lift_off import LIFT_M, lift_off
+from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.simulated_loop import run_simulated
+from tests.rigs.mating.trial import nominal_settings, plan_for
 from tests.unit.processes.deck_to_frame.moves.test_guarded_moves import cell_of
 
 LATENCY_S = 0.25

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.contact_motion.motions import Condition, ContactMotion, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 from cellctl.processes.peg_in_hole.verdict.holding import directions_that_resist_a_turn
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 from tests.unit.processes.peg_in_hole.tasks import plug
 
 KEYS = KeyGeometry(depth_m=3e-3, window_rad=np.radians(1.0), uncertainty_rad=np.radians(1.8))

@@ -3,8 +3,6 @@ import asyncio
 import numpy as np
 import pytest
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
-from benchmarks.insertion.traps import PegState, StandingPeg
 from cellctl.processes.peg_in_hole.search.classify import (
     ContactClass,
     class_by_force,
@@ -12,6 +10,8 @@ from cellctl.processes.peg_in_hole.search.classify import (
     classify_contact,
     light_threshold_n,
 )
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.traps import PegState, StandingPeg
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 Four = tuple[bool, bool, bool, bool]

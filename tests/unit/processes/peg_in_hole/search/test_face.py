@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 FAR = np.array([100e-3, 100e-3])

@@ -5,7 +5,6 @@ import asyncio
 import numpy as np
 import pytest
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.choice import SearchName, choose_search
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
@@ -13,6 +12,7 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 

@@ -3,7 +3,6 @@ import asyncio
 import numpy as np
 import pytest
 
-from benchmarks.insertion.kinematic import KinematicMotions, Truth
 from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import StreamNotOffered
@@ -21,6 +20,7 @@ from cellctl.processes.peg_in_hole.faults import (
     SensorDead,
 )
 from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
+from tests.rigs.insertion.kinematic import KinematicMotions, Truth
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 DEEP_M = 4e-3

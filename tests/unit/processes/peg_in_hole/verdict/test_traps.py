@@ -2,7 +2,6 @@
 
 import pytest
 
-from benchmarks.insertion.traps import PegState, run_trap
 from cellctl.processes.peg_in_hole.faults import (
     FalseSeat,
     HoleTooWide,
@@ -12,6 +11,7 @@ from cellctl.processes.peg_in_hole.faults import (
     SensorDead,
 )
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from tests.rigs.insertion.traps import PegState, run_trap
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 TASKS = (pin(), pin(0.1, chamfer_mm=0.5, stiffness_n_m=1e5), plug())

@@ -10,7 +10,7 @@ import pytest
 from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.chain.teaching.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
-from tests.unit.processes.antenna_module.chain.exact_cell import cell
+from tests.rigs.antenna.exact_cell import cell
 from tests.unit.processes.antenna_module.chain.reference_draws import ARM, drawn_looks
 
 

@@ -7,7 +7,7 @@ from cellctl.processes.antenna_module.chain.schemes import DIFFERENCE
 from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching.taught_picture import taught_picture
 from cellctl.processes.antenna_module.chain.teaching.teaching import teach_plug
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 
 
 @pytest.fixture(scope="module")

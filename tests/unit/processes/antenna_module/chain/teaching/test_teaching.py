@@ -15,7 +15,7 @@ from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrectio
 from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.faults.calibration import TeachScatter, TooFewTeachings
 from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
-from tests.unit.processes.antenna_module.chain import exact_cell as exact
+from tests.rigs.antenna import exact_cell as exact
 
 SEATED = pose_from_xyzabc([0.03, -0.05, 0.2, 0.1, 0, 0])
 

@@ -1,0 +1,1 @@
+"""Rendered connectors, an exact chain of poses and curves of insertions, with known truth."""

@@ -1,0 +1,1 @@
+"""What calibrations are made from, drawn from a known truth with noise."""

@@ -1,0 +1,1 @@
+"""Rendered scenes for the measurement of holes, with exact truth."""

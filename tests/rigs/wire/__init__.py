@@ -1,0 +1,1 @@
+"""Drivers and what stands in for their controllers, connected through sockets of this PC."""

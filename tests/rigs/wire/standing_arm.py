@@ -1,0 +1,33 @@
+"""The arm at the far end of tests and benchmarks of robots, standing."""
+
+import time
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from fakes.scenario_file.scenario import load
+from fakes.scenario_file.sections import Robot
+from fakes.world.robot import RobotArm
+from fakes.world.truth import RobotTruth, draw
+from tests.rigs.wire.scenarios import as_on_a_real_cell
+
+SCENARIO = Path(__file__).parents[3] / "config" / "deck.scenario.toml"
+READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
+"""Deck above the station, away from limits and singularities."""
+
+
+@cache
+def _drawn() -> tuple[Robot, RobotTruth]:
+    """Read and drawn once: neither changes, and there are many rigs."""
+    scenario = as_on_a_real_cell(load(SCENARIO))
+    return scenario.robots["main"], draw(scenario, seed=1).robots["main"]
+
+
+def standing_arm() -> tuple[RobotArm, Callable[[], float]]:
+    """The arm and its clock."""
+    arm = RobotArm(*_drawn(), seed=1)
+    arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
+    started_s = time.monotonic() - arm.standstill_s
+    return arm, lambda: time.monotonic() - started_s

@@ -1,7 +1,0 @@
-"""The cell of the mating campaign is that of the demonstration."""
-
-from benchmarks.mating.cell import SCENARIO
-
-
-def test_its_scenario_is_there() -> None:
-    assert SCENARIO.is_file()
