@@ -6,12 +6,14 @@ for its devices by such names (``cellctl.config.roles``).
 
 from typing import Annotated, Any, Self
 
-from pydantic import Field, StringConstraints, model_validator
+from pydantic import Field, StringConstraints, field_validator, model_validator
 
 from cellctl import plugins
 from cellctl.config.base import JointsDeg, Section, WrittenPose
 
 ComMm = Annotated[float, Field(ge=-3000, le=3000)]
+Pixels = Annotated[float, Field(gt=0, le=5000)]
+Milliseconds = Annotated[float, Field(gt=0, le=60_000)]
 DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
 
 
@@ -42,6 +44,28 @@ class LightConfig(Section):
     """Name of the output there; on is light."""
     settle_s: Annotated[float, Field(ge=0, le=10)] = 0.0
     """From the confirmed output to the exposure: what the lamp takes to give its full light."""
+
+
+class AutoExposureConfig(Section):
+    """How the exposure of a camera is found: by the surface round dark holes."""
+
+    hole_px: tuple[Pixels, Pixels]
+    """Least and greatest radius of the holes in the image."""
+    target_grey: Annotated[float, Field(ge=20, le=240)] = 180.0
+    """Of the surface round them, of 255."""
+    exposure_ms: tuple[Milliseconds, Milliseconds] = (0.02, 200.0)
+    """Least and greatest exposure."""
+    tries: Annotated[int, Field(ge=1, le=100)] = 16
+    """Exposures until it is given up."""
+    within_s: Annotated[float, Field(gt=0, le=600)] = 60.0
+    """Time until it is given up."""
+
+    @field_validator("hole_px", "exposure_ms")
+    @classmethod
+    def _least_first(cls, limits: tuple[float, float]) -> tuple[float, float]:
+        if limits[0] >= limits[1]:
+            raise ValueError("the least first, then the greatest")
+        return limits
 
 
 class WayConfig(Section):
@@ -119,6 +143,9 @@ class CameraConfig(DeviceConfig):
     """Nominal pose on the flange of the robot that carries it, for planning views only."""
     light: LightConfig | None = None
     """Switched on for each exposure; cameras may share one."""
+    auto_exposure: AutoExposureConfig | None = None
+    """Found before the first measurement of a run, and kept for all of it; none: that of the
+    settings, or of the camera."""
 
 
 class StereoCameraConfig(CameraConfig):

@@ -1,11 +1,19 @@
-"""What drivers say about their settings, before a connection."""
+"""What drivers say about their settings and abilities, before a connection."""
 
 from typing import Any, cast
 
 from cellctl import plugins
-from cellctl.config.devices import DigitalIoConfig, ForceSensorConfig, RobotConfig
+from cellctl.config.devices import (
+    GROUPS,
+    CameraConfig,
+    DigitalIoConfig,
+    ForceSensorConfig,
+    RobotConfig,
+)
+from cellctl.errors.config import UnknownDriver
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import DigitalIo, IoNames, MotionBounds, Robot
+from cellctl.interfaces.exposure import AdjustableExposure
 
 
 def robot_driver(robot: RobotConfig) -> tuple[type[Robot], Any]:
@@ -31,6 +39,18 @@ def first_link_mm(robot: RobotConfig) -> tuple[float | None, float | None]:
         d1_mm if robot.d1_mm is None else robot.d1_mm,
         a1_mm if robot.a1_mm is None else robot.a1_mm,
     )
+
+
+def sets_exposures(section: str, camera: CameraConfig) -> bool:
+    """Whether the driver can set an exposure; True for one that is unknown, which is another fault.
+
+    ``section`` is that of the cell file: ``cameras`` or ``stereo_cameras``.
+    """
+    try:
+        driver: Any = plugins.load(GROUPS[section], camera.driver)
+    except UnknownDriver:
+        return True
+    return driver.set_exposure is not AdjustableExposure.set_exposure
 
 
 def sensor_rate_hz(sensor: ForceSensorConfig) -> float:

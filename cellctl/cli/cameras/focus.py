@@ -6,19 +6,22 @@ import signal
 from collections.abc import Coroutine
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from typing import Annotated
 
 import typer
+from pydantic import ValidationError
 from rich.console import Console
 from rich.live import Live
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.cli.cameras.auto_exposure import exposed_for_holes
+from cellctl.cell.auto_exposure import Looked, found_exposure
 from cellctl.cli.cameras.focus_screen import screen
 from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
 from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen
 from cellctl.clock import now_s
-from cellctl.vision.camera.exposure_search import ExposureAim
+from cellctl.config.devices import AutoExposureConfig
+from cellctl.vision.camera.exposure_search import light_round_holes, of_all
 
 
 def focus(
@@ -48,29 +51,35 @@ def focus(
 ) -> None:
     """Show sharpness, light, overlap and what is found, live until Ctrl-C; moves nothing."""
     pattern = None if board is None else _board(board)
-    aim = _aim(target_grey, exposure_ms, hole_px) if auto else None
+    wanted = _wanted(target_grey, exposure_ms, hole_px) if auto else None
     device = chosen(cell_file, head, camera)
     if as_json:
-        seen = asyncio.run(_one(device, pattern, hole_px, aim))
+        seen = asyncio.run(_one(device, pattern, hole_px, wanted))
         typer.echo(json.dumps(asdict(seen), indent=2))
     elif once:
-        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px, aim))))
+        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px, wanted))))
     else:
         # Ctrl-C is how this command ends; the camera is let go on the way out.
         with suppress(KeyboardInterrupt):
-            asyncio.run(_follow(device, pattern, hole_px, aim))
+            asyncio.run(_follow(device, pattern, hole_px, wanted))
 
 
 async def _one(
-    device: Chosen, board: CalibrationBoard | None, holes: HolesWanted, aim: ExposureAim | None
+    device: Chosen,
+    board: CalibrationBoard | None,
+    holes: HolesWanted,
+    wanted: AutoExposureConfig | None,
 ) -> FocusView:
     async with device.opened():
-        await _set_exposure(device, holes, aim)
+        await _set_exposure(device, wanted)
         return await _look(device, board, holes)
 
 
 async def _follow(
-    device: Chosen, board: CalibrationBoard | None, holes: HolesWanted, aim: ExposureAim | None
+    device: Chosen,
+    board: CalibrationBoard | None,
+    holes: HolesWanted,
+    wanted: AutoExposureConfig | None,
 ) -> None:
     sharpest: dict[str, float] = {}
     ended = asyncio.Event()
@@ -78,7 +87,7 @@ async def _follow(
     # Python 3.11, and the command would go on for ever.
     asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
     async with device.opened():
-        await _set_exposure(device, holes, aim)
+        await _set_exposure(device, wanted)
         with Live(auto_refresh=False) as live:
             while seen := await _unless(ended, _look(device, board, holes)):
                 for one in seen.sides:
@@ -88,11 +97,17 @@ async def _follow(
                 live.update(screen(device.name, seen, sharpest), refresh=True)
 
 
-async def _set_exposure(device: Chosen, holes: HolesWanted, aim: ExposureAim | None) -> None:
-    if aim is not None and holes is not None:
-        exposure_s = await exposed_for_holes(device, aim, holes)
+async def _set_exposure(device: Chosen, wanted: AutoExposureConfig | None) -> None:
+    if wanted is not None:
+        found = await found_exposure(device.device, wanted, partial(_light, device, wanted.hole_px))
         # Beside the figures, which a program reads.
-        typer.echo(f"{device.name}: settings.exposure_s = {exposure_s:.6g}", err=True)
+        typer.echo(f"{device.name}: settings.exposure_s = {found.exposure_s:.6g}", err=True)
+
+
+async def _light(device: Chosen, hole_px: tuple[float, float]) -> Looked:
+    views = (await device.expose()).views
+    light = [await asyncio.to_thread(light_round_holes, view.grey, hole_px) for view in views]
+    return Looked(views[0].exposure_s, of_all(light))
 
 
 async def _unless(ended: asyncio.Event, look: Coroutine[None, None, FocusView]) -> FocusView | None:
@@ -115,13 +130,17 @@ async def _look(device: Chosen, board: CalibrationBoard | None, holes: HolesWant
     return await asyncio.to_thread(looked_at, exposed, took_s, board, holes)
 
 
-def _aim(target_grey: float, exposure_ms: tuple[float, float], holes: HolesWanted) -> ExposureAim:
+def _wanted(
+    target_grey: float, exposure_ms: tuple[float, float], holes: HolesWanted
+) -> AutoExposureConfig:
     if holes is None:
         raise typer.BadParameter("--auto needs --hole-px: it looks at the surface round the holes")
-    least_ms, greatest_ms = exposure_ms
-    if not 0.0 < least_ms < greatest_ms:
-        raise typer.BadParameter(f"--exposure-ms {least_ms:g} {greatest_ms:g}: least, greatest")
-    return ExposureAim(target_grey, least_ms * 1e-3, greatest_ms * 1e-3)
+    try:
+        return AutoExposureConfig(hole_px=holes, target_grey=target_grey, exposure_ms=exposure_ms)
+    except ValidationError as error:
+        first = error.errors()[0]
+        option = str(first["loc"][0]).replace("_", "-")
+        raise typer.BadParameter(f"--{option}: {first['msg']}") from error
 
 
 def _board(corners: str) -> CalibrationBoard:

@@ -6,7 +6,7 @@ from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.boards.board_images import detect_corners
 from cellctl.cli.cameras.opening import Exposed, View
 from cellctl.vision.camera.setting_up import ImageFigures, image_figures, overlap_share
-from cellctl.vision.holes.candidates import find_candidates
+from cellctl.vision.holes.candidates import find_candidates, outermost
 
 HolesWanted = tuple[float, float] | None
 """Least and greatest radius, px."""
@@ -50,7 +50,7 @@ def looked_at(
 def _side(view: View, board: CalibrationBoard | None, holes: HolesWanted) -> SideView:
     grey = view.grey
     corners = None if board is None else detect_corners(grey, board)
-    found = None if holes is None else len(find_candidates(grey, holes))
+    found = None if holes is None else len(outermost(find_candidates(grey, holes)))
     return SideView(
         side=view.side or "image",
         figures=image_figures(grey),

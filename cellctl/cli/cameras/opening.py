@@ -6,8 +6,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated, Any
 
-import cv2
-import numpy as np
 import typer
 from numpy.typing import NDArray
 
@@ -20,7 +18,7 @@ from cellctl.interfaces import Camera, DigitalIo, StereoCamera
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image, StereoPair
-from cellctl.vision.camera.depth import eight_bits
+from cellctl.vision.camera.depth import eight_bit_grey
 
 CellFile = Annotated[Path, typer.Argument(help="The cell's TOML file.")]
 HeadName = Annotated[str | None, typer.Option(help="A stereo head of the cell file.")]
@@ -47,12 +45,7 @@ class View:
     @property
     def grey(self) -> Image:
         """Reduced to 8 bit grey, shape (height, width)."""
-        if self.pixel_format is PixelFormat.RGB8:
-            return np.asarray(cv2.cvtColor(self.pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
-        if self.pixel_format is PixelFormat.MONO16:
-            bits = 16 if self.exposure is None else self.exposure.bits
-            return eight_bits(self.pixels, bits)
-        return np.asarray(self.pixels, dtype=np.uint8)
+        return eight_bit_grey(self.pixels, self.pixel_format, self.exposure)
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.exposures import exposure_issues
 from cellctl.config.checks.outputs import output_issues
 from cellctl.config.driver_settings import least_stale_ms, robot_driver
 from cellctl.config.issue import ConfigIssue
@@ -18,6 +19,7 @@ def cross_issues(cell: CellConfig, found: Sequence[ConfigIssue]) -> list[ConfigI
         *_recipe_ids(cell),
         *_carriers(cell),
         *output_issues(cell, found),
+        *exposure_issues(cell),
         *_pace(cell, found),
         *_simulation(cell),
     ]

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.pose_average import average
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.standstill import require_unmoved
@@ -63,13 +64,18 @@ class Eyes:
     recorder: RunRecorder | None
     """Where raw images go; None where they are not kept."""
     frames: int
+    exposures: RunExposures | None = None
+    """Of its cameras; None where they stay as they are."""
 
     async def look(self, name: str, camera: Camera, measure: Callable[[Image], M]) -> Seen[M]:
         """Settle, take the images, measure each in a worker; ``name`` is that of the raw images.
 
-        Raises what ``measure`` raises, ``NotSettled``, ``HeadMoved`` when the arm moved meanwhile.
+        Raises what ``measure`` raises, ``NotSettled``, ``HeadMoved`` when the arm moved meanwhile,
+        and before the first look of a camera the faults of its exposure.
         """
         await settle(self.arm.guard)
+        if self.exposures is not None:
+            await self.exposures.find(camera)
         state = self.arm.robot.state()
         images, found = [], []
         for number in range(1, self.frames + 1):

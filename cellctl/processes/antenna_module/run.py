@@ -3,10 +3,11 @@
 from dataclasses import dataclass, field
 from typing import Self
 
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.processes.antenna_module.drawings import Drawings
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.last_check import LastCheck
-from cellctl.processes.antenna_module.looking import Eyes
+from cellctl.processes.antenna_module.looking import Eyes, measured_channel
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
@@ -58,6 +59,7 @@ class PluggingRun:
                 cell.workers,
                 context.recorder if keep_images else None,
                 facts.recipe.frames,
+                RunExposures(cell.cell, context.recorder, measured_channel),
             ),
             Mover(cell),
             LastCheck() if last_check is None else last_check,

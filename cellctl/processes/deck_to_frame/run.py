@@ -6,6 +6,7 @@ from typing import Self
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import MM
@@ -41,12 +42,22 @@ class OpenRun:
     """Numbers iterations and pictures through all beginnings."""
     safe_point: SafePoint
     interruption: Interruption
+    exposures: RunExposures
+    """Of the heads; found once, for parts that are measured in one light are compared."""
 
     @classmethod
     def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:
         """A run whose record was opened."""
         recorder = DeckRecorder(context.recorder, facts.cell.workers)
-        return cls(facts, services.board, recorder, context.safe_point, context.interruption)
+        exposures = RunExposures(facts.cell.cell, context.recorder)
+        return cls(
+            facts,
+            services.board,
+            recorder,
+            context.safe_point,
+            context.interruption,
+            exposures,
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,13 @@
 """Grey values of deep cameras in the eight bits that everything here measures."""
 
+from typing import Any
+
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from cellctl.interfaces.camera import CameraImage, PixelFormat
+from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
 
 
@@ -11,3 +16,19 @@ def eight_bits(pixels: NDArray[np.uint16], bits: int) -> Image:
     if bits < 8:
         raise ValueError(f"a sample of {bits} bits has no eight")
     return np.asarray(pixels >> (bits - 8), dtype=np.uint8)
+
+
+def eight_bit_grey(
+    pixels: NDArray[Any], pixel_format: PixelFormat, exposure: ExposureRecord | None
+) -> Image:
+    """An image of any format, shape (height, width); deep ones have 16 bits unless it is said."""
+    if pixel_format is PixelFormat.RGB8:
+        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
+    if pixel_format is PixelFormat.MONO16:
+        return eight_bits(pixels, 16 if exposure is None else exposure.bits)
+    return np.asarray(pixels, dtype=np.uint8)
+
+
+def grey_of(image: CameraImage) -> Image:
+    """The same of a camera's image."""
+    return eight_bit_grey(image.pixels, image.pixel_format, image.exposure)

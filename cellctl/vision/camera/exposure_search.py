@@ -12,7 +12,7 @@ import numpy as np
 
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.setting_up import SATURATED_GREY, image_figures
-from cellctl.vision.holes.candidates import Candidate, find_candidates
+from cellctl.vision.holes.candidates import Candidate, find_candidates, outermost
 
 _RING = (1.2, 1.8)
 """From which radius to which the surface round a hole is looked at, in radii of the hole."""
@@ -63,7 +63,7 @@ class ExposureVerdict:
 
 def light_round_holes(image: Image, radii_px: tuple[float, float]) -> Brightness:
     """Look at rings round dark holes with a radius in this range; shape (height, width)."""
-    found = find_candidates(image, radii_px)
+    found = outermost(find_candidates(image, radii_px))
     rings = [ring for one in found if (ring := _ring(image, one)).size]
     if not rings:
         whole = image_figures(image)

@@ -4,6 +4,7 @@ Every edge pixel votes for centres along its gradient at the radii in question. 
 as closed contours do, so a visible wall, a thread or a scratch across the rim does not hide a hole.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -46,6 +47,16 @@ def find_candidates(
     for octave in _octaves(*radii_px):
         found += _at_one_scale(image, octave, bright=bright, limit=limit)
     return sorted(found, key=lambda item: -item.support)[:limit]
+
+
+def outermost(candidates: Iterable[Candidate]) -> list[Candidate]:
+    """One for each place: of concentric circles, such as hole and countersink, the largest."""
+    found: list[Candidate] = []
+    for one in sorted(candidates, key=lambda item: -item.radius_px):
+        apart = (np.linalg.norm(one.centre_px - other.centre_px) for other in found)
+        if all(away > other.radius_px for away, other in zip(apart, found, strict=True)):
+            found.append(one)
+    return found
 
 
 def _octaves(smallest: float, largest: float) -> list[tuple[float, float]]:

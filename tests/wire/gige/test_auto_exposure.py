@@ -1,4 +1,4 @@
-"""`cellctl focus --auto` through the compiled producer: the fake plate is as bright as exposed."""
+"""Automatic exposure through the compiled producer: the fake plate is as bright as exposed."""
 
 import asyncio
 import json
@@ -9,14 +9,21 @@ import cv2
 import numpy as np
 import pytest
 
+from cellctl.cell.auto_exposure import RunExposures
+from cellctl.cell.devices import Cell
+from cellctl.config import CellConfig, load_cell
 from cellctl.errors.camera import ExposureNotAdjustable, ExposureNotReached
 from cellctl.errors.link import LinkLost
 from cellctl.interfaces.camera import PixelFormat
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.records.store import RunStore
 from drivers.camera.gige.config import GigeHeadConfig, Selection
 from drivers.camera.gige.driver import GigeHead
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
 from fakes.gentl.exposures import Asked, Exposed, ExposureServer, Outcome
 from fakes.wire.cameras.image_server import ImageServer
+from tests.unit.records.conftest import start
 from tests.wire.cameras.camera_bench import PictureTaker
 from tests.wire.gige.conftest import LEFT, RIGHT
 from tests.wire.gige.test_grab_and_focus import FRAME_SERVER, said
@@ -33,6 +40,9 @@ right.serial_number = "GR-2"
 pixel_format = "Mono8"
 max_difference_s = 10.0
 """
+
+SETTINGS = "[stereo_cameras.head_1.settings]\n"
+AUTO = "auto_exposure = { hole_px = [8, 16], target_grey = 150 }\n"
 
 
 class Plate:
@@ -70,6 +80,15 @@ def cell(tmp_path: Path, producer: Path) -> Path:
     return path
 
 
+@pytest.fixture
+def automatic(cell: Path) -> CellConfig:
+    """The same cell with the setting."""
+    text = cell.read_text()
+    assert text.count(SETTINGS) == 1
+    cell.write_text(text.replace(SETTINGS, AUTO + SETTINGS))
+    return load_cell(cell)
+
+
 async def focused(cell: Path, *words: object) -> str:
     asked = ("--head", "head_1", "--hole-px", 8, 16, "--auto", "--json", *words)
     return await asyncio.to_thread(said, "focus", cell, *asked)
@@ -81,10 +100,37 @@ async def test_the_brighter_view_gets_the_grey(cell: Path, plate: Plate) -> None
     assert right["figures"]["median_grey"] == pytest.approx(180.0, abs=9.0)
     assert right["figures"]["saturated_share"] == 0.0
     assert left["exposure_s"] == right["exposure_s"] == pytest.approx(3e-3, rel=0.05)
-    assert min(left["holes"], right["holes"]) >= 3
+    assert (left["holes"], right["holes"]) == (3, 3)
     # Both cameras of each exposure: the first one, at most 16 of the search, and the one shown.
     assert len(plate.exposures_us) <= 2 * 18
     assert plate.exposures_us[-1] == pytest.approx(left["exposure_s"] * 1e6)
+
+
+async def test_a_run_finds_it_once_and_records_it(
+    automatic: CellConfig, plate: Plate, tmp_path: Path
+) -> None:
+    """By the setting of the head, in the record of the run; the images after it are exposed so."""
+    built = Cell(automatic, tmp_path)
+    store = AsyncRunStore(tmp_path / "runs")
+    number = await store.do(start)
+    recorder = RunRecorder(store, number)
+    exposures = RunExposures(built, recorder)
+    async with built.stereo_cameras["head_1"] as head:
+        for _ in range(2):
+            await exposures.find(head)
+        taken = len(plate.exposures_us)
+        pair = await head.grab()
+    await recorder.exposures({"raw/left.pgm.zst": pair.exposures[0]})
+    record = await store.do(RunStore.run, number)
+    found = record.document("images.auto_exposure")["head_1"]
+    assert found["grey"] == pytest.approx(150.0, abs=8.0)
+    assert found["holes"] == 3
+    assert 2 * found["exposures"] == taken
+    kept = record.document("images.exposures")["raw/left.pgm.zst"]
+    assert kept["exposure_s"] == pytest.approx(found["exposure_s"])
+    assert found["exposure_s"] == pytest.approx(2.5e-3, rel=0.06)
+    built.workers.close()
+    store.close()
 
 
 async def test_the_limit_of_the_exposure_is_kept(cell: Path, plate: Plate) -> None:

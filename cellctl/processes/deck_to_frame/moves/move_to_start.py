@@ -23,5 +23,5 @@ async def move_to_start(opened: OpenRun) -> Ready:
     settings = facts.recipe.pose_correction
     heads = HeadGeometry.of(facts.geometry, settings)
     # Takes the poses of the heads as the reference that they must keep from here on.
-    measurer = PartMeasurer(cell, heads, settings.method)
+    measurer = PartMeasurer(cell, heads, settings.method, opened.exposures)
     return Ready(AssemblyRun(opened, measurer))

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.standstill import require_unmoved
 from cellctl.cell.stereo_station import StereoStation
@@ -106,8 +107,11 @@ def deck_in_frame(
 class PartMeasurer:
     """Measures parts with the heads standing still; remembers where they stood at first."""
 
-    def __init__(self, cell: DeckCell, geometry: HeadGeometry, method: Method) -> None:
+    def __init__(
+        self, cell: DeckCell, geometry: HeadGeometry, method: Method, exposures: RunExposures
+    ) -> None:
         self._cell = cell
+        self._exposures = exposures
         self._geometry = geometry
         self._method = method
         self._reference = [head.robot.state().base_T_flange for head in cell.heads]
@@ -129,11 +133,12 @@ class PartMeasurer:
 
         Takes ``frames`` pairs, then more until every standard deviation is below the wanted one;
         raises ``UncertaintyTooLarge`` after ``max_frames``, ``HeadMoved`` when a head or the main
-        robot moved while the pictures were taken, and the faults of ``cellctl.vision`` when holes
-        are missing or do not fit.
+        robot moved while the pictures were taken, the faults of ``cellctl.vision`` when holes
+        are missing or do not fit, and before the first part of a run those of its exposures.
         """
         predictions = self._geometry.camera_T_part(c1_T_part)
         base_T_flange = self._cell.main.state().base_T_flange
+        await gather_or_cancel(*(self._exposures.find(head.camera) for head in self._cell.heads))
         taken: list[tuple[PairMeasurement, PairMeasurement]] = []
         shots: list[tuple[StereoPair, StereoPair]] = []
         while True:

@@ -58,13 +58,20 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
     grey = np.zeros((4, 4), np.uint8)
     images = [CameraImage(grey, PixelFormat.MONO8, 0.0, n, one) for n, one in enumerate(exposures)]
     recorder = Mock(exposures=AsyncMock())
+    camera = Mock(grab=AsyncMock(side_effect=images))
+
+    async def find(device: Any) -> None:
+        assert device is camera
+        camera.grab.assert_not_awaited()
+
+    exposing = Mock(find=AsyncMock(side_effect=find))
 
     async def run(measure: Callable[[Any], Any], image: Any) -> Any:
         return measure(image)
 
-    eyes = Eyes(Mock(), Mock(run=run), recorder, frames=2)
-    camera = Mock(grab=AsyncMock(side_effect=images))
+    eyes = Eyes(Mock(), Mock(run=run), recorder, frames=2, exposures=exposing)
     await eyes.look("tray", cast(Camera, camera), np.sum)
+    exposing.find.assert_awaited_once()
     files = [f"raw/tray-frame-{number}.pgm.zst" for number in (1, 2)]
     assert [call.args[0] for call in recorder.raw_image.call_args_list] == files
     told = [call.args[0] for call in recorder.exposures.call_args_list]

@@ -6,6 +6,7 @@ from typing import Any, cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
@@ -57,7 +58,12 @@ class RunRig:
     def run(self, **changes: Any) -> AssemblyRun:
         """With changes of its facts."""
         opened = OpenRun(
-            self.bench.facts(**changes), self.board, self.recorder, self.pauses, Interruption()
+            self.bench.facts(**changes),
+            self.board,
+            self.recorder,
+            self.pauses,
+            Interruption(),
+            RunExposures(self.bench.as_cell, self.recorder.recorder),
         )
         return AssemblyRun(opened, cast(PartMeasurer, self.truth))
 

@@ -60,7 +60,7 @@ def run_on(world: MatingCell, arrivals: Arrivals | None = None) -> AssemblyRun:
     payload = SimpleNamespace(mass_kg=200.0)
     facts = RunFacts(**values | {"cell": cell, "recipe": cell.recipes[0], "payload": payload})
     recorder = cast(DeckRecorder, arrivals or Arrivals())
-    return AssemblyRun(OpenRun(facts, nothing, recorder, nothing, Interruption()), nothing)
+    return AssemblyRun(OpenRun(facts, nothing, recorder, nothing, Interruption(), nothing), nothing)
 
 
 def raised(world: MatingCell, height_m: float) -> RigidTransform:

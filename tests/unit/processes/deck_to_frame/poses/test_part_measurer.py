@@ -1,16 +1,18 @@
 """Measuring a part: as many frames as it takes, and nothing moves meanwhile."""
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from cellctl.cell.auto_exposure import RunExposures
 from cellctl.errors.link import ReplyTimeout, StaleData
 from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import StereoCamera
 from cellctl.processes.deck_to_frame.faults import UncertaintyTooLarge
 from cellctl.processes.deck_to_frame.poses import part_measurer as measuring
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
@@ -76,10 +78,22 @@ def eyes(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> Eyes:
     return Eyes(bench)
 
 
-def measurer(bench: Bench) -> PartMeasurer:
+@dataclass
+class Exposures:
+    """Notes which heads were exposed anew, and how many pictures had been measured by then."""
+
+    eyes: Eyes | None = None
+    found: list[tuple[str, int]] = field(default_factory=list)
+
+    async def find(self, device: StereoCamera) -> None:
+        self.found.append((device.name, 0 if self.eyes is None else len(self.eyes.calls)))
+
+
+def measurer(bench: Bench, exposures: Exposures | None = None) -> PartMeasurer:
     geometry = bench.geometry()
     heads = HeadGeometry.of(geometry, PoseCorrection())
-    return PartMeasurer(bench.deck, heads, "default")
+    found = cast(RunExposures, exposures or Exposures())
+    return PartMeasurer(bench.deck, heads, "default", found)
 
 
 async def measured(
@@ -166,6 +180,14 @@ async def test_a_stale_robot_state_is_not_measured_with(bench: Bench, eyes: Eyes
             bench.features()[0], PLACE, frames=1, max_frames=1, wanted_sigma_mm_deg=np.ones(6)
         )
     assert eyes.calls == []
+
+
+async def test_exposures_are_found_before_the_first_picture(bench: Bench, eyes: Eyes) -> None:
+    exposures = Exposures(eyes)
+    known = {"frames": 1, "max_frames": 1, "wanted_sigma_mm_deg": np.full(6, 1.0)}
+    await measurer(bench, exposures).measure(bench.features()[0], PLACE, **known)  # type: ignore[arg-type]
+    assert sorted(exposures.found) == [("head_1", 0), ("head_2", 0)]
+    assert len(eyes.calls) == 2
 
 
 async def test_faults_of_camera_and_vision_come_through(bench: Bench, eyes: Eyes) -> None:
