@@ -3,9 +3,11 @@
 import mmap
 import os
 from contextlib import suppress
+from dataclasses import replace
 from multiprocessing import get_context, reduction
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +15,7 @@ from numpy.typing import NDArray
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from drivers.camera.gige import faults
 from drivers.camera.gige.library_process import entry
-from drivers.camera.gige.protocol import Answer, Grabbed, Request, RequestFailed
+from drivers.camera.gige.protocol import Answer, Grabbed, GrabRequest, Request, RequestFailed
 
 Block = NDArray[np.uint8]
 _END_S = 5.0
@@ -27,6 +29,8 @@ class LibraryProcess:
         self._name = name
         self._process: BaseProcess | None = None
         self._connection: Connection | None = None
+        self._released: list[int] = []
+        """Blocks of this process whose images were let go."""
 
     @property
     def running(self) -> bool:
@@ -47,6 +51,7 @@ class LibraryProcess:
         )
         process.start()
         theirs.close()
+        self._released = []  # images of the process before are let go into the list of their own
         self._process, self._connection = process, ours
 
     def ask(self, request: Request, timeout_s: float) -> tuple[Answer, list[Block]]:
@@ -58,6 +63,8 @@ class LibraryProcess:
         connection = self._connection
         if connection is None:
             raise LinkLost(f"{self._name}: not connected")
+        if isinstance(request, GrabRequest):
+            request = replace(request, released=self._taken_back())
         try:
             connection.send(request)
             if not connection.poll(timeout_s):
@@ -66,12 +73,21 @@ class LibraryProcess:
             answer: Answer = connection.recv()
             images = answer.images if isinstance(answer, Grabbed) else ()
             blocks = [_mapped(reduction.recv_handle(connection), one.size) for one in images]
+            for one, block in zip(images, blocks, strict=True):
+                # Whatever is made of it refers to this array as long as it shares its memory.
+                finalize(block, self._released.append, one.block).atexit = False
         except (EOFError, OSError) as error:
             self.end()
             raise LinkLost(f"{self._name}: the maker's library has crashed") from error
         if isinstance(answer, RequestFailed):
             raise faults.of(self._name, answer)
         return answer, blocks
+
+    def _taken_back(self) -> tuple[int, ...]:
+        blocks = tuple(self._released)
+        # Not emptied: an image may be let go at this moment, by any thread.
+        del self._released[: len(blocks)]
+        return blocks
 
     def end(self, wait_s: float = _END_S) -> None:
         """End the process: in its own way if it does so within the time, else by force."""

@@ -51,6 +51,9 @@ class OpenRequest:
 class GrabRequest:
     """Expose all cameras once."""
 
+    released: tuple[int, ...] = ()
+    """Blocks of earlier images that nobody in the daemon reads any more."""
+
 
 @dataclass(frozen=True, slots=True)
 class SetExposureRequest:
@@ -116,6 +119,8 @@ class Opened:
 class SentImage:
     """One image; its bytes follow as a descriptor of anonymous memory."""
 
+    block: int
+    """What that memory is called when it is given back."""
     pixel_format: str
     width: int
     height: int

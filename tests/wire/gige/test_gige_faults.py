@@ -312,6 +312,25 @@ async def test_nothing_is_left_behind(producer: Path, fakes: FakeCameras) -> Non
     assert (fakes.opened(LEFT), fakes.buffers(LEFT)) == (0, 0)
 
 
+async def test_images_that_are_kept_are_not_written_over(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    """However many; and the memory of those that are let go is used again."""
+    async with camera(producer) as eye:
+        kept = [(await eye.grab()).pixels[4:, ::2] for _ in range(12)]
+        library = fakes.opened(LEFT)
+        open_then = await descriptors(eye, library)
+        for _ in range(40):
+            await eye.grab()
+        assert await descriptors(eye, library) <= open_then + 2
+        for number, pixels in enumerate(kept, start=1):
+            assert np.array_equal(pixels, expected_image(number, 64, 48, "Mono8")[4:, ::2])
+        kept.clear()
+        del pixels
+        await eye.grab()
+        assert await descriptors(eye, library) < open_then
+
+
 async def test_a_head_whose_cameras_do_not_meet(producer: Path, fakes: FakeCameras) -> None:
     settings = GigeHeadConfig(
         left=Selection(serial_number=LEFT),

@@ -9,6 +9,7 @@ from multiprocessing.connection import Connection
 
 from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.library_process.genicam_camera import GenicamCamera
+from drivers.camera.gige.library_process.image_memory import ImageMemory
 from drivers.camera.gige.library_process.producers import Found, Producers
 from drivers.camera.gige.library_process.selection import selected
 from drivers.camera.gige.library_process.trouble import TroubleError
@@ -45,7 +46,6 @@ def serve(connection: Connection, parent: int) -> None:
             connection.send(answer)
             for block in blocks:
                 reduction.send_handle(connection, block, parent)
-                os.close(block)
     cameras.close()
 
 
@@ -55,6 +55,7 @@ class _Cameras:
     def __init__(self) -> None:
         self._producers: Producers | None = None
         self._open: list[GenicamCamera] = []
+        self._memory = ImageMemory()
         self._tries = 1
         self._clean = False
         self._fired_by_others = False
@@ -67,8 +68,10 @@ class _Cameras:
                     return self._seen(acquisition), []
                 case OpenRequest():
                     return self._opened(request), []
-                case GrabRequest():
-                    return self._grabbed()
+                case GrabRequest(released):
+                    self._memory.take_back(released)
+                    grabbed = self._grabbed()
+                    return grabbed, [image.block for image in grabbed.images]
                 case SetExposureRequest(exposure_s):
                     for camera in self._open:
                         camera.set_exposure(exposure_s)
@@ -120,7 +123,7 @@ class _Cameras:
     def _stated(self) -> Opened:
         return Opened(tuple(camera.stated() for camera in self._open))
 
-    def _grabbed(self) -> tuple[Answer, list[int]]:
+    def _grabbed(self) -> Grabbed:
         damage = ""
         for tried in range(self._tries):
             try:
@@ -130,11 +133,11 @@ class _Cameras:
                     raise
                 damage = str(error)
                 continue
-            return Grabbed(tuple(meta for meta, _ in images), tried), [block for _, block in images]
+            return Grabbed(tuple(images), tried)
         text = f"{self._tries} exposures, none of them whole and new; of the last: {damage}"
         raise TroubleError(Trouble.DAMAGED, text)
 
-    def _expose(self) -> list[tuple[SentImage, int]]:
+    def _expose(self) -> list[SentImage]:
         """One image of every camera; raises ``TroubleError``."""
         if not self._clean or self._fired_by_others:
             # Whatever is still on its way belongs to a request that has failed, or to a pulse from
@@ -150,13 +153,13 @@ class _Cameras:
             camera.trigger()
         return self._images()
 
-    def _images(self) -> list[tuple[SentImage, int]]:
-        images: list[tuple[SentImage, int]] = []
+    def _images(self) -> list[SentImage]:
+        images: list[SentImage] = []
         damaged: list[TroubleError] = []
         try:
             for camera in self._open:
                 try:
-                    images.append(camera.image())
+                    images.append(camera.image(self._memory))
                 except TroubleError as error:
                     if error.trouble is not Trouble.DAMAGED:
                         raise
@@ -164,7 +167,6 @@ class _Cameras:
             if damaged:
                 raise damaged[0]
         except TroubleError:
-            for _, block in images:
-                os.close(block)
+            self._memory.take_back(image.block for image in images)
             raise
         return images

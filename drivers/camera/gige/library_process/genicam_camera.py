@@ -1,19 +1,17 @@
 """One open camera, by harvesters. Runs in the process of the maker's library only."""
 
 import math
-import os
 from typing import Any
 
-import numpy as np
 from genicam import gentl
 from harvesters.core import Callback, ImageAcquirer
-from numpy.typing import NDArray
 
 from cellctl.clock import now_s
 from drivers.camera.gige.config import Acquisition, Selection
 from drivers.camera.gige.library_process.chunks import image_chunks
 from drivers.camera.gige.library_process.delivered import delivered, format_name, said, time_stamp
 from drivers.camera.gige.library_process.features import Features
+from drivers.camera.gige.library_process.image_memory import ImageMemory
 from drivers.camera.gige.library_process.producers import Found
 from drivers.camera.gige.library_process.selection import label_of, opened
 from drivers.camera.gige.library_process.trouble import (
@@ -102,8 +100,8 @@ class GenicamCamera:
         if self._settings.trigger in {"software", "none"}:
             self._trigger_s = now_s()
 
-    def image(self) -> tuple[SentImage, int]:
-        """The image of the last trigger, and a descriptor of memory with its bytes.
+    def image(self, memory: ImageMemory) -> SentImage:
+        """The image of the last trigger, its bytes lent from ``memory``.
 
         Raises ``TroubleError``: ``DAMAGED`` for an image that is not whole, or an old one, and
         ``SILENT`` when none comes in time.
@@ -122,7 +120,7 @@ class GenicamCamera:
                 skip -= 1
                 self._give_back(buffer)
                 continue
-            return self._taken(buffer)
+            return self._taken(buffer, memory)
         raise TroubleError(
             Trouble.SILENT,
             f"{self.label}: no image within {self._settings.image_timeout_s:g} s",
@@ -152,7 +150,7 @@ class GenicamCamera:
             except gentl.TimeoutException:
                 return None
 
-    def _taken(self, buffer: Any) -> tuple[SentImage, int]:
+    def _taken(self, buffer: Any, memory: ImageMemory) -> SentImage:
         whole_s = now_s()
         nodes, device = self._acquirer.remote_device.node_map, self._acquirer.device.module
         try:
@@ -163,7 +161,8 @@ class GenicamCamera:
                 if image is None:
                     raise TroubleError(Trouble.DAMAGED, f"{self.label}: a buffer without an image")
                 chunks = image_chunks(buffer, nodes)
-                meta = SentImage(
+                return SentImage(
+                    block=memory.filled(image.data),
                     pixel_format=image.pixel_format,
                     width=image.width,
                     height=image.height,
@@ -174,7 +173,6 @@ class GenicamCamera:
                     exposure_s=chunks.exposure_s,
                     gain_db=chunks.gain_db,
                 )
-                return meta, _memory(image.data)
         except ValueError as error:
             raise TroubleError(Trouble.DAMAGED, f"{self.label}: {error}") from error
         finally:
@@ -209,14 +207,3 @@ class _Count(Callback):  # type: ignore[misc]  # harvesters has no types
 
     def emit(self, context: object = None) -> None:  # noqa: ARG002 - given by harvesters
         self.count += 1
-
-
-def _memory(data: NDArray[np.uint8]) -> int:
-    """A descriptor of anonymous memory with a copy of ``data``."""
-    block = os.memfd_create("gige-image", os.MFD_CLOEXEC)
-    # The only copy on the way from the buffer of the producer to the daemon. Written and not
-    # mapped: each page that is touched for the first time would cost a fault, twice the time.
-    left = data.data
-    while left:
-        left = left[os.write(block, left) :]
-    return block

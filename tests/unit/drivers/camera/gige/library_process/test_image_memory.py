@@ -1,0 +1,33 @@
+"""Blocks of memory for images: filled anew only after they were given back."""
+
+import os
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from drivers.camera.gige.library_process.image_memory import MOST_FREE, ImageMemory
+
+
+def image(level: int, size: int = 5000) -> NDArray[np.uint8]:
+    return np.full(size, level, dtype=np.uint8)
+
+
+def test_a_block_is_used_again_once_it_was_given_back() -> None:
+    memory = ImageMemory()
+    first, second = memory.filled(image(1)), memory.filled(image(2))
+    assert first != second
+    memory.take_back([first])
+    assert memory.filled(image(3, size=6000)) == first
+    assert os.pread(first, 7000, 0) == bytes([3]) * 6000
+    assert os.pread(second, 7000, 0) == bytes([2]) * 5000
+    memory.take_back([first, second])
+
+
+def test_only_some_are_kept() -> None:
+    before = len(os.listdir("/proc/self/fd"))
+    memory = ImageMemory()
+    memory.take_back([memory.filled(image(n)) for n in range(3 * MOST_FREE)])
+    assert len(os.listdir("/proc/self/fd")) == before + MOST_FREE
+    with pytest.raises(KeyError):
+        memory.take_back([0])
