@@ -1,10 +1,11 @@
-"""576–579 and 587–589: contact under a stream of setpoints.
+"""576–579, 587–589 and 338: contact under a stream of setpoints.
 
 StreamedContactError
 ├── LoopNotMeasured, LoopTooSlow, LoopUnstable      576–578  refused before any contact
 ├── LoopFitRefused                                  579      commissioning
 ├── ContactLost, AdmittanceSaturated                587–588  the contact
-└── StreamLate                                      589      the ticks
+├── StreamLate                                      589      the ticks
+└── HeldTooLong                                     338      work beside a stream that stands
 """
 
 from cellctl.errors.base import CellError, Reaction
@@ -79,3 +80,12 @@ class StreamLate(StreamedContactError):
     text = "Ticks or forces came too late to hold the contact"
     cause = "This PC was too busy, or a network to robot or sensor was interrupted."
     remedy = "Look at load and networks; then Clear and Reset. Nothing resumes by itself."
+
+
+class HeldTooLong(StreamedContactError):
+    """What was to be done while the arm stood in its stream did not end."""
+
+    number = 338
+    text = "Work beside a standing stream did not end in time"
+    cause = "The disk of the records or a guard hangs, or this PC has no processor left."
+    remedy = "Check load and disk of the PC; take the part out by hand, then Clear and Reset."

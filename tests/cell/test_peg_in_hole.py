@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cellctl.packml.reject import RejectCode
 from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
@@ -60,3 +61,33 @@ def test_the_loop_is_measured_and_used(pin: OwnCell) -> None:
     assert 80.0 < record["stiffness_n_mm"] < 120.0
     assert 5.0 < record["dead_time_ms"] < 60.0
     assert record["fitted"]["dead_time_ms"] < 60.0
+
+
+TURNED_DEG = 0.15
+"""Of the joint that lifts the arm: a few tenths of a degree of an arm that was mastered carelessly,
+so much less than what a hole of 0.1 mm play would show by itself."""
+
+
+def test_an_arm_that_was_mastered_anew_is_found_at_the_panel(pin: OwnCell) -> None:
+    pin.fake().ready()
+    daemon = pin.daemon()
+    daemon.ready()
+
+    def take_reference() -> None:
+        reference = pin.plc("--mode", "maintenance", "--recipe", "302")
+        assert reference.end(100) == 0, reference.stdout
+
+    take_reference()
+    same = pin.plc("--serial", "SAME")
+    assert same.end(200) == 0, same.stdout
+    take_reference()  # the peg is out of the hole then
+    with pin.control() as control:
+        control.request("master", robot="arm", joint=2, deg=TURNED_DEG)
+    moved = pin.plc("--serial", "MOVED")
+    assert moved.end(100) != 0
+    faults = [str(entry) for entry in daemon.log if entry.get("event") == "fault"]
+    assert any("F337" in fault for fault in faults), faults
+    again = pin.plc("--serial", "AGAIN")
+    assert again.end(60) != 0
+    assert again.messages[-1]["reject_code"] == RejectCode.CALIBRATION_INVALID
+    take_reference()

@@ -28,6 +28,8 @@ from cellctl.cell.contact_motion.motions import (
 )
 from cellctl.cell.contact_motion.stalled_feed import StalledFeed
 from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
+from cellctl.clock import now_s
+from cellctl.errors.streamed_contact import HeldTooLong
 from cellctl.force.contact.streamed.path import PathFollower, straight
 from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import Array
@@ -39,6 +41,8 @@ _MET_RATIO = 0.8
 """A turn on the way counts as the way of a point so far from the tip."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion may take so much longer than its way at full speed, before it is given up."""
+_HOLD_S = 30.0
+"""For work beside a standing stream, such as a record on the disk."""
 _IN_CONTACT_N = 2.0
 _PULL_RATIO = 2.0
 """Of the press: a greater pull on the way out means that the peg is held."""
@@ -193,11 +197,18 @@ class StreamedContact(ContactMotions):
         return await self._run(path, speed, _first(held, _arrived(path)), slow)
 
     async def hold_while(self, work: Coroutine[Any, Any, None]) -> None:
-        """Stand in the stream while something else is done; raises what either of them raises."""
+        """Stand in the stream while something else is done; raises what either of them raises, or
+        ``HeldTooLong``."""
         task = asyncio.create_task(work)
+        end_s = now_s() + _HOLD_S
         try:
             while not task.done():
+                if now_s() > end_s:
+                    raise HeldTooLong(f"after {_HOLD_S:g} s")
                 await self._loop.send(self._loop.tip_command)
+                # A stream whose ticks are all there already never waits, and the work would not
+                # get its turn.
+                await asyncio.sleep(0)
             await task
         finally:
             task.cancel()

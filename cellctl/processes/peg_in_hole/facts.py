@@ -7,7 +7,11 @@ from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM
-from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
+from cellctl.processes.peg_in_hole.calibrations import (
+    CALIBRATIONS,
+    CONTACT_LOOP,
+    PANEL_REFERENCE,
+)
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.run import PegFacts
@@ -23,14 +27,19 @@ async def read_facts(
 ) -> Prepared[PegFacts]:
     """Plan with what procedure 301 has measured, else with the bounds of the settings.
 
-    Raises the faults of a damaged calibration, ``SearchImpossible``, ``HeightTooNoisy``,
-    ``LoopTooSlow`` and ``LoopUnstable``.
+    Raises the faults of a damaged calibration and of a panel's reference that is not valid any
+    more, ``SearchImpossible``, ``HeightTooNoisy``, ``LoopTooSlow`` and ``LoopUnstable``.
     """
     kinds = [kind.for_recipe(recipe.id) for kind in CALIBRATIONS]
+    panel = PANEL_REFERENCE.for_recipe(recipe.id)
+    # One that was taken and is void says that something has moved: nobody may work on without it.
+    taken = panel.name in await asyncio.to_thread(store.names)
+    kinds = [replace(kind, required=taken) if kind.name == panel.name else kind for kind in kinds]
     # Looked at ahead of time, so that no calibration expires in the middle of the run.
     snapshot = await asyncio.to_thread(store.read_all, kinds, utc_now() + PLANNED)
     measured = _measured(cell, recipe, snapshot)
     facts = PegFacts.of(measured, recipe, cycle_plan(recipe, measured.settings))
+    facts = replace(facts, panel=snapshot.find(panel))
     return Prepared(facts, tuple(snapshot.records))
 
 

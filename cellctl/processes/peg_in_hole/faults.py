@@ -1,9 +1,10 @@
-"""54x–55x and 59x: finding a hole by touch, and judging what went into it.
+"""54x–55x and 59x: finding a hole by touch, and judging what went into it; 337: arm or panel moved.
 
 ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
 ├── HoleAbsent, SearchGaveUp                        547–548  the search
 ├── FaceAbsent, FaceUneven, FaceTilted              549–551  the face
+├── PanelOffReference                               337      the face against its reference
 ├── PegJammed, PegWedged, HoleBlocked               552–554  the insertion
 └── PegNotInserted
     └── SensorDead, PegSlipped, NotSeated, FalseSeat,
@@ -88,6 +89,21 @@ class FaceTilted(ByTouchError):
     text = "The face is tilted more than vision may be wrong"
     cause = "The part lies askew, or its orientation was measured wrong."
     remedy = "Locate the part again; check how it is fixed."
+
+
+class PanelOffReference(ByTouchError):
+    """The arm meets the face elsewhere than when its reference was taken."""
+
+    number = 337
+    text = "Arm or panel is no longer where the panel's reference was taken"
+    cause = (
+        "The base of the arm or the panel was moved, a joint was mastered anew or exchanged, or "
+        "tool or part sit otherwise in the gripper."
+    )
+    remedy = (
+        "Find what was moved. Teach the poses before the hole anew if it was the arm, then run "
+        "procedure 302 and 301."
+    )
 
 
 class PegJammed(ByTouchError):

@@ -7,6 +7,7 @@ from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
+from cellctl.processes.peg_in_hole.panel_reference import PanelReference
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.stations import PegCell
 from cellctl.records.run_recorder import RunRecorder
@@ -25,6 +26,8 @@ class PegFacts:
     recipe: PegRecipe
     plan: CyclePlan
     contact: ContactSettings
+    panel: PanelReference | None = None
+    """Where the face was met before; None where nothing is compared."""
 
     @classmethod
     def of(cls, cell: PegCell, recipe: PegRecipe, plan: CyclePlan) -> Self:

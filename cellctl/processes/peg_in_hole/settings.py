@@ -24,8 +24,12 @@ class PegSettings(Section):
     """Of one reading of the height in contact, standard deviation."""
     force_sigma_n: Annotated[float, Field(gt=0, le=10)]
     """Of the mean of ten samples of one component of the force, standard deviation."""
+    panel_shift_mm: Annotated[float, Field(gt=0, le=5)] = 0.3
+    """How far along its normal a face may be met from its reference (procedure 302)."""
+    panel_turn_deg: Annotated[float, Field(gt=0, le=3)] = 0.5
+    """How far it may be turned; the touches see 0.1° at a repeatability of 0.02 mm on 15 mm."""
     validity_days: Annotated[int, Field(ge=1, le=3650)] = 365
-    """Of what procedure 301 measures."""
+    """Of what procedures 301 and 302 measure."""
     lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] | None = None
     """A tick of the stream that comes later than this ends the contact at standstill; left out: 50
     ms, or ten periods of the stream where they are less."""

@@ -184,9 +184,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
                 lambda session, seq: protocol.begin_stream(session, seq, figures)
             ) as command:
                 stream = SiasunStream(self._command.channel, command, self._bounds, limits, offer)
-                await stream.begin()
-                yield stream
-                await stream.finish(self._config.stop_timeout_s)
+                async with stream.followed(self._config.stop_timeout_s):
+                    yield stream
         except BaseException as error:
             await self._leave_stream(error, command)
             await self._state.raise_controller_error(error)

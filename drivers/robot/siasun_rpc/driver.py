@@ -174,9 +174,8 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             try:
                 await motion.check_guard()
                 motion.over = False
-                await stream.begin()
-                yield stream
-                await stream.finish(self._config.stop_timeout_s)
+                async with stream.followed(self._config.stop_timeout_s):
+                    yield stream
             except BaseException as error:
                 stream.close()
                 await self._leave(error, motion)

@@ -271,6 +271,29 @@ class StreamingRobotContract(ABC):
                 await stream.advance(raised(start, 4 * limits.step_m))
             await stream.advance(raised(start, 2 * limits.step_m))
 
+    async def test_after_a_refused_setpoint_the_arm_goes_no_further(
+        self, connected: StreamingBench
+    ) -> None:
+        """It was not sent: the arm stands at the last one, and does not run through the dead time
+        of a stop. The stream has ended, and the robot is latched."""
+        start, step_m = connected.flange(), self.limits(connected).step_m
+
+        async def follow(stream: PoseStream) -> None:
+            begun = stream.report
+            for number in (1, 2, 3, 4):
+                await stream.advance(raised(begun, number * step_m))
+            await stream.advance(raised(begun, 9 * step_m))
+
+        with pytest.raises(TargetOutOfBounds):
+            await within(5.0, self.stream(connected, follow))
+        assert not connected.moving()
+        travelled_m = connected.flange().translation - start.translation
+        assert np.linalg.norm(travelled_m) < 4 * step_m + CLOSE_M
+        assert connected.robot.state().stop_latched
+        with pytest.raises(NotRearmed):
+            async with connected.robot.stream(self.limits(connected)):
+                pytest.fail("entered")
+
     # --- late, lost, repeated
 
     async def test_a_lost_setpoint_is_counted_and_never_made_up_for_at_once(

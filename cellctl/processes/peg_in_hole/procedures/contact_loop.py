@@ -2,31 +2,23 @@
 
 import numpy as np
 
-from cellctl import log
 from cellctl.calibration.checks import all_passed
 from cellctl.cell.contact_motion.commissioning import CommissionedLoop, commission_contact
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.processes.peg_in_hole.calibrations import CONTACT_LOOP
-from cellctl.processes.peg_in_hole.leaving import leave_hole
-from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
+from cellctl.processes.peg_in_hole.procedures.after_the_face import after_the_face
 from cellctl.processes.peg_in_hole.procedures.contact_loop_picture import loop_picture
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.loop_record import loop_checks, loop_record
-from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
-from cellctl.processes.peg_in_hole.state import AtHome, FaceTouched
+from cellctl.processes.peg_in_hole.state import FaceTouched
 from cellctl.processes.peg_in_hole.stations import PegCell
-from cellctl.processes.peg_in_hole.steps import APPROACH, TOUCH_FACE
 from cellctl.processes.peg_in_hole.steps.contact import recorded_loop
 from cellctl.processes.peg_in_hole.steps.touch_face import CLEAR_M
-from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
-from cellctl.runtime.process import CellServices, RunContext
-from cellctl.runtime.steps import HeldMeanwhile, StepRunner, Steps, StepSpec
+from cellctl.runtime.process import CellServices
+from cellctl.runtime.steps import StepSpec
 
-_log = log.get(__name__)
-
-MODE = "commissioning"
 _HIGH_M = 3e-3
 """Over the face: the chirp in free air swings by a third of it."""
 _FREE_M = 1e-3
@@ -43,21 +35,8 @@ async def measure_loop_on_cell(
     measured at the speed that its own earlier figures allow. Everything goes into a run of its own,
     with every tick. Raises what the steps raise, and ``LoopFitRefused``.
     """
-    facts = PegFacts.of(cell, recipe, cycle_plan(recipe, cell.settings))
-    number = await context.record.open(recipe, MODE, ())
-    recorder = RunRecorder(services.store, number)
-    run = PegRun.of(facts, services.board, RunContext(recorder, context.safe_point))
-    runner = StepRunner(services.board, context.safe_point, recorder)
     measure = StepSpec(301, "measure contact loop", _measure, contact=True)
-    steps: Steps[AtHome, CommissionedLoop] = Steps.first(APPROACH).then(TOUCH_FACE).then(measure)
-    while True:
-        await leave_hole(cell)
-        try:
-            found = await runner.run(steps, AtHome(run))
-            break
-        except HeldMeanwhile:
-            _log.info("held meanwhile: the face is touched again")
-    await leave_hole(cell)
+    found, number = await after_the_face(cell, recipe, services, context, measure)
     checks = loop_checks(found, cell.settings)
     return ProcedureOutcome(
         kind=CONTACT_LOOP.for_recipe(recipe.id),

@@ -1,34 +1,47 @@
-"""Procedure 301, for the first recipe and by the number of each."""
+"""Procedures 301 and 302, for the first recipe and by the number of each."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Coroutine, Sequence
 from datetime import timedelta
 from functools import partial
+from typing import Any
 
 from cellctl.processes.peg_in_hole.procedures.contact_loop import measure_loop_on_cell
+from cellctl.processes.peg_in_hole.procedures.panel import take_panel_reference
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.stations import PegCell
-from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 
-LOOP = 301
-LOOP_BY_RECIPE = 30_100
-"""Plus the number of a recipe; 301 means the first one."""
+LOOP, PANEL = 301, 302
+BY_RECIPE = 100
+"""Times the number of the procedure, plus that of a recipe; the bare number means the first one."""
+
+_OnCell = Callable[
+    [PegCell, PegRecipe, CellServices, ProcedureContext], Coroutine[Any, Any, ProcedureOutcome]
+]
+_PROCEDURES: dict[int, tuple[str, _OnCell]] = {
+    LOOP: ("measure contact loop", measure_loop_on_cell),
+    PANEL: ("take panel reference", take_panel_reference),
+}
 
 
 def peg_procedures(
     cell: PegCell, recipes: Sequence[PegRecipe], services: CellServices
 ) -> Sequence[Procedure]:
     """All procedures of the cell whose devices are given."""
-    by_number = {LOOP: recipes[0]}
-    by_number |= {LOOP_BY_RECIPE + recipe.id: recipe for recipe in recipes}
     return [
         Procedure(
             number,
-            LOOP,
-            "measure contact loop",
-            partial(measure_loop_on_cell, cell, recipe, services),
+            kind,
+            label,
+            partial(run, cell, recipe, services),
             timedelta(days=cell.settings.validity_days),
             contact=True,
         )
-        for number, recipe in by_number.items()
+        for kind, (label, run) in _PROCEDURES.items()
+        for number, recipe in _numbered(kind, recipes)
     ]
+
+
+def _numbered(kind: int, recipes: Sequence[PegRecipe]) -> list[tuple[int, PegRecipe]]:
+    return [(kind, recipes[0]), *((BY_RECIPE * kind + recipe.id, recipe) for recipe in recipes)]

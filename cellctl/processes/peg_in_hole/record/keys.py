@@ -6,6 +6,8 @@ They never change: stores keep runs for years, and evaluation compares runs of a
 FACE, INSERTION, LOOP = "face", "insertion", "loop"
 """Streams; their ticks are files of these names."""
 FACE_HEIGHT, FACE_TILT = "face.height", "face.tilt"
+PANEL_SHIFT, PANEL_TURN = "panel.shift", "panel.turn"
+"""Of the face from its reference."""
 CHOICE, CYCLE, TRACE, MAP = "search.choice", "insertion.result", "search.trace", "search.map"
 FAILURE = "insertion.failure"
 SEARCH_TIME, TOUCHES = "search.time", "search.touches"

@@ -16,7 +16,7 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, PAYLOAD
+from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
@@ -52,6 +52,13 @@ def world() -> DeckOnFrame:
 def test_fake_devices_do_not_age_so_their_calibrations_never_expire() -> None:
     store = CalibrationStore(CONFIG / "demo-calibration", CALIBRATIONS, lambda: IN_MANY_YEARS)
     assert store.fault(CALIBRATIONS, timedelta(hours=1), newest=IN_MANY_YEARS) is None
+
+
+def test_the_base_frame_knows_where_the_arm_was_seen(calibrations: CalibrationSnapshot) -> None:
+    """Procedure 109 of the demonstration's cell compares the arm with it."""
+    reference = calibrations.get(BASE_FRAME).reference
+    assert reference is not None
+    assert len({target.name for target in reference.targets}) == 6
 
 
 @pytest.mark.parametrize("index", [0, 1])

@@ -134,5 +134,9 @@ def test_the_picture_is_a_picture() -> None:
 def test_each_recipe_has_its_procedure() -> None:
     other = RECIPE.model_copy(update={"id": 7})
     offered = peg_procedures(PEG_CELL, (RECIPE, other), cast(Any, SimpleNamespace()))
-    assert [procedure.number for procedure in offered] == [301, 30_101, 30_107]
-    assert all(procedure.contact and procedure.step == 301 for procedure in offered)
+    assert [procedure.number for procedure in offered] == [
+        *(301, 30_101, 30_107),
+        *(302, 30_201, 30_207),
+    ]
+    assert all(procedure.contact for procedure in offered)
+    assert [procedure.step for procedure in offered] == [301] * 3 + [302] * 3
