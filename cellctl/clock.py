@@ -1,7 +1,11 @@
 """The one place that reads the clock. Intervals are monotonic, records are UTC."""
 
 import time
+from collections.abc import Callable
 from datetime import UTC, datetime
+
+Monotonic = Callable[[], float]
+"""``now_s``, or what stands in for it where time is simulated. Seconds."""
 
 
 def now_s() -> float:

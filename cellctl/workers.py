@@ -48,10 +48,11 @@ class VisionWorkers:
     all of them useless until ``revive``.
     """
 
-    def __init__(self, count: int = 2) -> None:
+    def __init__(self, count: int = 2, *, close_s: float = CLOSE_S) -> None:
+        """``close_s`` is what the end of the daemon leaves to work that has begun."""
         # Read by the workers' numpy: threads of its own cost the small fits seven times the time.
         os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-        self._count = count
+        self._count, self._close_s = count, close_s
         self._pool = _Pool(count)
         self._broken = False
 
@@ -97,7 +98,7 @@ class VisionWorkers:
 
     def close(self) -> None:
         """End the workers; work that has not begun is dropped, that which hangs is ended."""
-        self._pool.close()
+        self._pool.close(self._close_s)
 
 
 class _Pool:
@@ -122,10 +123,10 @@ class _Pool:
             # let go, in a call to a dead disk, is left behind: the event loop must not wait for it.
             process.join(JOIN_S)
 
-    def close(self) -> None:
-        """Let them end what they have begun, for ``CLOSE_S`` altogether."""
+    def close(self, patience_s: float) -> None:
+        """Let them end what they have begun, for so long altogether."""
         self.executor.shutdown(wait=False, cancel_futures=True)
-        give_up_s = now_s() + CLOSE_S
+        give_up_s = now_s() + patience_s
         running = [process.sentinel for process in self._processes]
         while running and now_s() < give_up_s:
             ended = connection.wait(running, give_up_s - now_s())

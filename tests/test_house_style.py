@@ -179,3 +179,28 @@ def test_unit_tests_mirror_the_tree() -> None:
         and (deeper := sorted(mirrored(test).rglob(name)))
     }
     assert too_high == {}
+
+
+UNITS = ("S", "N", "M", "MM", "DEG", "RAD", "HZ", "BYTES", "PX")
+
+
+def test_tests_set_times_and_limits_by_arguments() -> None:
+    # A test that swaps a constant or the clock of a module goes on passing when the code reads
+    # the figure from somewhere else, and says nothing of who else reads it.
+    swapped = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path in sorted((ROOT / "tests").rglob("*.py"))
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Attribute)
+        and node.func.attr == "setattr"
+        for name in [argument.value for argument in node.args if isinstance(argument, ast.Constant)]
+        if isinstance(name, str)
+        and ((last := name.rpartition(".")[2]) == "now_s" or _is_figure(last))
+    ]
+    assert swapped == []
+
+
+def _is_figure(name: str) -> bool:
+    """A constant that carries its unit, as in ``TIMEOUT_S``."""
+    return name.isupper() and name.rpartition("_")[2] in UNITS

@@ -5,10 +5,9 @@ from collections.abc import Awaitable, Callable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from cellctl import log
-from cellctl.cell.driver_object import driver_object
+from cellctl.cell.driver_object import drivers_of
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.lit_cameras import Lights
@@ -16,6 +15,7 @@ from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.robot_layers.permitted_robot import permitted
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace, slowed
 from cellctl.cell.stereo_station import StereoStation
+from cellctl.cell.time_limits import USUAL, TimeLimits
 from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
 from cellctl.config.devices import ForceSensorConfig
@@ -31,7 +31,6 @@ from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
 
-ASK_TIMEOUT_S = 60.0
 """Drivers have time-outs of their own; this one is for a driver that hangs."""
 LINK_AGE_S = 1.0
 """A robot silent for this long is reported even while nothing moves."""
@@ -40,14 +39,16 @@ LINK_AGE_S = 1.0
 class Cell:
     """All devices by name. Built without I/O; ``connect`` names every device that fails."""
 
-    def __init__(self, config: CellConfig, folder: Path) -> None:
+    def __init__(self, config: CellConfig, folder: Path, time_limits: TimeLimits = USUAL) -> None:
         """``folder`` holds the cell file."""
+        self.time_limits = time_limits
         self.config = config
         self.folder = folder
         self.robot_notes = RobotNotes()
-        self.digital_ios: Mapping[str, DigitalIo] = _built(config, "digital_ios")
+        self.digital_ios: Mapping[str, DigitalIo] = drivers_of(config, "digital_ios")
         built = [
-            permitted(config, one, self.digital_ios) for one in _built(config, "robots").values()
+            permitted(config, one, self.digital_ios)
+            for one in drivers_of(config, "robots").values()
         ]
         # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
         noted = map(self.robot_notes.noted, built)
@@ -55,11 +56,11 @@ class Cell:
         moving = slowed(config, {robot.name: robot for robot in noted}, self.pace)
         self.robots = zoned_robots(config, moving)
         lights = Lights(self.digital_ios)
-        heads = _built(config, "stereo_cameras")
+        heads = drivers_of(config, "stereo_cameras")
         self.stereo_cameras = lights.heads(heads, config.stereo_cameras)
-        self.trackers: Mapping[str, TargetTracker] = _built(config, "trackers")
-        self.cameras = lights.cameras(_built(config, "cameras"), config.cameras)
-        self.grippers: Mapping[str, Gripper] = _built(config, "grippers")
+        self.trackers: Mapping[str, TargetTracker] = drivers_of(config, "trackers")
+        self.cameras = lights.cameras(drivers_of(config, "cameras"), config.cameras)
+        self.grippers: Mapping[str, Gripper] = drivers_of(config, "grippers")
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
         """By the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()
@@ -140,7 +141,7 @@ class Cell:
         questions |= {name: io.read() for name, io in self.digital_ios.items()}
         # One device that hangs must not hide the answers of the others, so every question has its
         # own time-out and no fault ends the round.
-        asked = (_in_time(question) for question in questions.values())
+        asked = (_in_time(question, self.time_limits.ask_s) for question in questions.values())
         answers = await asyncio.gather(*asked, return_exceptions=True)
         self.unanswered = {}
         for name, answer in zip(questions, answers, strict=True):
@@ -269,11 +270,6 @@ class Cell:
         }
 
 
-def _built(config: CellConfig, section: str) -> dict[str, Any]:
-    devices = config.section(section)
-    return {name: driver_object(section, name, device) for name, device in devices.items()}
-
-
 def _guard(sensor: ForceSensorConfig) -> GuardClient:
     return GuardClient(
         sensor.driver,
@@ -290,9 +286,9 @@ def _unconfirmed(name: str, stop: "asyncio.Task[None]") -> BaseException | None:
     return stop.exception()
 
 
-async def _in_time(question: Awaitable[object]) -> object:
+async def _in_time(question: Awaitable[object], limit_s: float) -> object:
     try:
-        async with asyncio.timeout(ASK_TIMEOUT_S):
+        async with asyncio.timeout(limit_s):
             return await question
     except TimeoutError:
-        raise ReplyTimeout(f"its driver has not come back in {ASK_TIMEOUT_S:g} s") from None
+        raise ReplyTimeout(f"its driver has not come back in {limit_s:g} s") from None

@@ -4,7 +4,7 @@ import os
 import socket
 
 from cellctl import log
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 
 _log = log.get(__name__)
 
@@ -39,12 +39,13 @@ def watchdog_interval_s() -> float | None:
 class Watchdog:
     """Feeds systemd's watchdog, no more often than needed."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: Monotonic = now_s) -> None:
+        self._now_s = clock
         self._interval_s = watchdog_interval_s()
         self._next_s = 0.0
 
     def feed(self) -> None:
         """The daemon lives; nothing to do without a watchdog or before it is due."""
-        if self._interval_s is not None and now_s() >= self._next_s:
-            self._next_s = now_s() + self._interval_s
+        if self._interval_s is not None and self._now_s() >= self._next_s:
+            self._next_s = self._now_s() + self._interval_s
             notify("WATCHDOG=1")

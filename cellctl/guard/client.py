@@ -16,6 +16,7 @@ from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import Message, fault_from_json, limits_to_json, trip_from_json
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult, TripReason
+from cellctl.guard.settling import USUAL, Settling
 
 _log = log.get(__name__)
 
@@ -30,7 +31,7 @@ class GuardClient:
     ``trip`` becomes ``GUARD_DIED`` and stays until ``acknowledge``, which starts a new guard.
 
     ``stop_plugin`` None makes a guard that only measures, for instance for a test. ``module`` is
-    what the process runs; a benchmark brings its own.
+    what the process runs; a benchmark brings its own. ``settling`` says when this load is still.
     """
 
     def __init__(
@@ -42,12 +43,13 @@ class GuardClient:
         settings: GuardSettings,
         *,
         module: str = "cellctl.guard.watch.main",
+        settling: Settling = USUAL,
     ) -> None:
+        self.settling = settling
         self._sensor = {"name": sensor_plugin, "config": sensor_config}
         stop = {"name": stop_plugin, "config": stop_config or {}}
         self._stop = None if stop_plugin is None else stop
-        self._settings = settings
-        self._module = module
+        self._settings, self._module = settings, module
         self._child: GuardChild | None = None
         self._started: asyncio.Future[None] | None = None
         self._stopping = self._ready = False
@@ -72,14 +74,8 @@ class GuardClient:
         self._stopping = self._ready = False
         self._fault = None
         self._started = asyncio.get_running_loop().create_future()
-        settings = self._settings
-        self._child = GuardChild(
-            settings.ring_slots,
-            settings.reply_timeout_s,
-            self._take_event,
-            self._died,
-            module=self._module,
-        )
+        slots, reply_s = self._settings.ring_slots, self._settings.reply_timeout_s
+        self._child = GuardChild(slots, reply_s, self._take_event, self._died, module=self._module)
         try:
             self._child.send(self._set_up())
             await self._until_started(self._started)

@@ -2,7 +2,7 @@
 
 from collections import OrderedDict, deque
 
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 
 KEYS = 1000
 
@@ -10,14 +10,15 @@ KEYS = 1000
 class RateLimit:
     """At most ``count`` in any ``period_s`` for each key."""
 
-    def __init__(self, count: int, period_s: float) -> None:
+    def __init__(self, count: int, period_s: float, *, clock: Monotonic = now_s) -> None:
         self._count = count
         self._period_s = period_s
+        self._now_s = clock
         self._times_s: OrderedDict[str, deque[float]] = OrderedDict()
 
     def wait_s(self, key: str) -> float:
         """Take one; 0 when it is allowed, else how long to wait, and nothing is taken."""
-        time_s = now_s()
+        time_s = self._now_s()
         times_s = self._times_s.setdefault(key, deque())
         self._times_s.move_to_end(key)
         while len(self._times_s) > KEYS:

@@ -6,7 +6,7 @@ from collections import OrderedDict
 from dataclasses import dataclass
 
 from cellctl.api.local.messages import Role
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 
 SESSIONS = 200
 LIFE_S = 12 * 3600.0
@@ -26,14 +26,15 @@ class Session:
 class Sessions:
     """Kept in memory: after a restart of the page everybody signs in again."""
 
-    def __init__(self, idle_s: float) -> None:
+    def __init__(self, idle_s: float, *, clock: Monotonic = now_s) -> None:
         self._idle_s = idle_s
+        self._now_s = clock
         self._sessions: OrderedDict[str, Session] = OrderedDict()
 
     def open(self, person: str, role: Role) -> str:
         """Sign in; the secret of the session, of which only a hash is kept."""
         secret = secrets.token_urlsafe(32)
-        time_s = now_s()
+        time_s = self._now_s()
         self._sessions[_key(secret)] = Session(person, role, time_s, time_s)
         while len(self._sessions) > SESSIONS:
             self._sessions.popitem(last=False)
@@ -42,7 +43,7 @@ class Sessions:
     def find(self, secret: str) -> Session | None:
         """The session; None when it was never opened, has ended or is older than a shift."""
         found = self._sessions.get(_key(secret)) if secret else None
-        if found is not None and now_s() - found.begun_s > LIFE_S:
+        if found is not None and self._now_s() - found.begun_s > LIFE_S:
             self.close(secret)
             return None
         return found
@@ -53,7 +54,7 @@ class Sessions:
 
     def role(self, session: Session) -> Role:
         """What the person may do now: only look on, when they have done nothing for long."""
-        idle = now_s() - session.used_s > self._idle_s
+        idle = self._now_s() - session.used_s > self._idle_s
         return "view" if idle else session.role
 
 

@@ -104,13 +104,18 @@ def identification_poses(
 
 
 async def still_wrench(
-    robot: Robot, guard: SampleSource, flange_T_sensor: RigidTransform
+    robot: Robot,
+    guard: SampleSource,
+    flange_T_sensor: RigidTransform,
+    *,
+    steady_n: float = STEADY_N,
 ) -> tuple[Rotation, Array]:
-    """base_R_sensor and mean raw wrench, shape (6,), once the readings are steady.
+    """base_R_sensor and mean raw wrench, shape (6,), once the forces scatter by less than
+    ``steady_n``.
 
     Raises ``NotSettled`` or ``SensorSilent``.
     """
-    limits = np.array([STEADY_N] * 3 + [STEADY_N_M] * 3)
+    limits = np.array([steady_n] * 3 + [STEADY_N_M] * 3)
     for _ in range(STEADY_TRIES):
         # Raw readings: a compensation that is active belongs to the old payload, and would be
         # identified again as a part of the new one.

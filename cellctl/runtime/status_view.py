@@ -2,7 +2,7 @@
 
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 from cellctl.errors import CellError
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
@@ -29,6 +29,7 @@ class StatusView:
         jobs: JobFactory,
         calibrations: CalibrationStore,
         alarms: Alarms,
+        clock: Monotonic = now_s,
     ) -> None:
         self._cell = cell
         self._machine = machine
@@ -36,10 +37,11 @@ class StatusView:
         self._jobs = jobs
         self._calibrations = calibrations
         self._alarms = alarms
+        self._now_s = clock
 
     def snapshot(self, job: Job | EarlierRun | None, result: Result, parts: int) -> CellStatus:
         """The state of the cell at this moment; ``job`` is the present or the last one."""
-        machine, progress, time_s = self._machine, self._board.current, now_s()
+        machine, progress, time_s = self._machine, self._board.current, self._now_s()
         faults = machine.faults
         # An alarm stays active when its fault was released, and a fault stays latched when its
         # alarm was acknowledged: the line sees both.

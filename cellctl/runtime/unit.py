@@ -8,6 +8,7 @@ from cellctl.cell.arm_loads import require_selected_loads
 from cellctl.cell.devices import Cell
 from cellctl.cell.readiness import require_ready
 from cellctl.cell.reconnecting import reconnect
+from cellctl.clock import Monotonic, now_s
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import StateDidNotEnd
@@ -33,9 +34,6 @@ from cellctl.runtime.status_view import StatusView
 
 _log = log.get(__name__)
 
-ABORT_TIMEOUT_S = 20.0
-STOP_TIMEOUT_S = 8.0
-"""For the stops of all robots; drivers have shorter ones of their own."""
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
 _AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
@@ -45,11 +43,11 @@ AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 class UnitController:
     """Joins state machine, devices and records. Belongs to one event loop."""
 
-    def __init__(self, cell: Cell, store: AsyncRunStore) -> None:
+    def __init__(self, cell: Cell, store: AsyncRunStore, clock: Monotonic = now_s) -> None:
         """Raises ``UnknownDriver`` when a process of the cell file is not installed."""
         self._cell = cell
         self._store = store
-        self._jobs = JobRunner()
+        self._jobs = JobRunner(cell.time_limits)
         self.board = ProgressBoard()
         self.background = Background()
         self.alarms = Alarms(store, self.background)
@@ -84,6 +82,7 @@ class UnitController:
             jobs=self.factory,
             calibrations=self.calibrations,
             alarms=self.alarms,
+            clock=clock,
         )
         self.parts = 0
         """Good parts since installation."""
@@ -144,16 +143,17 @@ class UnitController:
         # First of all, so that no command that is waiting for its turn can start a motion while the
         # unit is being closed.
         self._ending = True
+        abort_s = self._cell.time_limits.abort_s
         try:
-            async with asyncio.timeout(ABORT_TIMEOUT_S):
+            async with asyncio.timeout(abort_s):
                 if fault is not None:
                     await self.machine.fail(fault)
                 if self.machine.state not in AT_REST:
                     await self.machine.command(Command.ABORT)
-                    await self.machine.wait_for(State.ABORTED, timeout_s=ABORT_TIMEOUT_S)
+                    await self.machine.wait_for(State.ABORTED, timeout_s=abort_s)
         except TimeoutError:
             state = self.machine.state.name
-            late = StateDidNotEnd(f"{state} lasts more than {ABORT_TIMEOUT_S:g} s")
+            late = StateDidNotEnd(f"{state} lasts more than {abort_s:g} s")
             _log.error("fault", number=late.number, fault=str(late), remedy=late.remedy)
         await self.machine.close()
         await self.background.drain()
@@ -243,15 +243,16 @@ class UnitController:
 
     async def _stop_motion(self) -> BaseException | None:
         """What went wrong; a driver that never comes back must not keep the run from its end."""
+        stop_s = self._cell.time_limits.stop_s
         stopping = asyncio.create_task(self._cell.stop_motion())
         try:
-            done, _ = await asyncio.wait({stopping}, timeout=STOP_TIMEOUT_S)
+            done, _ = await asyncio.wait({stopping}, timeout=stop_s)
         finally:
             # Nobody waits for a driver any more that has not come back; the state ends with a fault
             # instead.
             stopping.cancel()
         if not done:
-            return StopFailed(f"a driver has not come back from its stop in {STOP_TIMEOUT_S:g} s")
+            return StopFailed(f"a driver has not come back from its stop in {stop_s:g} s")
         return stopping.exception()
 
     async def _safe_point(self, *, hold: bool = False) -> bool:

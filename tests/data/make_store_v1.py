@@ -26,7 +26,6 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.guarded_motion import settling
 from cellctl.processes.deck_to_frame.faults import MatingOverforce
 from cellctl.errors.link import LinkLost
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
@@ -264,7 +263,6 @@ def _expect(folder: Path) -> None:
 def main(folder: Path) -> None:
     """Make the store anew."""
     shutil.rmtree(folder, ignore_errors=True)
-    settling.WINDOW_S = settling.POLL_S = 0.0
     with tempfile.TemporaryDirectory() as scratch:
         bench = make_bench(Path(scratch))
         made = Path(scratch) / "store"

@@ -5,16 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.cell.guarded_motion import settling
 from tests.unit.cell.bench import Bench, make_bench
 from tests.unit.daemon_rig import DaemonRig
 
 
 @pytest.fixture
-def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-    """What hangs on the robot is still at once."""
-    monkeypatch.setattr(settling, "WINDOW_S", 0.0)
-    monkeypatch.setattr(settling, "POLL_S", 0.0)
+def bench(tmp_path: Path) -> Bench:
     return make_bench(tmp_path)
 
 

@@ -11,6 +11,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.api.modbus.publisher import StatusPublisher
+from cellctl.clock import now_s
 from cellctl.command.arbiter import DISK_TIMEOUT_S, CommandArbiter
 from cellctl.command.submission import Submission
 from cellctl.errors import CellError
@@ -127,12 +128,16 @@ class DaemonRig:
         module = importlib.import_module("cellctl.processes.deck_to_frame.steps.mate_deck")
         monkeypatch.setattr(module, "mate_until_seated", self.contact)
         self.store_folder = store
+        self.ahead_s = 0.0
+        """How much later it is for whoever asks for the status."""
         self._seq = 0
 
     async def open(self) -> None:
         """As a daemon starts on this store."""
         self.archive = AsyncRunStore(self.store_folder)
-        self.unit = UnitController(self.bench.as_cell, self.archive)
+        self.unit = UnitController(
+            self.bench.as_cell, self.archive, clock=lambda: now_s() + self.ahead_s
+        )
         self.port = PaperPort()
         self.arbitrate()
         self.publisher = StatusPublisher(self.unit, self.port.publish)

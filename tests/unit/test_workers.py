@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-import cellctl.workers as workers_module
 from cellctl.errors.internal import WorkerDied, WorkerSilent
 from cellctl.workers import NICE, VisionWorkers
 
@@ -55,11 +54,8 @@ async def test_a_worker_that_hangs_is_noticed_ended_and_replaced() -> None:
         workers.close()
 
 
-async def test_an_ending_daemon_does_not_wait_for_a_worker_that_hangs(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(workers_module, "CLOSE_S", 0.2)
-    workers = VisionWorkers(count=1)
+async def test_an_ending_daemon_does_not_wait_for_a_worker_that_hangs() -> None:
+    workers = VisionWorkers(count=1, close_s=0.2)
     pid = await workers.run(os.getpid)
     os.kill(pid, signal.SIGSTOP)
     await asyncio.wait_for(asyncio.to_thread(workers.close), 10)

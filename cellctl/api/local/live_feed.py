@@ -10,6 +10,7 @@ from cellctl.runtime.cell_status import CellStatus
 
 FOLLOWERS = 2
 UNREAD_S = 5.0
+"""A browser that takes nothing for so long has gone, or stands still behind a full network."""
 DESCRIBE_PERIOD_S = 3.0
 
 Describe = Callable[[], Awaitable[dict[str, Any]]]
@@ -36,10 +37,11 @@ class _Mailbox:
 class LiveFeed:
     """Belongs to the event loop of the daemon. Costs nothing while nobody follows."""
 
-    def __init__(self, view: LiveView, describe: Describe) -> None:
+    def __init__(self, view: LiveView, describe: Describe, *, unread_s: float = UNREAD_S) -> None:
         """``describe`` gives the message ``description``; it may wait for files and store."""
         self._view = view
         self._describe = describe
+        self._unread_s = unread_s
         self._mailboxes: dict[asyncio.Task[Any], _Mailbox] = {}
         self._describing: asyncio.Task[None] | None = None
         self._described = b""
@@ -70,7 +72,7 @@ class LiveFeed:
         try:
             while True:
                 writer.write(await mailbox.take())
-                async with asyncio.timeout(UNREAD_S):
+                async with asyncio.timeout(self._unread_s):
                     await writer.drain()
         finally:
             self._mailboxes.pop(task, None)

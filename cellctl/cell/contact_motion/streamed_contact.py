@@ -196,15 +196,17 @@ class StreamedContact(ContactMotions):
 
         return await self._run(path, speed, _first(held, _arrived(path)), slow)
 
-    async def hold_while(self, work: Coroutine[Any, Any, None]) -> None:
+    async def hold_while(
+        self, work: Coroutine[Any, Any, None], *, limit_s: float = _HOLD_S
+    ) -> None:
         """Stand in the stream while something else is done; raises what either of them raises, or
-        ``HeldTooLong``."""
+        ``HeldTooLong`` after ``limit_s``."""
         task = asyncio.create_task(work)
-        end_s = now_s() + _HOLD_S
+        end_s = now_s() + limit_s
         try:
             while not task.done():
                 if now_s() > end_s:
-                    raise HeldTooLong(f"after {_HOLD_S:g} s")
+                    raise HeldTooLong(f"after {limit_s:g} s")
                 await self._loop.send(self._loop.tip_command)
                 # A stream whose ticks are all there already never waits, and the work would not
                 # get its turn.

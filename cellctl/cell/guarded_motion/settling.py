@@ -8,14 +8,10 @@ from cellctl.errors.force import NotSettled, SensorFrozen
 from cellctl.geometry.pose import Array
 from cellctl.guard.client import GuardClient
 
-WINDOW_S = 0.4
-"""Several periods of the swing of a heavy payload."""
 BLOCK = 10
 """Samples averaged to one, against noise."""
 STILL = np.array([1.2, 1.2, 1.2, 0.4, 0.4, 0.4])
 """Scatter of the blocks (N, N·m) that counts as still: a few µm of the deck."""
-TIMEOUT_S = 8.0
-POLL_S = 0.05
 
 
 async def settle(guard: GuardClient) -> None:
@@ -24,12 +20,13 @@ async def settle(guard: GuardClient) -> None:
     Raises ``NotSettled`` after a time-out, also when samples stay away, and ``SensorFrozen`` when
     they are all the same: a live sensor is never that still.
     """
+    settling = guard.settling
     loop = asyncio.get_running_loop()  # its clock is the one that stamps samples
     begin_s = loop.time()
     scatter = np.full(6, np.inf)
-    while loop.time() - begin_s < TIMEOUT_S:
-        await asyncio.sleep(POLL_S)
-        since_s = loop.time() - WINDOW_S
+    while loop.time() - begin_s < settling.timeout_s:
+        await asyncio.sleep(settling.poll_s)
+        since_s = loop.time() - settling.window_s
         # Samples from before the call show the swing of the move, or the calm from before it.
         if since_s < begin_s:
             continue
@@ -41,7 +38,7 @@ async def settle(guard: GuardClient) -> None:
                 raise SensorFrozen(f"{len(raw)} samples in a row are equal in all six channels")
             return
     shown = ", ".join(f"{value:.2f}" for value in scatter)
-    raise NotSettled(f"readings still scatter by ({shown}) N, N·m after {TIMEOUT_S:g} s")
+    raise NotSettled(f"readings still scatter by ({shown}) N, N·m after {settling.timeout_s:g} s")
 
 
 def block_scatter(raw: Array) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from cellctl import log
 from cellctl.cell.zones.ways import Way
 from cellctl.cell.zones.zone import Zone
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 from cellctl.errors import CellError
 from cellctl.errors.robot import ZoneTaken
 from cellctl.interfaces import RobotState
@@ -58,10 +58,14 @@ class ZoneArbiter:
     """
 
     def __init__(
-        self, zones: Sequence[Zone], states: Mapping[str, Callable[[float], RobotState]]
+        self,
+        zones: Sequence[Zone],
+        states: Mapping[str, Callable[[float], RobotState]],
+        *,
+        clock: Monotonic = now_s,
     ) -> None:
         """``states`` by robot: the newest report; raises a ``CellError`` beyond an age in s."""
-        self._zones, self._states = zones, states
+        self._zones, self._states, self._now_s = zones, states, clock
         self._longest_wait_s = REPORT_WAIT_S + max((zone.wait_s for zone in zones), default=0.0)
         self._under_way: list[_Passage] = []
         self._ended_s: dict[str, float] = {}
@@ -85,13 +89,13 @@ class ZoneArbiter:
         finally:
             self._under_way.remove(passage)
             # However it ended: until a newer report the arm may be anywhere on its way.
-            self._ended_s[robot] = now_s()
+            self._ended_s[robot] = self._now_s()
 
     async def _granted_way(self, robot: str, plan: Callable[[], Way]) -> Way:
         since_s: dict[_Claim, float] = {}
-        begin_s = now_s()
+        begin_s = self._now_s()
         while claims := self._claims(robot, way := plan()):
-            time_s = now_s()
+            time_s = self._now_s()
             if not since_s:
                 _log.info("zone is not free", robot=robot, claims=[str(one) for one in claims])
             # Counted for each claim by itself: an arm that was long on its way out has still the

@@ -21,7 +21,7 @@ from cellctl.api.local.messages import (
 )
 from cellctl.api.local.report import StatusReport
 from cellctl.cli.nearest_cell import nearest_socket
-from cellctl.clock import now_s
+from cellctl.clock import Monotonic, now_s
 from cellctl.errors.local import (
     CommandMissedItsGoal,
     CommandRefused,
@@ -39,8 +39,9 @@ _PATIENT_POLL_S = 1.0
 class DaemonClient:
     """Asks the daemon, one connection per question."""
 
-    def __init__(self, path: Path | None) -> None:
+    def __init__(self, path: Path | None, *, clock: Monotonic = now_s) -> None:
         self._path = path or nearest_socket()
+        self._now_s = clock
 
     def status(self) -> StatusReport:
         """The cell at this moment; raises ``DaemonNotReached`` or ``MessageMalformed``."""
@@ -69,14 +70,14 @@ class DaemonClient:
 
         Raises ``CommandMissedItsGoal`` after ``timeout_s``; None waits without an end.
         """
-        end_s = None if timeout_s is None else now_s() + timeout_s
+        end_s = None if timeout_s is None else self._now_s() + timeout_s
         while True:
             report = self.status()
             # An acting state is on its way to another one; only in a wait state are both the same.
             there = report.state in states if states else report.state == report.state_requested
             if there:
                 return report
-            if end_s is not None and now_s() > end_s:
+            if end_s is not None and self._now_s() > end_s:
                 raise CommandMissedItsGoal(f"still {report.state} after {timeout_s:g} s")
             time.sleep(_PATIENT_POLL_S if end_s is None else _POLL_S)
 

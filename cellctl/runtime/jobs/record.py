@@ -25,8 +25,6 @@ from cellctl.version import software
 
 _log = log.get(__name__)
 
-OPEN_TIMEOUT_S = 30.0
-"""For the disk to take the row and the files of a run; nothing has moved yet."""
 MAINTENANCE = "maintenance"
 """Mode of the runs of procedures, and their process: a procedure may belong to several."""
 
@@ -103,9 +101,10 @@ class JobRecord:
     async def _opened(self, opening: "asyncio.Task[None]") -> int:
         # Waited for and not awaited: a time-out or a Stop must not cancel the task that is writing
         # the row.
-        await asyncio.wait({opening}, timeout=OPEN_TIMEOUT_S)
+        limit_s = self._cell.time_limits.open_record_s
+        await asyncio.wait({opening}, timeout=limit_s)
         if not opening.done():
-            raise RecordSilent(f"not opened within {OPEN_TIMEOUT_S:g} s")
+            raise RecordSilent(f"not opened within {limit_s:g} s")
         opening.result()
         return self.number
 

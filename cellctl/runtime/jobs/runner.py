@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from cellctl import log
+from cellctl.cell.time_limits import TimeLimits
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
@@ -15,11 +16,6 @@ from cellctl.records.entries import RunHead, RunResult
 from cellctl.runtime.jobs.job import Job
 
 _log = log.get(__name__)
-
-LEAVE_TIMEOUT_S = 8.0
-"""For a cancelled job to stop its robots and write down what it has; the machine waits longer."""
-CLOSE_TIMEOUT_S = 15.0
-"""For the disk to take the end of a run."""
 
 _TO_THE_LINE = {
     RunResult.GOOD: Result.GOOD,
@@ -43,7 +39,8 @@ class EarlierRun:
 class JobRunner:
     """Holds the present job and remembers the last one. Belongs to one event loop."""
 
-    def __init__(self) -> None:
+    def __init__(self, time_limits: TimeLimits) -> None:
+        self._limits = time_limits
         self._job: Job | None = None
         self._shown: Job | EarlierRun | None = None
         self._closing: asyncio.Task[None] | None = None
@@ -111,10 +108,10 @@ class JobRunner:
     async def left(self) -> None:
         """Wait until a cancelled job has cleaned up: its record must not be closed before."""
         try:
-            async with asyncio.timeout(LEAVE_TIMEOUT_S):
+            async with asyncio.timeout(self._limits.leave_s):
                 await self._resting.wait()
         except TimeoutError:
-            _log.error("the job does not end", timeout_s=LEAVE_TIMEOUT_S)
+            _log.error("the job does not end", timeout_s=self._limits.leave_s)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:
         """Close the record, once, however often it is asked for: an Abort may overtake a Stop."""
@@ -125,13 +122,13 @@ class JobRunner:
         if self._closing is None:
             self._closing = asyncio.create_task(self._close(self._job, outcome, fault))
         closing = self._closing  # it drops itself when it ends
-        await asyncio.wait({closing}, timeout=CLOSE_TIMEOUT_S)
+        await asyncio.wait({closing}, timeout=self._limits.close_record_s)
         if not closing.done():
             # The line is told at once that this run is not good, and it cannot be told otherwise
             # later.
             self._given_up = True
             self.result = Result.ABORTED
-            raise RecordSilent(f"not closed within {CLOSE_TIMEOUT_S:g} s")
+            raise RecordSilent(f"not closed within {self._limits.close_record_s:g} s")
         closing.result()
 
     async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:

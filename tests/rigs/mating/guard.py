@@ -11,6 +11,7 @@ from cellctl.geometry.pose import Array
 from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult
+from cellctl.guard.settling import Settling
 from cellctl.guard.watch.monitor import WrenchMonitor
 from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 from cellctl.interfaces.stop_channel import FlangeState
@@ -31,6 +32,7 @@ class WorldGuard:
         flange_T_sensor: RigidTransform,
         request_stop: Callable[[float], None],
     ) -> None:
+        self.settling = Settling()
         self._monitor = WrenchMonitor(_nine(flange_T_sensor), has_channel=True)
         self._monitor.channel_up = True
         self._monitor.contact.set_gravity_compensation(

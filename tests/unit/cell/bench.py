@@ -15,6 +15,7 @@ from cellctl.cell.devices import Cell
 from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace
 from cellctl.cell.stereo_station import StereoStation
+from cellctl.cell.time_limits import TimeLimits
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors import CellError
@@ -137,6 +138,7 @@ class CellInMemory:
         self.workers = InlineWorkers()
         self.robot_notes = RobotNotes()
         self.pace = MaintenancePace()
+        self.time_limits = TimeLimits()
         self.connected = True
         self.unanswered: dict[str, CellError] = {}
         self.unstopped: dict[str, BaseException] = {}

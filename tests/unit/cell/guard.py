@@ -9,8 +9,10 @@ from cellctl.errors.base import CellError
 from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult
+from cellctl.guard.settling import Settling
 
 SENSOR = "M4347K-1"
+AT_ONCE = Settling(window_s=0.0, poll_s=0.0, reading_s=0.0)
 
 
 @dataclass
@@ -18,6 +20,8 @@ class TinyGuard:
     """Remembers what it was asked; a test sets the trip and what is wrong."""
 
     serial: str = SENSOR
+    settling: Settling = AT_ONCE
+    """What hangs on the robot is still at once."""
     trip: GuardTrip | None = None
     gravity_compensated: bool = True
     armed: bool = False

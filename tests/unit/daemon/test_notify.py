@@ -3,11 +3,11 @@
 import os
 import socket
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from cellctl.daemon import notify as module
 from cellctl.daemon.notify import Watchdog, notify, watchdog_interval_s
 
 
@@ -72,9 +72,10 @@ def test_the_watchdog_is_fed_when_it_is_due(
     systemd: socket.socket, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("WATCHDOG_USEC", "2000000")
-    watchdog = Watchdog()
-    for time_s in (100.0, 100.5, 100.99, 101.0, 101.5):
-        monkeypatch.setattr(module, "now_s", lambda time_s=time_s: time_s)
+    # The moment of each feeding, and once more that of the next one when it is due.
+    times_s = [100.0, 100.0, 100.5, 100.99, 101.0, 101.0, 101.5]
+    watchdog = Watchdog(clock=partial(next, iter(times_s)))
+    for _ in range(5):
         watchdog.feed()
     systemd.setblocking(False)
     assert [systemd.recv(100) for _ in range(2)] == [b"WATCHDOG=1"] * 2

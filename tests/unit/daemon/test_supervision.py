@@ -6,6 +6,7 @@ from typing import cast
 import pytest
 
 from cellctl.api.modbus.interface import PlcInterface
+from cellctl.cell.time_limits import TimeLimits
 from cellctl.config import CellConfig
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkMonitor, supervise
@@ -218,10 +219,8 @@ async def test_a_defect_in_the_daemon_aborts_the_run_with_901(
     assert all(robot.latched for robot in rig.bench.cell.robots.values())
 
 
-async def test_a_machine_that_hangs_is_given_up(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("cellctl.runtime.unit.ABORT_TIMEOUT_S", 0.05)
+async def test_a_machine_that_hangs_is_given_up(rig: DaemonRig) -> None:
+    rig.bench.cell.time_limits = TimeLimits(abort_s=0.05)
     await rig.idle()
     async with rig.unit.machine._turn:
         await asyncio.wait_for(rig.unit.close(Unexpected("defect")), 5)

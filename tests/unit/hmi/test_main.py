@@ -75,10 +75,9 @@ def test_host_names(header: str, name: str) -> None:
     assert host_name(header) == name
 
 
-def test_an_idle_session_only_shows(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_idle_session_only_shows() -> None:
     time_s = 1000.0
-    monkeypatch.setattr("cellctl.hmi.sessions.now_s", lambda: time_s)
-    sessions = Sessions(idle_s=600)
+    sessions = Sessions(idle_s=600, clock=lambda: time_s)
     secret = sessions.open("anna", "operate")
     session = sessions.find(secret)
     assert session is not None
@@ -92,10 +91,9 @@ def test_an_idle_session_only_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sessions.find("") is None
 
 
-def test_a_limit_counts_each_key_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_limit_counts_each_key_alone() -> None:
     time_s = 0.0
-    monkeypatch.setattr("cellctl.hmi.rates.now_s", lambda: time_s)
-    limit = RateLimit(2, 60.0)
+    limit = RateLimit(2, 60.0, clock=lambda: time_s)
     assert [limit.wait_s("a") for _ in range(3)] == [0, 0, 60]
     assert limit.wait_s("b") == 0
     time_s = 20.0

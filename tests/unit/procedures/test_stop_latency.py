@@ -1,6 +1,7 @@
 """The commissioning procedures on the fake cell's world, on simulated time."""
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,8 +10,7 @@ import pytest
 from cellctl.errors.force import CommissioningFailed, NotSettled
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.interfaces import RobotState
-from cellctl.procedures import payload
-from cellctl.procedures.payload import still_wrench
+from cellctl.procedures.payload import STEADY_N, still_wrench
 from cellctl.procedures.stop_latency import (
     StopLatency,
     measure_stop_latency,
@@ -112,20 +112,20 @@ def test_a_hold_is_obeyed_before_each_stop() -> None:
     assert asked == [(1, 2), (2, 2)]
 
 
-def test_a_still_wrench_is_the_mean_of_steady_readings(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_still_wrench_is_the_mean_of_steady_readings() -> None:
     cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05, imperfections=LINEAR_SENSOR)
 
-    async def run() -> tuple[object, np.ndarray]:
-        return await still_wrench(cell.robot, cell.guard, cell.flange_T_sensor)
+    async def run(steady_n: float = STEADY_N) -> tuple[object, np.ndarray]:
+        sensor_frame = cell.flange_T_sensor
+        return await still_wrench(cell.robot, cell.guard, sensor_frame, steady_n=steady_n)
 
     _, wrench = run_simulated(cell.start_s, cell.advance, run)
     sensor = cell.world.truth.force_sensors["force"]
     load = np.linalg.solve(sensor.matrix, wrench - sensor.offset)
     assert np.linalg.norm(load[:3]) == pytest.approx(200.0 * 9.80665, rel=0.002)
-    monkeypatch.setattr(payload, "STEADY_N", 0.1)
     cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
     with pytest.raises(NotSettled, match="scatter"):
-        run_simulated(cell.start_s, cell.advance, run)
+        run_simulated(cell.start_s, cell.advance, partial(run, steady_n=0.1))
 
 
 def test_stored_results_are_told_from_other_calibrations(tmp_path: Path) -> None:

@@ -1,12 +1,13 @@
 """What never answers leads to a fault and to a state in which nothing moves: no unit waits on."""
 
 import asyncio
+import shutil
 import threading
 from collections.abc import Iterator
 
 import pytest
 
-from cellctl.cell import devices
+from cellctl.cell.time_limits import TimeLimits
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.errors.link import DeviceAway
 from cellctl.errors.records import DiskNearlyFull, RecordSilent
@@ -14,11 +15,7 @@ from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
-from cellctl.records.files import disk_space
 from cellctl.records.store import RunStore
-from cellctl.runtime import unit
-from cellctl.runtime.jobs import record as job_record
-from cellctl.runtime.jobs import runner as job_runner
 from tests.unit.daemon_rig import DaemonRig
 
 SHORT_S = 0.05
@@ -36,10 +33,8 @@ def disk() -> Iterator[threading.Event]:
     disk.set()
 
 
-async def test_a_driver_that_hangs_in_its_stop(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(unit, "STOP_TIMEOUT_S", SHORT_S)
+async def test_a_driver_that_hangs_in_its_stop(rig: DaemonRig) -> None:
+    rig.bench.cell.time_limits = TimeLimits(stop_s=SHORT_S)
     rig.contact.may_end.clear()
     await rig.started()
     await rig.contact.reached.wait()
@@ -54,7 +49,8 @@ async def test_a_driver_that_hangs_in_its_stop(
 async def test_a_disk_that_hangs_when_the_run_is_closed(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
 ) -> None:
-    monkeypatch.setattr(job_runner, "CLOSE_TIMEOUT_S", SHORT_S)
+    rig.bench.cell.time_limits = TimeLimits(close_record_s=SHORT_S)
+    await rig.restart()
     closes = RunStore.close_run
 
     def slow(store: RunStore, *args: object, **fields: object) -> None:
@@ -74,8 +70,8 @@ async def test_a_disk_that_hangs_when_the_run_is_closed(
 async def test_a_disk_that_hangs_when_the_run_is_opened(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
 ) -> None:
-    monkeypatch.setattr(job_record, "OPEN_TIMEOUT_S", SHORT_S)
-    monkeypatch.setattr(job_runner, "CLOSE_TIMEOUT_S", SHORT_S)
+    rig.bench.cell.time_limits = TimeLimits(open_record_s=SHORT_S, close_record_s=SHORT_S)
+    await rig.restart()
     await rig.idle()
     monkeypatch.setattr(RunStore, "start_run", lambda *_, **__: disk.wait(10))
     await rig.take(Command.START)
@@ -84,10 +80,8 @@ async def test_a_disk_that_hangs_when_the_run_is_opened(
     assert not any(robot.moves for robot in rig.bench.cell.robots.values())
 
 
-async def test_a_device_that_hangs_when_it_is_asked(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(devices, "ASK_TIMEOUT_S", SHORT_S)
+async def test_a_device_that_hangs_when_it_is_asked(rig: DaemonRig) -> None:
+    rig.bench.cell.time_limits = TimeLimits(ask_s=SHORT_S)
     await rig.idle()
     rig.bench.cell.head_2.camera.serial_number = hang  # type: ignore[assignment, method-assign]
     await DevicePoller(rig.bench.as_cell, rig.unit).ask()
@@ -98,7 +92,8 @@ async def test_a_device_that_hangs_when_it_is_asked(
 async def test_a_disk_without_room_refuses_the_run_before_anything_moves(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(disk_space, "LEAST_FREE_BYTES", 10**18)
+    full = shutil.disk_usage("/")._replace(free=10**6)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _folder: full)
     await rig.idle()
     moves = list(rig.bench.cell.main.moves)
     await rig.take(Command.START)

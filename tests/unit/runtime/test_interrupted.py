@@ -9,14 +9,12 @@ from cellctl.errors.link import StaleData
 from cellctl.errors.records import RecordNotWritten, RunInterrupted
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
-from cellctl.runtime import interrupted
 from tests.unit.daemon_rig import DaemonRig
 
 
 @pytest.fixture
 async def died(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> DaemonRig:
     """In contact, with 20 N; the unit is not open."""
-    monkeypatch.setattr(interrupted, "READING_S", 0.0)
 
     def lost(*_: object, **__: object) -> None:
         raise RecordNotWritten("the daemon was killed")

@@ -6,14 +6,12 @@ import pytest
 
 from cellctl.api.modbus.register_map import VALIDITY_REGISTERS
 from cellctl.api.modbus.status import Handshake, values
-from cellctl.clock import now_s
 from cellctl.errors.link import StaleData
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.runtime import status_view
 from tests.unit.daemon_rig import DaemonRig
 
 
@@ -28,13 +26,10 @@ async def test_a_cell_at_rest(rig: DaemonRig) -> None:
     assert values(status, Handshake(), 1)["alarm_count"] == 0
 
 
-async def test_times_run_and_refusals_are_kept_the_newest_first(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_times_run_and_refusals_are_kept_the_newest_first(rig: DaemonRig) -> None:
     await rig.idle()
     entered = rig.shown()
-    later_s = now_s() + 100.0
-    monkeypatch.setattr(status_view, "now_s", lambda: later_s)
+    rig.ahead_s = 100.0
     assert rig.shown().state_time_s == pytest.approx(entered.state_time_s + 100.0, abs=5.0)
     assert rig.shown().mode_time_s >= rig.shown().state_time_s
     assert await rig.take(Command.UNHOLD) is RejectCode.COMMAND_NOT_ALLOWED

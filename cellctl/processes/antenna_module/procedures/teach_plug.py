@@ -22,7 +22,7 @@ from cellctl.processes.antenna_module.faults.plugging import ModuleMissing
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moves.moving import raised
 from cellctl.processes.antenna_module.moves.start import move_to_start
-from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE_S, jogged_by_hand
+from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE, jogged_by_hand
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
@@ -87,7 +87,7 @@ async def _one_plug(run: PluggingRun, name: str) -> TaughtPlug:
     located = await _looked_at(run)
     await _wait_above(located)
     run.say("plug by hand: key to manual, jog until it sits, key back to remote")
-    await jogged_by_hand(run.cell.arm.robot, NobodyPlugged)
+    await jogged_by_hand(run.cell.arm.robot, NobodyPlugged, PATIENCE)
     await settle(run.cell.arm.guard)
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     await run.cell.gripper.open()
@@ -97,7 +97,7 @@ async def _one_plug(run: PluggingRun, name: str) -> TaughtPlug:
 
 async def _looked_at(run: PluggingRun) -> SocketLocated:
     found = None
-    give_up_s = now_s() + PATIENCE_S
+    give_up_s = now_s() + PATIENCE.wait_s
     while found is None:
         try:
             found = await find_module(GripperEmpty(run))

@@ -12,7 +12,7 @@ from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.processes.antenna_module.calibrations import TOOL
 from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
-from cellctl.processes.antenna_module.procedures.by_hand import jogged_by_hand
+from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE, Patience, jogged_by_hand
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 
@@ -22,7 +22,9 @@ determined alike in all directions."""
 ORIENTING = ("tip on the point", "tip along its x axis", "tip to the side of its y axis")
 
 
-async def touch_tool_on_cell(cell: AntennaCell, context: ProcedureContext) -> ProcedureOutcome:
+async def touch_tool_on_cell(
+    cell: AntennaCell, context: ProcedureContext, patience: Patience = PATIENCE
+) -> ProcedureOutcome:
     """Collect the poses of all touches and solve; the arm is moved by the operator alone.
 
     Raises ``NobodyTouched``, ``PosesNotDiverse``, ``IllConditioned`` and ``NotSettled``.
@@ -31,7 +33,7 @@ async def touch_tool_on_cell(cell: AntennaCell, context: ProcedureContext) -> Pr
     poses: list[RigidTransform] = []
     for what in ("tip on the point, tilted anew",) * TOUCHES + ORIENTING:
         await context.progress(len(poses) + 1, total, f"by hand: {what},")
-        await jogged_by_hand(cell.arm.robot, NobodyTouched)
+        await jogged_by_hand(cell.arm.robot, NobodyTouched, patience)
         await settle(cell.arm.guard)
         poses.append(cell.arm.robot.state().base_T_flange)
     result = calibrate_tool(poses[:TOUCHES], poses[TOUCHES:])

@@ -15,7 +15,6 @@ from cellctl.processes.antenna_module.state import HeldModule, ModuleFound, Pick
 from cellctl.records.figures import Limit
 
 _G_M_S2 = 9.80665
-_READ_S = 0.5
 
 
 async def pick(found: ModuleFound) -> Picked:
@@ -49,7 +48,7 @@ async def _force_n(run: PluggingRun) -> Array:
     guard = run.cell.arm.guard
     await settle(guard)
     begin_s = now_s()
-    await asyncio.sleep(_READ_S)  # the time over which the reading is averaged
+    await asyncio.sleep(guard.settling.reading_s)
     return np.asarray(guard.samples(begin_s).raw[:, :3].mean(axis=0))
 
 

@@ -205,10 +205,9 @@ class SlowWriter:
 
 
 async def test_a_follower_that_does_not_read_delays_nobody_and_is_dropped(
-    rig: DaemonRig, page: Page, monkeypatch: pytest.MonkeyPatch
+    rig: DaemonRig, page: Page
 ) -> None:
-    monkeypatch.setattr("cellctl.api.local.live_feed.UNREAD_S", 0.2)
-    feed = LiveFeed(page.view, page.reporter.description)
+    feed = LiveFeed(page.view, page.reporter.description, unread_s=0.2)
     slow, quick = SlowWriter(), SlowWriter()
     quick.reads.set()
     tasks = [asyncio.create_task(feed.follow(one)) for one in (slow, quick)]  # type: ignore[arg-type]

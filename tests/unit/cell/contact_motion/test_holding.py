@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.contact_motion import streamed_contact
 from cellctl.errors.streamed_contact import HeldTooLong
 from cellctl.interfaces import StreamReport
 from tests.unit.cell.contact_motion.elastic_world import (
@@ -45,8 +44,7 @@ async def test_the_work_gets_its_turn_beside_a_stream_that_never_waits() -> None
     assert len(world.sent) > sent + 1, "the arm stood in its stream meanwhile"
 
 
-async def test_work_that_does_not_end_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(streamed_contact, "_HOLD_S", 0.05)
+async def test_work_that_does_not_end_is_a_fault() -> None:
     given_up = asyncio.Event()
 
     async def work() -> None:
@@ -56,7 +54,7 @@ async def test_work_that_does_not_end_is_a_fault(monkeypatch: pytest.MonkeyPatch
             given_up.set()
 
     with pytest.raises(HeldTooLong):
-        await contact(ready_world()).hold_while(work())
+        await contact(ready_world()).hold_while(work(), limit_s=0.05)
     assert given_up.is_set()
 
 

@@ -5,10 +5,11 @@ from typing import cast
 import numpy as np
 import pytest
 
-from cellctl.cell.guarded_motion.settling import TIMEOUT_S, WINDOW_S, block_scatter, settle
+from cellctl.cell.guarded_motion.settling import block_scatter, settle
 from cellctl.errors.force import GuardDied, NotSettled, SensorFrozen
 from cellctl.guard.client import GuardClient
 from cellctl.guard.report import GuardSamples
+from cellctl.guard.settling import Settling
 from tests.rigs.mating.simulated_loop import run_simulated
 
 PERIOD_S = 1e-3
@@ -18,6 +19,7 @@ class Swinging:
     """A payload whose swing dies away; samples exist up to the present of the simulation."""
 
     def __init__(self, amplitude_n: float, decay_s: float, noise_n: float = 0.3) -> None:
+        self.settling = Settling()
         self.now_s = 0.0
         self.asked_since: list[float] = []
         self._swing = amplitude_n, decay_s
@@ -41,14 +43,14 @@ def settled_after(guard: Swinging) -> float:
 
 
 def test_a_still_payload_needs_one_window() -> None:
-    assert settled_after(Swinging(0.0, 1.0)) == pytest.approx(WINDOW_S, abs=0.11)
+    assert settled_after(Swinging(0.0, 1.0)) == pytest.approx(Settling().window_s, abs=0.11)
 
 
 def test_a_swinging_payload_is_waited_for() -> None:
     guard = Swinging(60.0, 0.8)
     end_s = settled_after(guard)
-    assert 1.5 < end_s < TIMEOUT_S
-    assert 60.0 * np.exp(-(end_s - WINDOW_S) / 0.8) / np.sqrt(2) < 2.5
+    assert 1.5 < end_s < Settling().timeout_s
+    assert 60.0 * np.exp(-(end_s - Settling().window_s) / 0.8) / np.sqrt(2) < 2.5
     assert min(guard.asked_since) >= 0.0, "nothing from before the motion's end counts"
 
 

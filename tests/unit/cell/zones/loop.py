@@ -5,10 +5,6 @@ import selectors
 from collections.abc import Coroutine
 from typing import Any
 
-import pytest
-
-from cellctl.cell.zones import arbiter
-
 
 class _Instant(selectors.SelectSelector):
     """Returns at once and counts the time that it was asked to wait."""
@@ -38,10 +34,6 @@ def time_s() -> float:
 
 
 def run(work: Coroutine[Any, Any, None]) -> None:
-    """Run to the end, with the arbiter on the clock of the loop."""
-    with (
-        pytest.MonkeyPatch.context() as patch,
-        asyncio.Runner(loop_factory=InstantLoop) as runner,
-    ):
-        patch.setattr(arbiter, "now_s", time_s)
+    """Run to the end; arbiters and arms must be on ``time_s``."""
+    with asyncio.Runner(loop_factory=InstantLoop) as runner:
         runner.run(work)

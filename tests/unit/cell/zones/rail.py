@@ -155,5 +155,7 @@ def rail(
     # Each leaves on the side on which it stands.
     shares = {name: Share(ZONE, poses, (0, x_m > middle_m)) for name, x_m in at_m.items()}
     zone = Zone("middle", shares, wait_s, retreat)
-    arbiter = ZoneArbiter((zone,), {name: robot.state for name, robot in robots.items()})
+    arbiter = ZoneArbiter(
+        (zone,), {name: robot.state for name, robot in robots.items()}, clock=time_s
+    )
     return Rail(robots, {name: ZonedRobot(one, arbiter, None) for name, one in robots.items()})

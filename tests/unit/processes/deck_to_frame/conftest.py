@@ -3,7 +3,6 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.cell.guarded_motion import settling
 from tests.unit.cell.bench import Bench, make_bench
 from tests.unit.daemon_fixtures import rig as daemon_rig
 from tests.unit.processes.deck_to_frame.rig import RunRig
@@ -12,10 +11,7 @@ __all__ = ["bench", "daemon_rig", "rig"]
 
 
 @pytest.fixture
-def bench(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Bench:
-    """What hangs on the robot is still at once."""
-    monkeypatch.setattr(settling, "WINDOW_S", 0.0)
-    monkeypatch.setattr(settling, "POLL_S", 0.0)
+def bench(tmp_path: Path) -> Bench:
     return make_bench(tmp_path)
 
 

@@ -15,7 +15,8 @@ from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL, TOOL_TURN
 from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
-from cellctl.processes.antenna_module.procedures import by_hand, touch_tool, turn_tool
+from cellctl.processes.antenna_module.procedures import touch_tool, turn_tool
+from cellctl.processes.antenna_module.procedures.by_hand import Patience
 from cellctl.processes.antenna_module.procedures.procedure_list import antenna_procedures
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext
@@ -73,6 +74,9 @@ class Panel:
         self.asked = 3 * (done - 1)
 
 
+AT_ONCE = Patience(poll_s=0.0)
+
+
 async def _still(_guard: object) -> None:
     return
 
@@ -81,13 +85,14 @@ async def _in_worker(job: Any, *arguments: object) -> Any:
     return job(*arguments)
 
 
-async def touched(panel: Panel, monkeypatch: pytest.MonkeyPatch) -> Any:
+async def touched(
+    panel: Panel, monkeypatch: pytest.MonkeyPatch, patience: Patience = AT_ONCE
+) -> Any:
     monkeypatch.setattr(touch_tool, "settle", _still)
-    monkeypatch.setattr(by_hand, "_POLL_S", 0.0)
     arm = SimpleNamespace(robot=panel, guard=None)
     cell = SimpleNamespace(arm=arm, workers=SimpleNamespace(run=_in_worker))
     return await touch_tool.touch_tool_on_cell(
-        cast(AntennaCell, cell), cast(ProcedureContext, panel)
+        cast(AntennaCell, cell), cast(ProcedureContext, panel), patience
     )
 
 
@@ -110,11 +115,10 @@ async def test_touches_in_one_orientation_are_refused(monkeypatch: pytest.Monkey
 
 
 async def test_nobody_at_the_panel_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(by_hand, "PATIENCE_S", 0.0)
     panel = Panel(touching())
     panel.state = lambda: SimpleNamespace(mode=RobotMode.REMOTE)  # type: ignore[method-assign]
     with pytest.raises(NobodyTouched):
-        await touched(panel, monkeypatch)
+        await touched(panel, monkeypatch, Patience(wait_s=0.0))
 
 
 @dataclass

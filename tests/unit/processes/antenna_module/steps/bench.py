@@ -255,7 +255,6 @@ def nothing_swings(monkeypatch: pytest.MonkeyPatch) -> None:
         # By its name: the package offers the function under the name of the module.
         step = importlib.import_module(f"{steps}.{name}")
         monkeypatch.setattr(step, "settle", still)
-    monkeypatch.setattr(importlib.import_module(f"{steps}.pick"), "_READ_S", 0.0)
 
 
 class _Awaited:

@@ -14,6 +14,7 @@ from cellctl.errors.robot import MotionRejected
 from cellctl.force.contact.leaving import FIRST_LIFT_M
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.guard.settling import Settling
 from cellctl.processes.deck_to_frame.moves.lift_off import (
     LIFT_M,
     SLOW_LIFT_M,
@@ -130,14 +131,12 @@ async def test_a_trip_while_lifting_stops_and_nothing_moves_on(
     assert not bench.cell.awaits_trips("force")
 
 
-async def test_a_guard_that_cannot_watch_keeps_the_deck_where_it_is(
-    bench: Bench, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_a_guard_that_cannot_watch_keeps_the_deck_where_it_is(bench: Bench) -> None:
     bench.cell.main.flange = bench.flange_over_seat(0.0)
     bench.cell.guard.faults["arm"] = GuardRefused("no fresh samples")
     with pytest.raises(GuardRefused):
         await lift_off(bench.deck)
-    monkeypatch.setattr("cellctl.cell.guarded_motion.settling.TIMEOUT_S", 0.01)
+    bench.cell.guard.settling = Settling(window_s=0.0, timeout_s=0.01, poll_s=0.0)
     bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
     with pytest.raises(NotSettled):
         await lift_off(bench.deck)

@@ -13,6 +13,7 @@ from cellctl.errors.force import ForceLimitExceeded, NotSettled
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.guard.settling import Settling
 from cellctl.processes.deck_to_frame.faults import (
     CorrectionDiverging,
     CorrectionImplausible,
@@ -75,10 +76,8 @@ async def test_a_deck_that_slipped_is_refused(rig: RunRig) -> None:
         await measure_deck(frame)
 
 
-async def test_a_swinging_deck_is_not_measured(
-    rig: RunRig, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("cellctl.cell.guarded_motion.settling.TIMEOUT_S", 0.01)
+async def test_a_swinging_deck_is_not_measured(rig: RunRig) -> None:
+    rig.bench.cell.guard.settling = Settling(window_s=0.0, timeout_s=0.01, poll_s=0.0)
     rig.bench.cell.guard.raw = np.random.default_rng(0).normal(0.0, 50.0, (200, 6))
     frame = await measure_frame(rig.ready())
     with pytest.raises(NotSettled):
