@@ -13,7 +13,8 @@ from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.patent import PatentMidpoint
 from cellctl.processes.peg_in_hole.search.probe import TouchProbe
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 
 LIMIT_S = 120.0
 """Of the reference's table, for all strategies alike."""

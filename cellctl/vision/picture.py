@@ -1,7 +1,5 @@
 """Pictures of a measurement: the measured rims, drawn into the image."""
 
-from collections.abc import Sequence
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -13,43 +11,29 @@ from cellctl.vision.measurement import HoleMeasurement, PairMeasurement, Side
 
 Picture = NDArray[np.uint8]
 
-_GREEN, _YELLOW, _RED, _BLACK = (60, 220, 60), (0, 220, 255), (60, 60, 255), (0, 0, 0)
+_GREEN, _YELLOW, _BLACK = (60, 220, 60), (0, 220, 255), (0, 0, 0)
 # OpenCV draws with fixed-point coordinates: five bits show a 32nd of a pixel. Whole pixels would
 # hide what is measured here.
 _SHIFT = 5
 INSET_PX = 360
 """Side of the magnified view of a hole."""
 _INSET_ZOOM_SPAN = 1.5
-_RESIDUAL_SCALE_PX_PER_MM = 2000.0
 
 
-def annotate(
-    image: Image,
-    measurement: PairMeasurement,
-    side: Side,
-    residuals_px: Sequence[Array] | None = None,
-) -> Picture:
+def annotate(image: Image, measurement: PairMeasurement, side: Side) -> Picture:
     """Fitted ellipses, centres and names on the image; below it each hole magnified.
 
     Shape (height + ``INSET_PX``, width, 3): nothing lies over what was measured.
-    ``residuals_px``, shape (2,) per hole, are drawn as arrows, magnified; see ``residual_arrows``.
     """
     picture = _coloured(image)
-    for index, hole in enumerate(measurement.holes):
+    for hole in measurement.holes:
         ellipse, centre = _of(hole, side)
         _draw_ellipse(picture, ellipse, 1.0, np.zeros(2), 2)
         _cross(picture, centre, 12)
         corner = centre + np.array([1.0, -1.0]) * (ellipse.semi_axes_px[0] + 12)
         _label(picture, f"{hole.name} {hole.diameter_m / MM:.2f}", corner, 1.1)
-        if residuals_px is not None:
-            _arrow(picture, centre, residuals_px[index])
     strip = _insets(image, measurement, side)
     return np.asarray(np.vstack([picture, strip]), dtype=np.uint8)
-
-
-def residual_arrows(residuals_m: Array) -> list[Array]:
-    """Arrows in px for residuals in the camera's axes, shape (n, 3): 1 µm becomes 2 px."""
-    return [residual[:2] / MM * _RESIDUAL_SCALE_PX_PER_MM for residual in residuals_m]
 
 
 def _coloured(image: cv2.typing.MatLike) -> Picture:
@@ -116,13 +100,6 @@ def _cross(picture: Picture, centre: Array, size: int) -> None:
             cv2.LINE_AA,
             _SHIFT,
         )
-
-
-def _arrow(picture: Picture, centre: Array, residual_px: Array) -> None:
-    start, end = np.rint(centre).astype(int), np.rint(centre + residual_px).astype(int)
-    cv2.arrowedLine(
-        picture, (int(start[0]), int(start[1])), (int(end[0]), int(end[1])), _RED, 3, cv2.LINE_AA
-    )
 
 
 def _label(picture: Picture, text: str, corner: Array, scale: float) -> None:

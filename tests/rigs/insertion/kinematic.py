@@ -6,11 +6,8 @@ of the face that is left after alignment, dead time after a condition holds. Wha
 tilt, dirt, friction beyond thresholds.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import lfilter
 
 from cellctl.cell.contact_motion.motions import (
     Condition,
@@ -21,7 +18,7 @@ from cellctl.cell.contact_motion.motions import (
 )
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.search.tilted_touch import tilted_dip_m
+from tests.rigs.insertion.surface import Surface, Truth, correlated
 
 Array = NDArray[np.float64]
 
@@ -31,32 +28,8 @@ _WANDER_M, _WANDER_LENGTH_M = 0.02e-3, 5e-3
 _TURN_SIGMA_M = 0.02e-3
 _READING_S = 0.1
 """Readings of a height that are so far apart are independent."""
-_P99_SIGMAS = 3.035
 _EVERY = 20
 """Of the ticks over a flat face so many are skipped: nothing changes there."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Truth:
-    """What the search does not know."""
-
-    hole_m: Array
-    """Axis of the hole in frame A, shape (2,)."""
-    slope: Array
-    """Of the face against frame A, shape (2,)."""
-    absent: bool = False
-    """There is no hole at all."""
-
-    @classmethod
-    def draw(
-        cls,
-        task: SearchTask,
-        rng: np.random.Generator,
-        residual_tilt_rad: float = 0.3 * np.pi / 180,
-    ) -> "Truth":
-        """A hole of the prior that the task states."""
-        sigma_m = task.cell.uncertainty_m / _P99_SIGMAS
-        return cls(rng.normal(0, sigma_m, 2), rng.normal(0, residual_tilt_rad / 2, 2))
 
 
 class KinematicMotions(ContactMotions):
@@ -64,6 +37,7 @@ class KinematicMotions(ContactMotions):
 
     def __init__(self, task: SearchTask, truth: Truth, rng: np.random.Generator) -> None:
         self.task, self.truth, self._rng = task, truth, rng
+        self._surface = Surface(task.fit, truth)
         parameters = search_parameters(task)
         self._touch_speed = parameters.touch_speed.value
         self._sink_speed = parameters.sink_speed.value
@@ -140,9 +114,9 @@ class KinematicMotions(ContactMotions):
         ticks = self._along(way_m, speed_m_s)
         wander = self._wandering(len(ticks), speed_m_s * TICK_S)
         offsets = ticks + self._offset_m + wander - self.truth.hole_m
-        depths = self._depths_m(offsets, ticks)
+        depths = self._surface.depths_m(offsets, ticks, self.rotation_rad)
         heights = self._noise(len(ticks)) + depths
-        lost = self._unsupported(offsets)
+        lost = self._surface.carries_not(offsets, self.rotation_rad)
         begin_s, begin_m = self.time_s, float(self.position_m[2])
         stop = len(ticks) - 1
         ended = Ended.TRAVEL
@@ -220,26 +194,9 @@ class KinematicMotions(ContactMotions):
     def _depth_m(self) -> float:
         """Depth of the tip where it rests, below its present place."""
         here = self.position_m[None, :2]
-        return float(self._depths_m(self.true_offset_m[None, :], here)[0])
-
-    def _depths_m(self, offsets: Array, ticks: Array) -> Array:
-        fit = self.task.fit
-        face = ticks @ self.truth.slope
-        tilt_rad = float(np.linalg.norm(self.rotation_rad))
-        if tilt_rad == 0:
-            free = np.hypot(*offsets.T)
-            inside = np.where(free < fit.catch_radius_m, fit.depth_m, 0.0)
-            deep = inside if fit.rim_m is None else np.where(free > fit.rim_m, 5e-3, inside)
-            deep = (0.0 if self.truth.absent else 1.0) * deep
-            # On a tilted face an upright peg stands on its rim.
-            ahead_m = fit.rim_radius_m * float(np.hypot(*self.truth.slope))
-            return np.asarray(face + np.where(deep == 0.0, -ahead_m, deep))
-        leaning = np.array([-self.rotation_rad[1], self.rotation_rad[0]]) / tilt_rad
-        # The slope of the face along the tilt makes the peg lean more, or less.
-        relative_rad = tilt_rad + float(self.truth.slope @ leaning)
-        dips = tilted_dip_m(offsets, leaning, fit.peg_radius_m, fit.clearance_m, relative_rad)
-        flat = face - fit.peg_radius_m * np.sin(relative_rad)
-        return np.asarray(flat + (0.0 if self.truth.absent else 1.0) * dips)
+        return float(
+            self._surface.depths_m(self.true_offset_m[None, :], here, self.rotation_rad)[0]
+        )
 
     def _sunk_m(self, begin_m: float, heights: Array, lost: NDArray[np.bool_]) -> float:
         """Depth at the end of a slide: a peg that nothing carries sinks slowly."""
@@ -249,25 +206,13 @@ class KinematicMotions(ContactMotions):
         sunk_m = from_m + self._sink_speed * TICK_S * (len(lost) - 1 - last)
         return min(float(heights[-1]), sunk_m)
 
-    def _unsupported(self, offsets: Array) -> NDArray[np.bool_]:
-        if np.any(self.rotation_rad) or self.truth.absent:
-            return np.zeros(len(offsets), dtype=bool)
-        free, rim_m = np.hypot(*offsets.T), self.task.fit.rim_m
-        lost = free < self.task.fit.catch_radius_m
-        return np.asarray(lost if rim_m is None else lost | (free > rim_m))
-
     def _side_gap_m(self, direction: Array, force_n: float) -> float:
-        """Way along a unit vector (2,) to the face of the plug, or to the wall of the hole."""
-        offset, rim_m = self.true_offset_m, self.task.fit.rim_m
-        near = float(np.hypot(*offset)) < self.task.fit.peg_radius_m
-        if near and self.position_m[2] > self.task.fit.entry_depth_m:
-            wall_m = self.task.fit.clearance_m - float(offset @ direction)
-            return wall_m + force_n / self.task.cell.stiffness_n_m
-        if rim_m is None:
-            return np.inf
-        along = float(offset @ direction)
-        root = along**2 - float(offset @ offset) + rim_m**2
-        return np.inf if root < 0 else max(-along - float(np.sqrt(root)), 0.0)
+        gap_m, inside = self._surface.side_gap_m(
+            self.true_offset_m, float(self.position_m[2]), direction
+        )
+        # The wall of a hole is felt once the arm has given way by the force; the outer face of a
+        # plug is met at full speed.
+        return gap_m + force_n / self.task.cell.stiffness_n_m if inside else gap_m
 
     def _along(self, way_m: Array, speed_m_s: float) -> Array:
         """Points of a way at every tick, shape (n, 2)."""
@@ -281,12 +226,12 @@ class KinematicMotions(ContactMotions):
 
     def _wandering(self, count: int, step_m: float) -> Array:
         keep = float(np.exp(-step_m / _WANDER_LENGTH_M))
-        return _correlated(self._rng, count, keep, _WANDER_M, self._wander_m)
+        return correlated(self._rng, count, keep, _WANDER_M, self._wander_m)
 
     def _noise(self, count: int) -> Array:
         keep = float(np.exp(-TICK_S / _READING_S))
         begin = self._rng.normal(0, self.task.cell.height_sigma_m, 1)
-        return _correlated(self._rng, count, keep, self.task.cell.height_sigma_m, begin)[:, 0]
+        return correlated(self._rng, count, keep, self.task.cell.height_sigma_m, begin)[:, 0]
 
     def _sample(self, press_n: float) -> ContactSample:
         sigma_n = self.task.cell.force_sigma_n
@@ -303,15 +248,6 @@ class KinematicMotions(ContactMotions):
 
     def _ended(self, ended: Ended, press_n: float) -> ContactMotion:
         return ContactMotion(ended, (self._sample(press_n),))
-
-
-def _correlated(
-    rng: np.random.Generator, count: int, keep: float, sigma: float, begin: Array
-) -> Array:
-    """Gauss–Markov noise, shape (count, n) for a begin (n,)."""
-    drawn = rng.normal(0, sigma * np.sqrt(1 - keep**2), (count, len(begin)))
-    state = keep * begin[None, :]
-    return np.asarray(lfilter([1.0], [1.0, -keep], drawn, axis=0, zi=state)[0])
 
 
 def _worth_asking(depths: Array, lost: NDArray[np.bool_], *, flat: bool) -> NDArray[np.int64]:

@@ -16,7 +16,8 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 
 Array = NDArray[np.float64]
 

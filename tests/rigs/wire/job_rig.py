@@ -1,6 +1,5 @@
 """The SIASUN driver against the shipped job files, run by the interpreter."""
 
-import asyncio
 from collections.abc import AsyncIterator
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from fakes.scenario_file.sections import Channel
 from fakes.world.robot import RobotArm
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.proxy import ChaosProxy
-from tests.rigs.wire.sjl_rig import arm_settings
+from tests.rigs.wire.sjl_rig import arm_settings, connect_both
 from tests.rigs.wire.standing_arm import standing_arm
 
 _REPORT_WORD = 34
@@ -34,13 +33,7 @@ class JobRig:
     guard: SiasunStopChannelConfig
 
     async def connect(self) -> None:
-        """Start the controller as soon as the driver listens, which saves it a retry."""
-        connecting = asyncio.create_task(self.robot.connect())
-        async with asyncio.timeout(2.0):
-            while self.robot._state.channel._server is None:  # noqa: ASYNC110  no event for it
-                await asyncio.sleep(0)
-        self.controller.start()
-        await connecting
+        await connect_both(self.robot, self.controller.start)
 
     def let_report_overflow(self) -> None:
         """The next report of SJLSTA does not fit into a string: one alarm of many that may end a

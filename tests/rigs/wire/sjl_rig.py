@@ -1,7 +1,7 @@
 """The SIASUN driver and the fake controller on free ports, with a chaos proxy on each channel."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
@@ -49,13 +49,17 @@ class Rig:
     guard: SiasunStopChannelConfig
 
     async def connect(self) -> None:
-        """Start the controller as soon as the driver listens, which saves it a retry."""
-        connecting = asyncio.create_task(self.robot.connect())
-        async with asyncio.timeout(2.0):
-            while self.robot._state.channel._server is None:  # noqa: ASYNC110  no event for it
-                await asyncio.sleep(0)
-        self.controller.start()
-        await connecting
+        await connect_both(self.robot, self.controller.start)
+
+
+async def connect_both(robot: SiasunRobot, start_controller: Callable[[], object]) -> None:
+    """Start the controller as soon as the driver listens, which saves it a retry."""
+    connecting = asyncio.create_task(robot.connect())
+    async with asyncio.timeout(2.0):
+        while robot._state.channel._server is None:  # noqa: ASYNC110  no event for it
+            await asyncio.sleep(0)
+    start_controller()
+    await connecting
 
 
 @asynccontextmanager

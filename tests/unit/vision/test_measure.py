@@ -24,7 +24,7 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method
-from cellctl.vision.picture import INSET_PX, annotate, residual_arrows
+from cellctl.vision.picture import INSET_PX, annotate
 from cellctl.vision.registration.average import average
 from tests.unit.vision.plates import (
     Light,
@@ -176,8 +176,7 @@ def test_averages_shrink_the_random_part_only(pair: Pair) -> None:
 
 def test_pictures_show_what_was_found(pair: Pair) -> None:
     result = measure_pair(*pair, HEAD, HOLES, camera_T_part=POSE)
-    arrows = residual_arrows(np.full((3, 3), 20e-6))
-    picture = annotate(pair[0], result, "left", arrows)
+    picture = annotate(pair[0], result, "left")
     height, width = pair[0].shape
     assert picture.shape == (height + INSET_PX, width, 3)
     assert picture[height:, :INSET_PX].any(), "each hole is shown enlarged below the image"

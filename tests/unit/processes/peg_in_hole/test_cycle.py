@@ -11,7 +11,8 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 SOFT_PIN = pin(stiffness_n_m=1e5)

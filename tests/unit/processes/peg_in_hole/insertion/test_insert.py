@@ -8,7 +8,8 @@ from cellctl.cell.contact_motion.motions import Condition, ContactMotion, Contac
 from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 Array = NDArray[np.float64]

@@ -12,7 +12,8 @@ from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 from cellctl.processes.peg_in_hole.verdict.holding import directions_that_resist_a_turn
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import plug
 
 KEYS = KeyGeometry(depth_m=3e-3, window_rad=np.radians(1.0), uncertainty_rad=np.radians(1.8))

@@ -10,7 +10,8 @@ from cellctl.processes.peg_in_hole.search.classify import (
     classify_contact,
     light_threshold_n,
 )
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.rigs.insertion.traps import PegState, StandingPeg
 from tests.unit.processes.peg_in_hole.tasks import pin
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 FAR = np.array([100e-3, 100e-3])

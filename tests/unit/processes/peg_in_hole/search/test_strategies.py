@@ -12,7 +12,8 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
 
 

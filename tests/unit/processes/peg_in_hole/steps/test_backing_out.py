@@ -20,7 +20,8 @@ from cellctl.processes.peg_in_hole.faults import (
     SensorDead,
 )
 from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
-from tests.rigs.insertion.kinematic import KinematicMotions, Truth
+from tests.rigs.insertion.kinematic import KinematicMotions
+from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin
 
 DEEP_M = 4e-3
