@@ -25,9 +25,9 @@ from benchmarks.antenna.insertion.trials import (
 from fakes.world.connector.drawing import D_SUB_15, MICRO_D_15
 
 WORKERS = 2
-COUNTS = {MICRO_D_15.name: (300, 40), D_SUB_15.name: (60, 10)}
+COUNTS = {MICRO_D_15.name: (300, 40), D_SUB_15.name: (300, 40)}
 """Good insertions of each connector, and insertions with each fault."""
-QUICK_COUNTS = {MICRO_D_15.name: (24, 5), D_SUB_15.name: (6, 2)}
+QUICK_COUNTS = {MICRO_D_15.name: (24, 5), D_SUB_15.name: (24, 5)}
 BACKED_OUT = ("offset 1.5", "pin bent, 1.5")
 
 

@@ -14,6 +14,7 @@ class Shape:
     """One insertion at 0.4 mm/s, sampled with 250 Hz."""
 
     peak_n: float = 24.0
+    spring_mm: float = 0.5
     seat_mm: float = 2.5
     seat_n_per_mm: float = 300.0
     end_n: float = 20.0
@@ -37,9 +38,10 @@ def curve(shape: Shape = Shape(), seed: int = 1) -> InsertionCurve:
     stop_mm = shape.seat_mm + shape.end_n / shape.seat_n_per_mm
     z = np.arange(-1.0, stop_mm, 0.4 / 250)
     force, moment = np.zeros((len(z), 3)), np.zeros((len(z), 3))
-    rise = np.interp(z, [0.5, 0.9, 1.6], [0.0, shape.peak_n, 0.7 * shape.peak_n])
+    spring = shape.spring_mm
+    rise = np.interp(z, [spring, spring + 0.4, spring + 1.1], [0.0, shape.peak_n, 0.7 * shape.peak_n])
     seat = shape.seat_n_per_mm * np.clip(z - shape.seat_mm, 0, None)
-    pin = np.where(z < 0.5, shape.pin_n_per_mm * np.clip(z, 0, None), 0.0)
+    pin = np.where(z < spring, shape.pin_n_per_mm * np.clip(z, 0, None), 0.0)
     in_wall = np.clip(z / 0.25, 0, 1)
     force[:, 0] = shape.side_n * in_wall
     force[:, 2] = rise + seat + pin + shape.axial_per_side * shape.side_n * in_wall + shape.drift_n

@@ -27,7 +27,10 @@ class InsertionFeatures:
     """Largest of the whole insertion."""
     moment_z_n_m: float
     pressure_m: float
-    """Farthest centre of pressure from the middle, once the axial force makes it certain."""
+    """Centre of pressure from the middle, once the axial force makes it certain: where it comes
+    nearest to what is allowed, or exceeds that most."""
+    pressure_limit_m: float
+    """What is allowed at that depth."""
     peak_n: float
     """Largest resistance before the seat."""
     total_n: float
@@ -65,6 +68,7 @@ def features_of(
     side = np.hypot(force[:, 0], force[:, 1])
     early = np.array([limits.phase_at(depth) is InsertionPhase.ENTRY for depth in curve.depth_m])
     seat = _seat(curve.depth_m, axial, limits)
+    pressure_m, pressure_limit_m = _pressure(curve, limits)
     before_seat = (
         np.ones(len(axial), dtype=bool) if seat is None else curve.depth_m < curve.depth_m[seat]
     )
@@ -75,7 +79,8 @@ def features_of(
         early_pressure_m=_touch(axial, moment, early, limits),
         side_n=_largest(side),
         moment_z_n_m=_largest(np.abs(moment[:, 2])),
-        pressure_m=_pressure(curve, limits),
+        pressure_m=pressure_m,
+        pressure_limit_m=pressure_limit_m,
         peak_n=_largest(axial[before_seat]),
         total_n=_largest(axial),
         seat_depth_m=None if seat is None else float(curve.depth_m[seat]),
@@ -107,7 +112,7 @@ def _touch(
     return float(-moment[at, 1] / axial[at]), float(moment[at, 0] / axial[at])
 
 
-def _pressure(curve: InsertionCurve, limits: InsertionLimits) -> float:
+def _pressure(curve: InsertionCurve, limits: InsertionLimits) -> tuple[float, float]:
     period_s = float(np.median(np.diff(curve.t_s)))
     mean_of = max(1, round(limits.pressure_mean_s / period_s))
     axial = _smooth(curve.force_n, mean_of)[:, 2]
@@ -115,8 +120,11 @@ def _pressure(curve: InsertionCurve, limits: InsertionLimits) -> float:
     sliding = curve.depth_m >= limits.spring_depth_m
     sure = sliding & (axial > limits.least_pressure_n)
     if not sure.any():
-        return 0.0
-    return float((np.hypot(moment[sure, 0], moment[sure, 1]) / axial[sure]).max())
+        return 0.0, limits.at(limits.seat_depth_m).centre_of_pressure_m
+    lever_m = np.hypot(moment[sure, 0], moment[sure, 1]) / axial[sure]
+    allowed_m = np.array([limits.at(depth).centre_of_pressure_m for depth in curve.depth_m[sure]])
+    worst = int(np.argmax(lever_m / allowed_m))
+    return float(lever_m[worst]), float(allowed_m[worst])
 
 
 def _seat(depth_m: Array, axial: Array, limits: InsertionLimits) -> int | None:

@@ -3,7 +3,21 @@
 from dataclasses import dataclass
 from enum import Enum
 
+import numpy as np
+
 from cellctl.processes.antenna_module.connector.connector import Connector
+
+_ENTRY_AXIAL_N_M = 6e3
+"""Of the radius that a funnel takes; 1.2 N for a micro-D."""
+_ENTRY_TURNING_N, _TURNING_N = 1.75, 4.4
+"""Side force on the contact that is farthest from the middle, as a moment about z: 0.008 and
+0.02 N·m for a micro-D, the first six times the noise of a mean of three samples. A turned module
+shows there first."""
+_FORCE_SPREAD = 0.25 / 3**0.5
+"""Contacts of one lot differ evenly by a quarter up and down; this is one sigma."""
+_TILT_RAD = float(np.radians(0.15))
+"""Of a plug in the gripper, one sigma."""
+_SIGMAS = 4.0
 
 
 class InsertionPhase(Enum):
@@ -39,11 +53,20 @@ class InsertionLimits:
     seat_depth_m: float
     greatest_n: float
     """Axial force of a good plugging, at most."""
+    contacts: int
+    spread_m: float
+    """Of the contacts about the middle of the connector, rms."""
+    entry_axial_n: float
+    """A plug that is off by half of what the funnels take begins at 1.4 times as much, a good one
+    stays below it; B11 and B12 in docs/plugging-figures.md."""
+    entry_moment_z_n_m: float
+    moment_z_n_m: float
     entry_height_m: float = 0.5e-3
     """Above the first touch, from where on the plug moves slowly."""
     travel_m_s: float = 5e-3
     early_touch_m: float = 0.0
-    """The first touch may come so much earlier than drawn: heights are uncertain."""
+    """Touch and springs may come so much earlier or later than drawn: heights are uncertain. What
+    ``spring_depth_m`` says is then earlier by as much."""
     entry_m_s: float = 0.07e-3
     entry_step_m: float = 0.025e-3
     """From the first touch on. So slow, and in so small steps, that a pin which slides down its
@@ -54,22 +77,19 @@ class InsertionLimits:
     spring_rise_m: float = 0.5e-3
     """Depth over which the contact springs open, at most."""
     above_n: float = 3.0
-    entry_axial_n: float = 1.2
-    """Contacts that lie within 5 µm of their places reach 1.0 N in a plug that is 30 µm off; a plug
-    that is 0.10 mm off begins at 1.7 N (docs/plugging.md)."""
     entry_rise_n: float = 0.08
     """By how much the axial force must exceed its own mean of the last 0.1 s: a hose that pulls
     steadily is not a contact."""
     entry_most_n: float = 3.0
     """Whatever it was before."""
     entry_side_n: float = 1.5
-    entry_moment_z_n_m: float = 0.008
-    """Six times the noise of a mean of three samples; a turned module shows here first."""
     sliding_side_n: float = 3.0
-    moment_z_n_m: float = 0.02
     over_n: float = 10.0
     """Above ``greatest_n``: allowed at the seat."""
     centre_of_pressure_m: float = 1e-3
+    """At least; more where the contacts reach so far that good ones need it."""
+    lever_error_m: float = 0.0
+    """By which the centre of pressure is wrong, whatever the connector."""
     least_pressure_n: float = 8.0
     """Below this axial force the centre of pressure is not certain: contacts of one lot differ by a
     quarter, and a moment good to 0.002 N·m is worth a quarter of a millimetre."""
@@ -84,7 +104,23 @@ class InsertionLimits:
     @classmethod
     def of(cls, connector: Connector) -> "InsertionLimits":
         """The limits of a drawing."""
-        return cls(connector.spring_depth_m, connector.seat_depth_m, connector.force_n[1])
+        reach_m = np.linalg.norm(connector.positions_m, axis=1)
+        farthest_m = float(reach_m.max())
+        return cls(
+            spring_depth_m=connector.spring_depth_m,
+            seat_depth_m=connector.seat_depth_m,
+            greatest_n=connector.force_n[1],
+            contacts=len(reach_m),
+            spread_m=float(np.sqrt(np.mean(reach_m**2))),
+            entry_axial_n=_ENTRY_AXIAL_N_M * connector.capture_m,
+            entry_moment_z_n_m=_ENTRY_TURNING_N * farthest_m,
+            moment_z_n_m=_TURNING_N * farthest_m,
+        )
+
+    @property
+    def springs_begin_m(self) -> float:
+        """Depth at which the contact springs begin at the latest."""
+        return self.spring_depth_m + 2 * self.early_touch_m
 
     def phase_at(self, depth_m: float) -> InsertionPhase:
         """The phase at a depth."""
@@ -114,5 +150,16 @@ class InsertionLimits:
             self.greatest_n + self.over_n,
             self.sliding_side_n,
             self.moment_z_n_m,
-            self.centre_of_pressure_m,
+            self._centre_of_pressure_m(depth_m),
         )
+
+    def _centre_of_pressure_m(self, depth_m: float) -> float:
+        """How far from the middle a good lot may press at a depth, four sigma."""
+        # A tilted plug opens the springs of one end sooner, which counts the more the less they
+        # are open; and no lot presses so hard that the centre is judged before that.
+        least_m = self.spring_rise_m * self.least_pressure_n / self.greatest_n
+        open_m = min(max(depth_m - self.springs_begin_m, least_m), self.spring_rise_m)
+        by_tilt_m = _TILT_RAD * self.spread_m**2 / open_m
+        by_forces_m = _FORCE_SPREAD * self.spread_m / np.sqrt(self.contacts)
+        good_m = float(_SIGMAS * np.hypot(by_tilt_m, by_forces_m))
+        return max(self.centre_of_pressure_m, good_m) + self.lever_error_m

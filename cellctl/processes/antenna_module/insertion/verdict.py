@@ -22,9 +22,10 @@ from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 from cellctl.processes.antenna_module.insertion.features import InsertionFeatures, features_of
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 
-_BESIDE_MIDDLE_M = 2.0e-3
-"""A resistance that acts farther than this from the middle comes from few contacts. With a sensor
-that is good to 0.002 N·m the place is known to half a millimetre at the forces that trip."""
+_BESIDE_MIDDLE = 0.45
+"""A resistance that acts farther from the middle than this share of the farthest contact, 2 mm for
+a micro-D, comes from few contacts. With a sensor that is good to 0.002 N·m the place is known to
+half a millimetre at the forces that trip."""
 
 
 class InsertionVerdict(StrEnum):
@@ -114,7 +115,7 @@ def _checks(features: InsertionFeatures, limits: InsertionLimits) -> Checks:
         LimitCheck(_EARLY_SIDE, features.early_side_n, limits.entry_side_n, "N"),
         LimitCheck(_SIDE, features.side_n, limits.sliding_side_n, "N"),
         LimitCheck(_MOMENT, features.moment_z_n_m, limits.moment_z_n_m, "N·m"),
-        LimitCheck(_PRESSURE, features.pressure_m / MM, limits.centre_of_pressure_m / MM, "mm"),
+        LimitCheck(_PRESSURE, features.pressure_m / MM, features.pressure_limit_m / MM, "mm"),
         LimitCheck(_OVER, features.total_n, limits.greatest_n + limits.over_n, "N"),
         # Without a seat there is no distance; 10 mm is farther than any connector is deep.
         LimitCheck(_SEAT, min(off_m / MM, 10.0), limits.seat_tolerance_m / MM, "mm"),
@@ -140,7 +141,8 @@ def _verdict(failed: set[str], *, points_at_one: bool) -> InsertionVerdict:
 def _suspect(features: InsertionFeatures, connector: Connector) -> str | None:
     """The contact nearest to where the plug touched."""
     touch = features.early_pressure_m
-    if touch is None or np.hypot(*touch) < _BESIDE_MIDDLE_M:
+    farthest_m = float(np.linalg.norm(connector.positions_m, axis=1).max())
+    if touch is None or np.hypot(*touch) < _BESIDE_MIDDLE * farthest_m:
         return None
     distances = np.linalg.norm(connector.positions_m - np.array(touch), axis=1)
     return connector.contacts[int(distances.argmin())]

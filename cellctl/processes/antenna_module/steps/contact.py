@@ -58,5 +58,5 @@ def limits_of(run: PluggingRun) -> InsertionLimits:
         entry_height_m=limits.entry_height_m + margin_m,
         early_touch_m=margin_m,
         seat_tolerance_m=insertion.seat_tolerance_mm * MM,
-        centre_of_pressure_m=limits.centre_of_pressure_m + _TURNED_FORCE * lever_m,
+        lever_error_m=_TURNED_FORCE * lever_m,
     )

@@ -105,6 +105,12 @@ def test_a_good_connector_seats_and_one_off_its_place_does_not(name: str) -> Non
     assert outcome.side_n < 3
 
 
+@pytest.mark.parametrize("seed", [1312, 1316, 1339])
+def test_a_long_connector_may_press_farther_from_its_middle(seed: int) -> None:
+    """Tilted, or turned within what plans allow: bounds of a short connector refuse these."""
+    assert not run_insertion(GOOD, seed, in_steps=seed % 2 == 0, name="d-sub-15").caught
+
+
 def test_a_bent_pin_is_stopped_before_it_collapses() -> None:
     outcome = run_insertion(FAULTS[1], seed=7)
     assert outcome.caught

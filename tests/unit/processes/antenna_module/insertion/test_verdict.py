@@ -114,6 +114,37 @@ def test_other_bounds_trip_too(shape: Shape, cause: TripCause) -> None:
     assert trip.cause is cause
 
 
+D_SUB = read_connector(Path("config/connectors/d-sub-15-holes.toml"))
+
+
+def test_the_bounds_are_those_of_the_drawing() -> None:
+    long = InsertionLimits.of(D_SUB)
+    assert LIMITS.entry_axial_n == pytest.approx(1.2)
+    assert long.entry_axial_n == pytest.approx(1.8), "its funnels take half as much again"
+    # A side force on the contact that is farthest out: 4.5 and 9.8 mm.
+    assert LIMITS.at(0.0).moment_z_n_m == pytest.approx(0.008, rel=0.03)
+    assert LIMITS.at(2e-3).moment_z_n_m == pytest.approx(0.02, rel=0.03)
+    assert long.at(0.0).moment_z_n_m == pytest.approx(0.017, rel=0.03)
+    # A short connector has the bound that the tilt of a long one needs only at the springs' begin.
+    assert {LIMITS.at(depth).centre_of_pressure_m for depth in (0.5e-3, 1e-3, 2.4e-3)} == {1e-3}
+    opening = [long.at(1e-3 + way).centre_of_pressure_m for way in (0.1e-3, 0.2e-3, 0.5e-3, 3e-3)]
+    assert opening == sorted(opening, reverse=True)
+    assert opening[0] > 3e-3
+    assert opening[-1] < 1.3e-3
+
+
+def test_a_plug_that_presses_at_its_end_is_refused() -> None:
+    """What lies under one end of a long connector, once its springs are open."""
+    good = curve(Shape(spring_mm=1.0, seat_mm=4.5))
+    assert judge_insertion(good, D_SUB).verdict is InsertionVerdict.SEATED
+    beside = good.moment_n_m.copy()
+    beside[good.depth_m > 2e-3, 1] -= 0.002 * good.force_n[good.depth_m > 2e-3, 2]
+    judged = judge_insertion(replace(good, moment_n_m=beside), D_SUB)
+    assert judged.verdict is InsertionVerdict.SIDE
+    assert judged.features.pressure_m > judged.features.pressure_limit_m
+    assert "centre of pressure" in str(judged.fault)
+
+
 def test_limits_follow_depth() -> None:
     assert LIMITS.at(-1e-3).speed_m_s == 5e-3
     assert LIMITS.at(0.0).speed_m_s == 0.07e-3
