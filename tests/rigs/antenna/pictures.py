@@ -64,8 +64,7 @@ class Conditions:
 CLEAN = Conditions()
 POOR = Conditions(noise_grey=4.0, blur_px=(2.0, 2.0), um_per_px=(25.0, 25.0))
 HOLES = Conditions(kind="holes", height_sigma_m=0.2e-3)
-"""The height as uncertain as a recipe states it. The far wall of a bore is lit, so that its rim
-appears nearer to the camera's axis, as of a plane that is 0.3 mm deeper."""
+"""The height as uncertain as a recipe states it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
