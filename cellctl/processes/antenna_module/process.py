@@ -9,14 +9,9 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
+    FORCE_FAULTS,
     GrippedOffTwice,
     MovedOnRelease,
-    PlugBentPin,
-    PlugEarlyContact,
-    PlugNotHeld,
-    PlugOverForce,
-    PlugShortSeat,
-    PlugSideForce,
 )
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -46,21 +41,8 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
     recipe_model = AntennaRecipe
     settings_model = AntennaSettings
     roles = ROLES
-    spoiled_by = frozenset(
-        {
-            PlugEarlyContact,
-            PlugSideForce,
-            PlugShortSeat,
-            PlugOverForce,
-            PlugBentPin,
-            PlugNotHeld,
-            MovedOnRelease,
-            GrippedOffTwice,
-            # Of the plug alone: what is wrong with a socket is told as SocketUnsound.
-            ContactMissing,
-            ContactBent,
-        }
-    )
+    # Of the plug alone: what is wrong with a socket is told as SocketUnsound.
+    spoiled_by = FORCE_FAULTS | {MovedOnRelease, GrippedOffTwice, ContactMissing, ContactBent}
 
     def __init__(self, services: CellServices) -> None:
         super().__init__(services)
@@ -99,9 +81,11 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         return PluggingRun.of(prepared.facts, self.services, context, last_check=self._last_check)
 
     async def begin(self, run: "PluggingRun") -> "GripperEmpty":
-        """Gripper open and empty, arm at home."""
+        """A module that may be plugged; gripper open and empty, arm at home."""
         from cellctl.processes.antenna_module.moves.start import move_to_start
+        from cellctl.processes.antenna_module.quarantine import require_not_in_quarantine
 
+        await require_not_in_quarantine(run.recorder)
         return await move_to_start(run)
 
     def steps(self, recipe: Recipe) -> "Steps[GripperEmpty, Any]":  # noqa: ARG002 - alike for all

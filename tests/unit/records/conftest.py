@@ -13,9 +13,9 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
     store.close()
 
 
-def start(store: RunStore, serial: str = "SAT-0001") -> int:
+def start(store: RunStore, serial: str = "SAT-0001", process: str = "deck-to-frame") -> int:
     return store.start_run(
-        process="deck-to-frame",
+        process=process,
         serial=serial,
         recipe_id=1,
         recipe_name="panel 500 x 1000",

@@ -27,9 +27,9 @@ from cellctl.geometry.uncertain import UncertainPose
 _MIN_POSES = 4
 _MIN_TURN_RAD = np.radians(10)
 """Rms turn of the flange in the weakest direction, below which the tip is hardly determined."""
-_MIN_TRAVEL_M = 0.02
+MIN_TRAVEL_M = 0.02
 _MIN_ANGLE_RAD = np.radians(10)
-_STILL_RAD = np.radians(0.1)
+STILL_RAD = float(np.radians(0.1))
 """The flange keeps its orientation between the three orienting poses."""
 
 
@@ -158,7 +158,7 @@ def _orientation(
     if len(poses) != 3:
         raise PosesNotDiverse(f"the orientation needs three poses, got {len(poses)}")
     turns = [(pose.rotation * poses[0].rotation.inv()).magnitude() for pose in poses]
-    if max(turns) > _STILL_RAD:
+    if max(turns) > STILL_RAD:
         raise PosesNotDiverse(
             f"the flange turned by {np.degrees(max(turns)):.2f}° between the orientation poses"
         )
@@ -178,8 +178,8 @@ def _axes(tips: Array) -> Rotation:
     """Axes in the base: x from the first to the second tip, the third on the side of +y."""
     x, other = tips[1] - tips[0], tips[2] - tips[0]
     length, second = float(np.linalg.norm(x)), float(np.linalg.norm(other))
-    if min(length, second) < _MIN_TRAVEL_M:
-        raise IllConditioned(f"move the tip by at least {_MIN_TRAVEL_M / MM:.0f} mm between points")
+    if min(length, second) < MIN_TRAVEL_M:
+        raise IllConditioned(f"move the tip by at least {MIN_TRAVEL_M / MM:.0f} mm between points")
     x = x / length
     y = other - (other @ x) * x
     if float(np.linalg.norm(y)) < second * np.sin(_MIN_ANGLE_RAD):

@@ -1,4 +1,4 @@
-"""56x–58x, 596: planning where a plug goes, and judging how it went in.
+"""486, 56x–58x, 596: planning where a plug goes, and judging how it went in.
 
 PluggingError
 ├── StaleLook, PlugUncertain, OutOfTaughtRange, CalibrationsDoNotBelongTogether,
@@ -8,6 +8,7 @@ PluggingError
 │   PlugBentPin, InsertionCurveInvalid                                   570–575  the insertion
 ├── ModuleMissing, ModuleMisplaced, WrongModuleMass, ModuleInGripper     580–583  the module
 ├── PlugNotHeld, MovedOnRelease                                          584–585  after the seat
+├── ModuleInQuarantine                                                   486      an earlier run
 ├── GrippedOffTwice                                                      586      the grip
 └── SocketUnsound                                                        596      the socket
 """
@@ -223,3 +224,24 @@ class SocketUnsound(PluggingError):
     text = "A hole of the socket is not as it should be"
     cause = "Something in the hole, a damaged insulator, or dirt on the face."
     remedy = "Look at the picture; clean or exchange the socket, and take the module out by hand."
+
+
+class ModuleInQuarantine(PluggingError):
+    """A module of this serial number has met a force fault in an earlier run."""
+
+    number = 486
+    text = "This module belongs into quarantine"
+    cause = (
+        "An earlier run of this serial number, in the detail, ended with a force fault: its pins "
+        "may be bent, and a second insertion could damage the socket, too."
+    )
+    remedy = (
+        "Keep the module in quarantine. One that was inspected and repaired begins anew with a "
+        "serial number of its own, such as the old one with R1 behind it."
+    )
+
+
+FORCE_FAULTS: frozenset[type[PluggingError]] = frozenset(
+    {PlugEarlyContact, PlugSideForce, PlugShortSeat, PlugOverForce, PlugBentPin, PlugNotHeld}
+)
+"""What a module must not be plugged again after."""

@@ -9,7 +9,6 @@ import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.calibration.solvers.tool.tool import ToolResult
-from cellctl.errors.calibration import PosesNotDiverse
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL, TOOL_TURN
@@ -109,9 +108,32 @@ async def test_touches_give_place_and_axes_of_the_tip(monkeypatch: pytest.Monkey
     assert panel.told[-1] == "11/11 by hand: tip to the side of its y axis,"
 
 
-async def test_touches_in_one_orientation_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(PosesNotDiverse):
-        await touched(Panel(orienting() * 4), monkeypatch)
+def test_what_is_asked_for_is_never_refused() -> None:
+    poses = touching() + orienting()
+    assert not any(touch_tool.what_is_wrong(pose, poses[:at]) for at, pose in enumerate(poses))
+
+
+def test_a_touch_that_is_not_what_was_asked_for_is_not_taken() -> None:
+    tips, axes = touching(), orienting()
+    hardly = RigidTransform.from_rotation(Rotation.from_euler("x", 6.0, degrees=True))
+    assert "6° against touch 2" in touch_tool.what_is_wrong(tips[1] * hardly, tips[:4])
+    assert "flange was turned" in touch_tool.what_is_wrong(axes[1] * hardly, [*tips, axes[0]])
+    near = _with_tip_at(axes[0].rotation, POINT_M + np.array([4e-3, 0.0, 0.0]))
+    assert "4 mm from the point" in touch_tool.what_is_wrong(near, [*tips, axes[0]])
+
+
+async def test_a_touch_that_is_not_taken_is_asked_for_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    panel = Panel(touching() + orienting())
+    slips = iter(["", "turned by 3° against touch 1", *[""] * 20])
+    monkeypatch.setattr(touch_tool, "what_is_wrong", lambda *_pose: next(slips))
+    outcome = await touched(panel, monkeypatch)
+    assert outcome.passed
+    assert panel.told[1:3] == [
+        "2/11 by hand: tip on the point, tilted anew,",
+        "2/11 not taken, turned by 3° against touch 1; by hand: tip on the point, tilted anew,",
+    ]
 
 
 async def test_nobody_at_the_panel_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,60 @@
+"""A module that has met a force fault is refused when it comes again (F486)."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cellctl.processes.antenna_module.faults.connector import ContactHidden
+from cellctl.processes.antenna_module.faults.plugging import (
+    FORCE_FAULTS,
+    ModuleInQuarantine,
+    PlugBentPin,
+)
+from cellctl.processes.antenna_module.process import AntennaModule
+from cellctl.processes.antenna_module.quarantine import require_not_in_quarantine
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.entries import RunResult
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.records.store import RunStore
+from tests.unit.records.conftest import start
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[AsyncRunStore]:
+    made = AsyncRunStore(tmp_path)
+    yield made
+    made.close()
+
+
+def ended(store: RunStore, serial: str, fault_number: int | None, process: str) -> int:
+    number = start(store, serial=serial, process=process)
+    result = RunResult.GOOD if fault_number is None else RunResult.BAD
+    store.close_run(number, result, fault_number=fault_number)
+    return number
+
+
+async def again(store: AsyncRunStore, serial: str) -> None:
+    number = await store.do(lambda real: start(real, serial=serial, process=AntennaModule.name))
+    await require_not_in_quarantine(RunRecorder(store, number))
+
+
+@pytest.mark.parametrize("fault", sorted(FORCE_FAULTS, key=lambda one: one.number))
+async def test_a_module_that_met_force_does_not_come_again(
+    store: AsyncRunStore, fault: type[ModuleInQuarantine]
+) -> None:
+    number = await store.do(ended, "M-7", fault.number, AntennaModule.name)
+    # Not forgotten by a run that ended for another reason, nor by one of another module.
+    await store.do(ended, "M-7", ContactHidden.number, AntennaModule.name)
+    await store.do(ended, "M-8", None, AntennaModule.name)
+    with pytest.raises(ModuleInQuarantine, match=f"M-7: F{fault.number} in run {number}"):
+        await again(store, "M-7")
+
+
+async def test_others_may_come(store: AsyncRunStore) -> None:
+    await store.do(ended, "M-7", PlugBentPin.number, AntennaModule.name)
+    await store.do(ended, "M-9", ContactHidden.number, AntennaModule.name)
+    await store.do(ended, "", PlugBentPin.number, AntennaModule.name)
+    await store.do(ended, "M-10", PlugBentPin.number, "deck-to-frame")
+    for serial in ("M-7R1", "M-9", "", "M-10"):
+        await again(store, serial)
