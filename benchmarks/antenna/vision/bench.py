@@ -138,7 +138,7 @@ class Bench:
         )
 
     def blocked(self) -> None:
-        """B3: a blocked hole is named; the pose stays within 2 µm beyond what lit walls may move it."""
+        """B3: a blocked hole is named; the pose stays within 2 µm beyond the bias of lit walls."""
         default, paper = self.run(replace(HOLES, blocked=1), 0.625)
         measured = [item for item in default if not item.fault]
         named = sum(item.bad == item.faulty for item in measured)

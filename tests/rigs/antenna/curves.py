@@ -39,7 +39,9 @@ def curve(shape: Shape = Shape(), seed: int = 1) -> InsertionCurve:
     z = np.arange(-1.0, stop_mm, 0.4 / 250)
     force, moment = np.zeros((len(z), 3)), np.zeros((len(z), 3))
     spring = shape.spring_mm
-    rise = np.interp(z, [spring, spring + 0.4, spring + 1.1], [0.0, shape.peak_n, 0.7 * shape.peak_n])
+    rise = np.interp(
+        z, [spring, spring + 0.4, spring + 1.1], [0.0, shape.peak_n, 0.7 * shape.peak_n]
+    )
     seat = shape.seat_n_per_mm * np.clip(z - shape.seat_mm, 0, None)
     pin = np.where(z < spring, shape.pin_n_per_mm * np.clip(z, 0, None), 0.0)
     in_wall = np.clip(z / 0.25, 0, 1)
