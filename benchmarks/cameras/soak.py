@@ -174,7 +174,7 @@ def _camera(producer: Path) -> GigeCamera:
         camera=Selection(serial_number=SERIAL),
         producers=(producer,),
         exposure_s=0.001,
-        image_timeout_s=0.5,
+        image_timeout_s=20.0,
     )
     return GigeCamera("eye", settings)
 

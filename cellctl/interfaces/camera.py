@@ -20,6 +20,9 @@ class PixelFormat(Enum):
     """Grey, 16 bit: uint16, shape (height, width). Cameras of 10 to 14 bit use the low bits."""
     RGB8 = "RGB8"
     """Colour, 8 bit a channel: uint8, shape (height, width, 3), red first."""
+    RGB16 = "RGB16"
+    """Colour, 16 bit a channel: uint16, shape (height, width, 3), red first. Cameras of 10 to 14
+    bit use the low bits."""
 
 
 # Without ``eq``: comparing two images would compare arrays, which has no single answer.

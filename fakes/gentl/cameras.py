@@ -145,6 +145,6 @@ def expected_image(
     """What a camera, by its place in the file, draws into an image; shape (height, width)."""
     y, x = np.mgrid[0:height, 0:width].astype(np.int64)
     level = x + 3 * y + 37 * frame_id + 11 * camera
-    if pixel_format.startswith("Mono12"):
+    if pixel_format.startswith(("Mono12", "BayerRG12")):
         return np.asarray((16 * level + 5) & 0x0FFF, dtype=np.uint16)
     return np.asarray(level & 0xFF, dtype=np.uint8)

@@ -23,13 +23,19 @@ def laid_out(pixels: NDArray[np.uint8], pixel_format: Format) -> NDArray[np.uint
         return _row(_coloured(pixels))
     if pixel_format == "BayerRG8":
         return _row(_mosaic(_coloured(pixels)))
+    if pixel_format == "BayerRG12":
+        return _deep(_mosaic(_coloured(pixels)))
     grey = pixels if pixels.ndim < _COLOURED else _grey(pixels)
     if pixel_format == "Mono8":
         return _row(grey)
     if pixel_format == "Mono12":
-        return _row((grey.astype("<u2") << 4).view(np.uint8))
+        return _deep(grey)
     pairs = grey.reshape(-1, 2)
     return _row(np.insert(pairs, 1, 0, axis=1))  # low nibbles in the middle
+
+
+def _deep(values: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    return _row((values.astype("<u2") << 4).view(np.uint8))
 
 
 def _row(values: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -18,7 +18,7 @@ from fakes.gentl.formats import Format
 from fakes.wire.cameras.image_server import ImageServer
 from tests.contracts.inprocess.camera import InProcessCamera
 from tests.contracts.suites.camera import CameraContract, SingleCameraBench
-from tests.wire.cameras.camera_bench import PictureTaker, pixels
+from tests.wire.cameras.camera_bench import CODES, PictureTaker, pixels
 
 
 class InProcessBench(SingleCameraBench):
@@ -76,7 +76,7 @@ class TestInProcessCamera(CameraContract):
 class TestFrameServerCamera(CameraContract):
     driver = FrameServerCamera
 
-    @pytest.fixture(params=PixelFormat, ids=lambda form: str(form.value))
+    @pytest.fixture(params=CODES, ids=lambda form: str(form.value))
     async def bench(self, request: pytest.FixtureRequest) -> AsyncIterator[SingleCameraBench]:
         bench = FrameServerBench(request.param)
         await bench.start()
@@ -125,7 +125,7 @@ class TestGigeCamera(CameraContract):
 
     driver = GigeCamera
 
-    @pytest.fixture(params=["Mono8", "Mono12", "BayerRG8"])
+    @pytest.fixture(params=["Mono8", "Mono12", "BayerRG8", "BayerRG12"])
     async def bench(
         self,
         request: pytest.FixtureRequest,

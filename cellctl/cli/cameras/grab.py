@@ -84,7 +84,7 @@ def _facts(view: View) -> dict[str, Any]:
 def _png(view: View) -> bytes:
     """Lossless, 8 or 16 bit, with the samples as they are."""
     pixels = view.pixels
-    if view.pixel_format is PixelFormat.RGB8:
+    if view.pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
         pixels = cv2.cvtColor(pixels, cv2.COLOR_RGB2BGR)
     done, data = cv2.imencode(".png", pixels, _QUICK)
     if not done:

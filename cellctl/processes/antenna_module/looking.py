@@ -97,14 +97,14 @@ def measured_channel(image: CameraImage) -> Image:
     Deep cameras are reduced to eight bits, which are finer than the noise of the picture. Raises
     ``PixelsNotMeasurable``.
     """
-    if image.pixel_format is PixelFormat.RGB8:
-        return np.ascontiguousarray(image.pixels[:, :, _GREEN], dtype=np.uint8)
-    if image.pixel_format is PixelFormat.MONO8:
-        return np.asarray(image.pixels, dtype=np.uint8)
+    colour = image.pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16)
+    plane = np.ascontiguousarray(image.pixels[:, :, _GREEN]) if colour else image.pixels
+    if image.pixel_format in (PixelFormat.MONO8, PixelFormat.RGB8):
+        return np.asarray(plane, dtype=np.uint8)
     # In 16 bits a camera of 12 looks like a dark one: only its driver knows how many count.
     if image.exposure is None:
         raise PixelsNotMeasurable(f"{image.pixel_format.value} without the number of its bits")
-    return eight_bits(np.asarray(image.pixels, dtype=np.uint16), image.exposure.bits)
+    return eight_bits(np.asarray(plane, dtype=np.uint16), image.exposure.bits)
 
 
 def combined(poses: tuple[UncertainPose, ...]) -> UncertainPose:

@@ -22,9 +22,9 @@ def eight_bit_grey(
     pixels: NDArray[Any], pixel_format: PixelFormat, exposure: ExposureRecord | None
 ) -> Image:
     """An image of any format, shape (height, width); deep ones have 16 bits unless it is said."""
-    if pixel_format is PixelFormat.RGB8:
-        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
-    if pixel_format is PixelFormat.MONO16:
+    if pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
+        pixels = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY)
+    if pixel_format in (PixelFormat.MONO16, PixelFormat.RGB16):
         return eight_bits(pixels, 16 if exposure is None else exposure.bits)
     return np.asarray(pixels, dtype=np.uint8)
 

@@ -17,7 +17,7 @@ from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import StereoCamera, StereoPair
 from drivers.camera.gige.config import GigeCameraConfig, GigeHeadConfig
 from drivers.camera.gige.connection import Block, LibraryProcess
-from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey, require_supported
+from drivers.camera.gige.pixels import Pixels, bits_of, decoded, grey
 from drivers.camera.gige.protocol import (
     Answer,
     CameraSetup,
@@ -167,7 +167,7 @@ class GigeDevice(Device):
         """Raise ``CameraFeatureRefused`` for images that this driver could not read."""
         try:
             if camera.pixel_format:
-                require_supported(camera.pixel_format)
+                bits_of(camera.pixel_format)
         except ValueError as error:
             await self._ended()
             text = f"{self.name}: {camera.serial_number}: {error}; set pixel_format"
@@ -213,11 +213,10 @@ class GigeCamera(GigeDevice, Camera):
             (image,) = grabbed.images
             taken_again += grabbed.taken_again
             pixels, pixel_format = self._decoded(image, data)
-            if self._grey and pixel_format is PixelFormat.RGB8:
-                pixels, pixel_format = grey(pixels, pixel_format, 8), PixelFormat.MONO8
+            bits = bits_of(image.pixel_format)
+            if self._grey and pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
+                pixels, pixel_format, bits = grey(pixels, pixel_format, bits), PixelFormat.MONO8, 8
             mean.add(pixels)
-        deep = pixel_format is PixelFormat.MONO16
-        bits = bits_of(image.pixel_format) if deep else 8
         record = self._record(0, image, bits, taken_again)
         return CameraImage(mean.pixels(), pixel_format, image.time_s, self._next_frame(), record)
 

@@ -1,6 +1,7 @@
 """Pixel formats of the GenICam convention (PFNC 2.4) as arrays."""
 
-from collections.abc import Callable
+import re
+from dataclasses import dataclass
 from typing import Any
 
 import cv2
@@ -21,92 +22,85 @@ _DEMOSAIC = {
 }
 # Weights of ITU-R BT.601, those of OpenCV's own conversion to grey.
 _GREY = np.array([0.299, 0.587, 0.114])
+# The whole name: Mono8s has a sign, RGB8_Planar has other places, and both begin like others.
+_ONE_SAMPLE = re.compile(
+    r"(?P<family>Mono|Bayer(?:RG|GR|GB|BG))"
+    r"(?:(?P<bits>8|10|12|14|16)|(?P<of_p>10|12|14)p|(?P<of_packed>10|12)Packed)"
+)
+_COLOUR = re.compile(r"(RGB|BGR)(a?)(8|10|12|14|16)")
+SUPPORTED = (
+    "supported are Mono and Bayer of 8, 10, 12, 14 and 16 bit (10p, 12p, 14p, 10Packed and "
+    "12Packed too), and RGB, BGR, RGBa and BGRa of 8 to 16 bit, unpacked"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Layout:
+    """What a name says."""
+
+    family: str
+    """``Mono``, ``BayerRG`` and so on, ``RGB`` or ``BGR``."""
+    bits: int
+    """Significant bits of a sample."""
+    packing: str = ""
+    """``p`` or ``Packed``; empty for samples of whole bytes."""
+    channels: int = 1
+
+
+def _layout(name: str) -> _Layout:
+    """Raises ``ValueError`` for a format that is not read here."""
+    if found := _ONE_SAMPLE.fullmatch(name):
+        packing = "p" if found["of_p"] else "Packed" if found["of_packed"] else ""
+        bits = found["bits"] or found["of_p"] or found["of_packed"]
+        return _Layout(found["family"], int(bits), packing)
+    if found := _COLOUR.fullmatch(name):
+        return _Layout(found[1], int(found[3]), channels=4 if found[2] else 3)
+    raise ValueError(f"pixel format {name} is not supported; {SUPPORTED}")
 
 
 def bits_of(name: str) -> int:
     """Significant bits of a sample; raises ``ValueError`` for a format that is not read here."""
-    digits = "".join(c for c in name.removesuffix("Packed").rstrip("p") if c.isdigit())
-    if name in ("RGBa8", "BGRa8"):
-        digits = "8"
-    if digits not in ("8", "10", "12", "14", "16"):
-        raise ValueError(f"pixel format {name} is not supported; {SUPPORTED}")
-    return int(digits)
-
-
-def require_supported(name: str) -> None:
-    """Raise ``ValueError`` for a format that is not read here."""
-    _family_of(name)
-    bits_of(name)
+    return _layout(name).bits
 
 
 def decoded(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, PixelFormat]:
     """An image of ``data`` (bytes as they came) with what its samples are.
 
-    Formats of 10 to 16 bit become ``MONO16`` with their value in the low bits; a mosaic becomes
-    colour when it has 8 bit. Raises ``ValueError`` for a format that is not supported, or for too
-    few bytes.
+    Formats of 10 to 16 bit have their value in the low bits of samples of 16; mosaics become
+    colour. Raises ``ValueError`` for a format that is not supported, or for too few bytes.
     """
-    return _family_of(name)(data, name, width, height)
-
-
-def _family_of(name: str) -> Callable[[Bytes, str, int, int], tuple[Pixels, PixelFormat]]:
-    family = next((prefix for prefix in _FAMILIES if name.startswith(prefix)), None)
-    if family is None:
-        raise ValueError(f"pixel format {name} is not supported; {SUPPORTED}")
-    return _FAMILIES[family]
+    layout = _layout(name)
+    samples = _samples(data, layout, width * height * layout.channels)
+    deep = samples.dtype != np.uint8
+    colour = PixelFormat.RGB16 if deep else PixelFormat.RGB8
+    if layout.channels > 1:
+        channels = samples.reshape(height, width, layout.channels)
+        order = slice(None, 3) if layout.family == "RGB" else slice(2, None, -1)
+        red_first: Any = np.ascontiguousarray(channels[:, :, order])
+        return red_first, colour
+    plane = samples.reshape(height, width)
+    if layout.family == "Mono":
+        return plane, PixelFormat.MONO16 if deep else PixelFormat.MONO8
+    mosaic: Any = cv2.cvtColor(plane, _DEMOSAIC[layout.family])
+    return mosaic, colour
 
 
 def grey(pixels: Pixels, pixel_format: PixelFormat, bits: int) -> NDArray[np.uint8]:
     """Reduced to 8 bit grey, shape (height, width)."""
-    if pixel_format is PixelFormat.RGB8:
-        return np.asarray(np.rint(pixels @ _GREY), dtype=np.uint8)
-    if pixel_format is PixelFormat.MONO16:
-        return np.asarray(pixels >> (bits - 8), dtype=np.uint8)
-    return np.asarray(pixels, dtype=np.uint8)
+    if pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
+        pixels = np.asarray(np.rint(pixels @ _GREY), dtype=np.uint16)
+    high = pixels if bits == 8 else pixels >> (bits - 8)
+    return np.asarray(high, dtype=np.uint8)
 
 
-def _mono(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, PixelFormat]:
-    pixels = _samples(data, name, width, height)
-    return pixels, PixelFormat.MONO8 if pixels.dtype == np.uint8 else PixelFormat.MONO16
-
-
-def _bayer(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, PixelFormat]:
-    mosaic = _samples(data, name, width, height)
-    if mosaic.dtype != np.uint8:
-        # Deep mosaics would need a colour format of 16 bit, which no reader of images asks for.
-        mosaic = np.asarray(mosaic >> (bits_of(name) - 8), dtype=np.uint8)
-    return np.asarray(cv2.cvtColor(mosaic, _DEMOSAIC[name[:7]]), np.uint8), PixelFormat.RGB8
-
-
-def _colour(data: Bytes, name: str, width: int, height: int) -> tuple[Pixels, PixelFormat]:
-    channels = 4 if "a8" in name else 3
-    pixels = _whole(data, channels * width * height).reshape(height, width, channels)
-    order = slice(None, 3) if name.startswith("RGB") else slice(2, None, -1)
-    return np.ascontiguousarray(pixels[:, :, order]), PixelFormat.RGB8
-
-
-_FAMILIES: dict[str, Callable[[Bytes, str, int, int], tuple[Pixels, PixelFormat]]] = {
-    "Mono": _mono,
-    **dict.fromkeys(_DEMOSAIC, _bayer),
-    "RGB": _colour,
-    "BGR": _colour,
-}
-SUPPORTED = (
-    "supported are Mono and Bayer of 8, 10, 12, 14 and 16 bit (10p, 12p, 10Packed and 12Packed "
-    "too), RGB8, BGR8, RGBa8 and BGRa8"
-)
-
-
-def _samples(data: Bytes, name: str, width: int, height: int) -> Pixels:
-    count = width * height
-    bits = bits_of(name)
-    if name.endswith("Packed"):
-        return _packed_gev(data, count, bits).reshape(height, width)
-    if name.endswith("p"):
-        return _packed_lsb(data, count, bits).reshape(height, width)
-    if bits == 8:
-        return _whole(data, count).reshape(height, width)
-    return _whole(data, 2 * count).view("<u2").reshape(height, width)
+def _samples(data: Bytes, layout: _Layout, count: int) -> Pixels:
+    if layout.packing == "Packed":
+        return _packed_gev(data, count, layout.bits)
+    if layout.packing == "p":
+        return _packed_lsb(data, count, layout.bits)
+    if layout.bits == 8:
+        return _whole(data, count)
+    return _whole(data, 2 * count).view("<u2")
 
 
 def _packed_lsb(data: Bytes, count: int, bits: int) -> NDArray[np.uint16]:
@@ -120,8 +114,6 @@ def _packed_lsb(data: Bytes, count: int, bits: int) -> NDArray[np.uint16]:
 def _packed_gev(data: Bytes, count: int, bits: int) -> NDArray[np.uint16]:
     """Two samples in three bytes, their low bits in the middle one (GigE Vision "Packed")."""
     low = bits - 8
-    if low not in (2, 4):
-        raise ValueError(f"Packed has 10 or 12 bit, not {bits}; {SUPPORTED}")
     mask = (1 << low) - 1
     triples = _whole(data, -(-count // 2) * 3).reshape(-1, 3).astype(np.uint16)
     first = triples[:, 0] << low | triples[:, 1] & mask

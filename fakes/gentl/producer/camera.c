@@ -42,7 +42,7 @@ size_t camera_line_bytes(const camera *self) {
     uint32_t format = camera_u32(self, REG_PIXEL_FORMAT);
     size_t width = camera_u32(self, REG_WIDTH);
     if (format == PFNC_MONO12_PACKED) return width / 2 * 3; /* widths are multiples of four */
-    size_t pixel = format == PFNC_RGB8 ? 3 : format == PFNC_MONO12 ? 2 : 1;
+    size_t pixel = format == PFNC_RGB8 ? 3 : format == PFNC_MONO12 || format == PFNC_BAYER_RG12 ? 2 : 1;
     return width * pixel + LINE_PADDING;
 }
 

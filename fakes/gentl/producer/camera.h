@@ -58,7 +58,7 @@ enum {
 };
 enum {
     PFNC_MONO8 = 0x01080001, PFNC_MONO12 = 0x01100005, PFNC_MONO12_PACKED = 0x010C0006, PFNC_BAYER_RG8 = 0x01080009,
-    PFNC_RGB8 = 0x02180014,
+    PFNC_BAYER_RG12 = 0x01100011, PFNC_RGB8 = 0x02180014,
 };
 
 /* Bytes that a producer leaves at the end of each line; a packed image has none. */

@@ -38,7 +38,7 @@ static void draw(camera *self, frame_buffer *buffer, uint64_t frame_id) {
     for (uint32_t y = 0; y < height; y++) {
         uint8_t *line = buffer->base + y * line_bytes;
         uint32_t level = left + 3 * (y + top) + 37 * (uint32_t)frame_id + 11 * (uint32_t)self->index;
-        if (format == PFNC_MONO12)
+        if (format == PFNC_MONO12 || format == PFNC_BAYER_RG12)
             draw_16(line, width, level);
         else if (format == PFNC_MONO12_PACKED)
             draw_packed(line, width, level);

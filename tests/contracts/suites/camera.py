@@ -14,6 +14,7 @@ SHAPES = {
     PixelFormat.MONO8: (np.uint8, 2),
     PixelFormat.MONO16: (np.uint16, 2),
     PixelFormat.RGB8: (np.uint8, 3),
+    PixelFormat.RGB16: (np.uint16, 3),
 }
 """Type of a sample and number of dimensions."""
 

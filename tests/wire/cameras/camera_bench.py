@@ -16,6 +16,8 @@ def pixels(pixel_format: PixelFormat, number: int) -> NDArray[np.uint8] | NDArra
     ramp = np.add.outer(np.arange(HEIGHT) * 16, np.arange(WIDTH)) + number
     if pixel_format is PixelFormat.MONO16:
         return (257 * ramp).astype(np.uint16)
+    if pixel_format is PixelFormat.RGB16:
+        return np.stack([257 * ramp, 300 * ramp, 400 * ramp], axis=2).astype(np.uint16)
     if pixel_format is PixelFormat.RGB8:
         return np.stack([ramp, ramp + 60, ramp + 120], axis=2).astype(np.uint8)
     return ramp.astype(np.uint8)

@@ -14,7 +14,7 @@ from fakes.gentl.cameras import ENVIRONMENT
 from tests.wire.gige.producer_session import image, nodes_of, opened, triggered
 from tests.wire.gige.test_cell_images import Pair
 
-FORMATS = ("Mono8", "Mono12", "Mono12Packed", "BayerRG8", "RGB8")
+FORMATS = ("Mono8", "Mono12", "Mono12Packed", "BayerRG8", "BayerRG12", "RGB8")
 SPOILED = ("silent", "truncated", "frozen", "wrong_size", "late", "hang_up")
 
 

@@ -23,7 +23,7 @@ from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, exp
 
 LEFT, RIGHT = "GL-1", "GR-2"
 ERRORS = (genapi.GenericException, gentl.GenericException)
-FORMATS = ("Mono8", "Mono12", "Mono12Packed", "BayerRG8")
+FORMATS = ("Mono8", "Mono12", "Mono12Packed", "BayerRG8", "BayerRG12")
 FAULTS: tuple[Fault, ...] = ("incomplete", "truncated", "stale", "drop")
 
 

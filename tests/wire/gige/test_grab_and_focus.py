@@ -94,6 +94,21 @@ def test_a_deep_image_is_saved_as_it_is(cell: Path, fakes: FakeCameras, tmp_path
     assert fakes.opened(LEFT) == 0
 
 
+def test_deep_colour_is_saved_with_16_bits(cell: Path, fakes: FakeCameras, tmp_path: Path) -> None:
+    text = cell.read_text()
+    cell.write_text(text.replace('pixel_format = "Mono12"', 'pixel_format = "BayerRG12"'))
+    said("grab", cell, "--camera", "eye", "--out", tmp_path / "out")
+    image = cv2.imread(str(tmp_path / "out" / "eye-000001.png"), cv2.IMREAD_UNCHANGED)
+    assert image is not None
+    mosaic = expected_image(1, 64, 48, "BayerRG12")
+    assert image.dtype == np.uint16
+    assert np.array_equal(image, cv2.cvtColor(mosaic, cv2.COLOR_BayerBG2BGR))
+    (one,) = record(tmp_path / "out" / "eye-000001.json")["images"]
+    assert (one["format"], one["exposure"]["bits"]) == ("RGB16", 12)
+    seen = json.loads(said("focus", cell, "--camera", "eye", "--json"))
+    assert 0.0 < seen["sides"][0]["figures"]["median_grey"] < 255.0
+
+
 def test_a_pair_is_saved_with_both_exposures(
     cell: Path, fakes: FakeCameras, tmp_path: Path
 ) -> None:

@@ -218,6 +218,24 @@ async def test_a_mosaic_as_colour_and_as_grey(producer: Path, fakes: FakeCameras
     assert np.array_equal(grey.pixels, expected)
 
 
+async def test_a_deep_mosaic_keeps_its_bits_as_colour(producer: Path, fakes: FakeCameras) -> None:
+    async with camera(producer, pixel_format="BayerRG12") as eye:
+        colour = await eye.grab()
+    async with camera(producer, pixel_format="BayerRG12", grey=True) as eye:
+        grey = await eye.grab()
+    assert colour.pixel_format is PixelFormat.RGB16
+    assert colour.exposure is not None
+    assert colour.exposure.bits == 12
+    mosaic = expected_image(1, 64, 48, "BayerRG12")
+    # Under a filter the colour of that filter is what was measured: red at even rows and columns.
+    assert np.array_equal(colour.pixels[2:-2:2, 2:-2:2, 0], mosaic[2:-2:2, 2:-2:2])
+    assert colour.pixels.max() > 255
+    assert grey.pixel_format is PixelFormat.MONO8
+    # The first frame again: the camera was opened anew.
+    luma = np.rint(colour.pixels @ np.array([0.299, 0.587, 0.114]))
+    assert np.array_equal(grey.pixels, luma.astype(np.uint16) >> 4)
+
+
 async def test_a_format_that_is_not_read_is_refused_before_the_first_image(
     tmp_path: Path, fakes: FakeCameras
 ) -> None:

@@ -1,13 +1,33 @@
 """Memory in which images go to the daemon, in the process of the maker's library."""
 
+import mmap
 import os
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 MOST_FREE = 4
 """Blocks that are kept for later images; the others go back to the system."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """Memory that stays mapped: the first touch of each page costs more than its copy."""
+
+    descriptor: int
+    memory: mmap.mmap
+
+    @classmethod
+    def of(cls, size: int) -> "_Block":
+        descriptor = os.memfd_create("gige-image", os.MFD_CLOEXEC)
+        os.ftruncate(descriptor, size)
+        return cls(descriptor, mmap.mmap(descriptor, size))
+
+    def close(self) -> None:
+        self.memory.close()
+        os.close(self.descriptor)
 
 
 class ImageMemory:
@@ -18,24 +38,29 @@ class ImageMemory:
     """
 
     def __init__(self) -> None:
-        self._free: list[int] = []
-        self._lent: set[int] = set()
+        self._free: list[_Block] = []
+        self._lent: dict[int, _Block] = {}
 
     def filled(self, data: NDArray[np.uint8]) -> int:
         """Lend a block with a copy of ``data``: the only one on the way to the daemon."""
-        block = self._free.pop() if self._free else os.memfd_create("gige-image", os.MFD_CLOEXEC)
-        self._lent.add(block)
-        left, at = data.data, 0
-        while left:
-            written = os.pwrite(block, left, at)
-            left, at = left[written:], at + written
-        return block
+        block = self._free_block(len(data))
+        np.copyto(np.frombuffer(block.memory, dtype=np.uint8), data)
+        self._lent[block.descriptor] = block
+        return block.descriptor
 
     def take_back(self, blocks: Iterable[int]) -> None:
         """Nobody reads these any more; raises ``KeyError`` for one that is not lent."""
         for block in blocks:
-            self._lent.remove(block)
+            returned = self._lent.pop(block)
             if len(self._free) < MOST_FREE:
-                self._free.append(block)
+                self._free.append(returned)
             else:
-                os.close(block)
+                returned.close()
+
+    def _free_block(self, size: int) -> _Block:
+        while self._free:
+            block = self._free.pop()
+            if len(block.memory) == size:
+                return block
+            block.close()  # images have another size now
+        return _Block.of(size)

@@ -37,6 +37,7 @@ def test_a_mosaic_has_each_colour_where_the_standard_puts_it() -> None:
     even = np.empty((HEIGHT, WIDTH, 3), dtype=np.uint8)
     even[:] = (200, 120, 40)
     assert np.array_equal(read(laid_out(even, "BayerRG8"), "BayerRG8"), even)
+    assert np.array_equal(read(laid_out(even, "BayerRG12"), "BayerRG12") >> 4, even)
 
 
 def test_grey_and_colour_stand_in_for_each_other(grey: NDArray[np.uint8]) -> None:

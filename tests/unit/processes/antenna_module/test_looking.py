@@ -37,6 +37,16 @@ def test_deep_images_of_unknown_depth_are_refused_by_number() -> None:
         measured_channel(CameraImage(RAMP, PixelFormat.MONO16, 0.0, 1))
 
 
+def test_green_of_deep_colour_is_measured_in_its_upper_eight_bits() -> None:
+    colour = np.zeros((4, 4, 3), np.uint16)
+    colour[:, :, 1] = 0xABC
+    twelve = ExposureRecord("1", "BayerRG12", 12)
+    image = CameraImage(colour, PixelFormat.RGB16, 0.0, 1, twelve)
+    assert measured_channel(image).tolist() == [[0xAB] * 4] * 4
+    with pytest.raises(PixelsNotMeasurable, match="RGB16"):
+        measured_channel(CameraImage(colour, PixelFormat.RGB16, 0.0, 1))
+
+
 def test_green_of_the_gige_driver_is_the_green_of_the_mosaic() -> None:
     """Its colours are filled in from their own neighbours alone, so that no edge moves."""
     mosaic = np.random.default_rng(3).integers(0, 256, (40, 60), dtype=np.uint8)

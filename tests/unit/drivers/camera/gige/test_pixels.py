@@ -46,6 +46,9 @@ def test_colours_come_red_first(name: str, red_first: bool) -> None:
     data = raw(*sent, *([255] if "a8" in name else []))
     pixels, kind = decoded(data, name, 1, 1)
     assert (pixels.tolist(), kind) == ([[[200, 100, 50]]], PixelFormat.RGB8)
+    deep = np.array(sent + ([4095] if "a8" in name else []), dtype="<u2") * 16
+    pixels, kind = decoded(deep.view(np.uint8), name.replace("8", "12"), 1, 1)
+    assert (pixels.tolist(), kind) == ([[[3200, 1600, 800]]], PixelFormat.RGB16)
 
 
 @pytest.mark.parametrize("pattern", ["RG", "GR", "GB", "BG"])
@@ -58,6 +61,22 @@ def test_a_mosaic_of_a_red_scene_is_red(pattern: str) -> None:
     assert kind is PixelFormat.RGB8
     assert pixels[3:5, 3:5, 0].min() > 150
     assert pixels[3:5, 3:5, 1:].max() == 0
+    deep = mosaic.astype("<u2") * 20
+    pixels, kind = decoded(deep.ravel().view(np.uint8), f"Bayer{pattern}12", 8, 8)
+    assert kind is PixelFormat.RGB16
+    assert pixels.dtype == np.uint16
+    assert pixels[3:5, 3:5, 0].min() == 4000
+    assert pixels[3:5, 3:5, 1:].max() == 0
+
+
+@pytest.mark.parametrize("bits", [10, 12])
+def test_a_packed_mosaic_keeps_its_bits(bits: int) -> None:
+    level = (1 << bits) - 3
+    streams = np.array([[level >> bit & 1 for bit in range(bits)]] * 16, dtype=np.uint8)
+    data = np.packbits(streams.ravel(), bitorder="little")
+    pixels, kind = decoded(data, f"BayerGR{bits}p", 4, 4)
+    assert (kind, pixels.min(), pixels.max()) == (PixelFormat.RGB16, level, level)
+    assert grey(pixels, kind, bits).min() == 255
 
 
 def test_grey_keeps_the_high_bits() -> None:
@@ -67,7 +86,13 @@ def test_grey_keeps_the_high_bits() -> None:
     assert grey(white, PixelFormat.RGB8, 8).tolist() == [[255, 255], [255, 255]]
 
 
-@pytest.mark.parametrize("name", ["YUV422_8", "Coord3D_ABC32f", "Mono1p", "", "Bayer"])
+OTHERS = (
+    "YUV422_8 Coord3D_ABC32f Mono1p Bayer Mono8s RGB8_Planar RGB10p32 RGB12p RGB565p Mono14Packed "
+    "Mono16p BayerRG8s RGBa Mono10c3a32"
+)
+
+
+@pytest.mark.parametrize("name", ["", *OTHERS.split()])
 def test_other_formats_are_refused_with_those_that_are_read(name: str) -> None:
     with pytest.raises(ValueError, match="supported are Mono"):
         decoded(np.zeros(1000, dtype=np.uint8), name, 4, 4)
