@@ -30,8 +30,6 @@ _COARSE_PX, _FINE_PX = 0.03, 1.5e-3
 _MAX_ROUNDS, _MAX_STEPS = 12, 8
 _ROUGH_PX, _SETTLED_PX = 0.15, 0.01
 """Steps at which a round ends: before the noise is known, and after."""
-_LOWER_EDGE = 0.03
-"""Largest share of a movement of the wall's lower edge by which the rim follows it."""
 _MAX_STEP_PX = 0.7
 _MAX_DAMPING = 1e4
 
@@ -162,10 +160,9 @@ def _settle(problem: RimProblem, best: RimSolution, settled_px: float) -> RimSol
         if trial.cost > best.cost * (1.0 + 1e-9) and damping < _MAX_DAMPING:
             damping = max(damping, 1e-4) * 10.0
             continue
-        change = trial.vector - best.vector
-        step_px = _step_px(problem, change)
+        step_px = _step_px(problem, trial.vector - best.vector)
         best, damping = trial, damping * 0.2
-        if max(step_px, _LOWER_EDGE * _lower_edge_px(problem, change)) < settled_px:
+        if step_px < settled_px:
             break
     return best
 
@@ -189,14 +186,3 @@ def _step_px(problem: RimProblem, step: Array) -> float:
         float(np.abs((view.selection @ step)[:3]).max()) / view.pixels.unit_px
         for view in problem.views
     )
-
-
-def _lower_edge_px(problem: RimProblem, step: Array) -> float:
-    """Movement of the lower edge of a wall against the rim."""
-    moved = 0.0
-    for view in problem.views:
-        if view.model.wall_ratio is not None:
-            change = abs(float((view.selection @ step)[4]))
-            foot_px = float(np.linalg.norm(view.pixels.points[:, 0])) / view.pixels.unit_px
-            moved = max(moved, change * foot_px)
-    return moved
