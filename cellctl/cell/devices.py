@@ -1,7 +1,7 @@
 """Builds the devices of the cell file, connects and disconnects them, and stops all motion."""
 
 import asyncio
-from collections.abc import Awaitable, Callable, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -11,6 +11,15 @@ from cellctl.cell.driver_object import drivers_of
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.lit_cameras import Lights
+from cellctl.cell.patience.calls import answer_within
+from cellctl.cell.patience.patient_devices import (
+    PatientCamera,
+    PatientGripper,
+    PatientHead,
+    PatientIo,
+    PatientTracker,
+)
+from cellctl.cell.patience.patient_robot import patient_robot
 from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.robot_layers.permitted_robot import permitted
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace, slowed
@@ -20,18 +29,15 @@ from cellctl.cell.zones.zoned_robot import zoned_robots
 from cellctl.config import CellConfig
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors import CellError
-from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardSettings
-from cellctl.interfaces import DigitalIo, Gripper, TargetTracker
 from cellctl.interfaces.device import Device
 from cellctl.workers import VisionWorkers
 
 _log = log.get(__name__)
 
-"""Drivers have time-outs of their own; this one is for a driver that hangs."""
 LINK_AGE_S = 1.0
 """A robot silent for this long is reported even while nothing moves."""
 
@@ -45,10 +51,10 @@ class Cell:
         self.config = config
         self.folder = folder
         self.robot_notes = RobotNotes()
-        self.digital_ios: Mapping[str, DigitalIo] = drivers_of(config, "digital_ios")
+        self.digital_ios = drivers_of(config, "digital_ios", PatientIo)
         built = [
             permitted(config, one, self.digital_ios)
-            for one in drivers_of(config, "robots").values()
+            for one in drivers_of(config, "robots", patient_robot).values()
         ]
         # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
         noted = map(self.robot_notes.noted, built)
@@ -56,11 +62,12 @@ class Cell:
         moving = slowed(config, {robot.name: robot for robot in noted}, self.pace)
         self.robots = zoned_robots(config, moving)
         lights = Lights(self.digital_ios)
-        heads = drivers_of(config, "stereo_cameras")
+        heads = drivers_of(config, "stereo_cameras", PatientHead)
         self.stereo_cameras = lights.heads(heads, config.stereo_cameras)
-        self.trackers: Mapping[str, TargetTracker] = drivers_of(config, "trackers")
-        self.cameras = lights.cameras(drivers_of(config, "cameras"), config.cameras)
-        self.grippers: Mapping[str, Gripper] = drivers_of(config, "grippers")
+        cameras = drivers_of(config, "cameras", PatientCamera)
+        self.cameras = lights.cameras(cameras, config.cameras)
+        self.trackers = drivers_of(config, "trackers", PatientTracker)
+        self.grippers = drivers_of(config, "grippers", PatientGripper)
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
         """By the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()
@@ -132,7 +139,7 @@ class Cell:
 
         Not while a run uses them: a camera answers one request at a time.
         """
-        questions: dict[str, Awaitable[object]] = {
+        questions: dict[str, Coroutine[Any, Any, object]] = {
             name: device.serial_number()
             for devices in (self.stereo_cameras, self.cameras, self.trackers)
             for name, device in devices.items()
@@ -141,7 +148,8 @@ class Cell:
         questions |= {name: io.read() for name, io in self.digital_ios.items()}
         # One device that hangs must not hide the answers of the others, so every question has its
         # own time-out and no fault ends the round.
-        asked = (_in_time(question, self.time_limits.ask_s) for question in questions.values())
+        ask_s = self.time_limits.ask_s
+        asked = (answer_within(question, name, ask_s) for name, question in questions.items())
         answers = await asyncio.gather(*asked, return_exceptions=True)
         self.unanswered = {}
         for name, answer in zip(questions, answers, strict=True):
@@ -284,11 +292,3 @@ def _unconfirmed(name: str, stop: "asyncio.Task[None]") -> BaseException | None:
     if not stop.done() or stop.cancelled():
         return StopFailed(f"{name}: its driver has not come back from the stop")
     return stop.exception()
-
-
-async def _in_time(question: Awaitable[object], limit_s: float) -> object:
-    try:
-        async with asyncio.timeout(limit_s):
-            return await question
-    except TimeoutError:
-        raise ReplyTimeout(f"its driver has not come back in {limit_s:g} s") from None

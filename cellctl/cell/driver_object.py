@@ -1,10 +1,13 @@
-"""Builds the drivers of the devices of a cell file."""
+"""Builds the drivers of a cell file."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from cellctl import plugins
-from cellctl.config.cell import CellConfig
+from cellctl.config import CellConfig
 from cellctl.config.devices import GROUPS, DeviceConfig
+
+Layered = TypeVar("Layered")
 
 
 def driver_object(section: str, name: str, device: DeviceConfig) -> Any:
@@ -16,7 +19,9 @@ def driver_object(section: str, name: str, device: DeviceConfig) -> Any:
     return driver(name, driver.Config.model_validate(device.settings))
 
 
-def drivers_of(config: CellConfig, section: str) -> dict[str, Any]:
-    """Of all devices of one section by their names; raises as ``driver_object``."""
+def drivers_of(
+    config: CellConfig, section: str, layered: Callable[[Any], Layered]
+) -> dict[str, Layered]:
+    """The drivers of a section by name, each behind a layer; raises ``UnknownDriver``."""
     devices = config.section(section)
-    return {name: driver_object(section, name, device) for name, device in devices.items()}
+    return {name: layered(driver_object(section, name, one)) for name, one in devices.items()}

@@ -12,7 +12,7 @@ from cellctl.cell.zones.zone import Share, Zone
 from cellctl.cell.zones.zoned_robot import ZonedRobot
 from cellctl.clock import now_s
 from cellctl.geometry.box import Box
-from cellctl.interfaces import Robot
+from cellctl.interfaces import Robot, StreamingRobot
 from drivers.robot.siasun.driver import SiasunRobot
 from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
@@ -85,22 +85,25 @@ class SiasunBench(RobotBench):
 
 
 class InProcessStreamingBench(InProcessBench, StreamingBench):
-    robot: InProcessStreamingRobot
+    memory: InProcessStreamingRobot
+    robot: StreamingRobot
 
-    def __init__(self) -> None:
-        super().__init__(InProcessStreamingRobot("memory"))
+    def __init__(
+        self, memory: InProcessStreamingRobot, robot: StreamingRobot | None = None
+    ) -> None:
+        super().__init__(memory, robot)
 
     def lose_setpoints(self, count: int) -> None:
-        self.robot.losses = count
+        self.memory.losses = count
 
     def repeat_setpoint(self) -> None:
-        self.robot.late += 1
+        self.memory.late += 1
 
     def delay_setpoint(self) -> None:
-        self.robot.late += 1
+        self.memory.late += 1
 
     def silence_ticks(self) -> None:
-        self.robot.silent = True
+        self.memory.silent = True
 
 
 class SiasunStreamingBench(SiasunBench, StreamingBench):
@@ -180,7 +183,7 @@ class TestSiasunRobotOnItsJobs(RobotContract):
 class TestInProcessStreamingRobot(StreamingRobotContract):
     @pytest.fixture
     async def bench(self) -> AsyncIterator[StreamingBench]:
-        bench = InProcessStreamingBench()
+        bench = InProcessStreamingBench(InProcessStreamingRobot("memory"))
         yield bench
         await bench.robot.disconnect()
 

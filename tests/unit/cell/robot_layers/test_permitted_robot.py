@@ -140,12 +140,13 @@ async def test_it_opens_when_a_stream_loses_its_link(
 
 def cell(**permits: dict[str, str]) -> CellConfig:
     driver = {"driver": "siasun-sjl", "settings": {}}
+    coupler = {"host": "127.0.0.1", "outputs": {"a": 0, "b": 1}}
     return CellConfig.model_validate(
         {
             "name": "cell",
             "data_dir": "/tmp/none",
             "robots": {name: driver | {"permit": permit} for name, permit in permits.items()},
-            "digital_ios": {"loop": {"driver": "modbus-coupler"}},
+            "digital_ios": {"loop": {"driver": "modbus-coupler", "settings": coupler}},
         }
     )
 
@@ -168,6 +169,5 @@ def test_a_cell_puts_it_before_its_robots(tmp_path: Path) -> None:
     }  # fmt: skip
     config = cell(one={"device": "loop", "output": "a"}).model_dump()
     config["robots"]["one"]["settings"] = settings
-    config["digital_ios"]["loop"]["settings"] = {"host": "127.0.0.1", "outputs": {"a": 0}}
     built = Cell(CellConfig.model_validate(config), tmp_path)
     assert isinstance(built.robots["one"]._robot, PermittedRobot)  # type: ignore[attr-defined]

@@ -1,0 +1,1 @@
+"""Layers before drivers that may hang: the core waits for none of them for ever."""
