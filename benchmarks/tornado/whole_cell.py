@@ -56,10 +56,11 @@ def _run(command: list[str]) -> str:
     """What the command complained of. Ctrl-C reaches it as it would in a terminal of its own."""
     process = subprocess.Popen(
         command,
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
-        start_new_session=True,
+        process_group=0,
     )
     try:
         return process.communicate()[1]

@@ -39,10 +39,14 @@ class Child:
         with log.open("w", encoding="utf-8") as stderr:
             process = subprocess.Popen(
                 [sys.executable, *command],
+                stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=stderr,
                 text=True,
-                start_new_session=True,
+                # Not a session of its own: where the kernel groups processes by session
+                # (autogroup, sched(7)), priorities would hold only within each of the children,
+                # and drawing images would take the processor from whoever moves.
+                process_group=0,
                 env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
         child = cls(name, process, Queue(), log)

@@ -21,7 +21,7 @@ for is 20 um/s."""
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class StandingTime:
     """For how long an arm may stand within a move, as at a speed override of zero."""
 
     most_s: float = 30.0
@@ -36,7 +36,7 @@ class PatientRobot(RobotLayer):
     it, and says which arm has not confirmed it.
     """
 
-    def __init__(self, robot: Robot, standing: Standing = Standing()) -> None:
+    def __init__(self, robot: Robot, standing: StandingTime = StandingTime()) -> None:
         super().__init__(robot)
         self._standing = standing
 
@@ -106,7 +106,7 @@ class PatientRobot(RobotLayer):
 class PatientStreamingRobot(PatientRobot, StreamingRobotLayer):
     """The same for a robot that follows a stream; a stream that stays away is a standstill."""
 
-    def __init__(self, robot: StreamingRobot, standing: Standing = Standing()) -> None:
+    def __init__(self, robot: StreamingRobot, standing: StandingTime = StandingTime()) -> None:
         super().__init__(robot, standing)
 
 

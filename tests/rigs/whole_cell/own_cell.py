@@ -190,9 +190,13 @@ class Program:
             process = subprocess.Popen(
                 [sys.executable, "-m", module, *arguments],
                 cwd=ROOT,
+                stdin=subprocess.DEVNULL,
                 stdout=stdout,
                 stderr=stderr,
-                start_new_session=True,
+                # Not a session of its own: where the kernel groups processes by session
+                # (autogroup, sched(7)), priorities would hold only within each of the children,
+                # and drawing images would take the processor from whoever moves.
+                process_group=0,
                 env=os.environ | {_MARK: mark, "OPENBLAS_NUM_THREADS": "1"},
             )
         return cls(process, out, err, mark)

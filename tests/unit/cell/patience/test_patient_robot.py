@@ -11,7 +11,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.cell.patience.patient_robot import (
     PatientRobot,
     PatientStreamingRobot,
-    Standing,
+    StandingTime,
     patient_robot,
 )
 from cellctl.errors.link import LinkLost, ReplyTimeout
@@ -19,7 +19,7 @@ from cellctl.interfaces import Robot, RobotState
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
 from tests.unit.cell.robots import StillRobot
 
-SOON = Standing(most_s=0.05, look_s=0.005)
+SOON = StandingTime(most_s=0.05, look_s=0.005)
 HERE = RigidTransform.from_translation([1.0, 0.0, 1.0])
 
 MOVES: dict[str, Callable[[Robot], Coroutine[Any, Any, RobotState]]] = {
