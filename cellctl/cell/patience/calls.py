@@ -11,8 +11,9 @@ _log = log.get(__name__)
 
 PATIENCE_S = 180.0
 """Drivers have time-outs of their own, some of a minute; this is for a driver that hangs."""
-END_S = 10.0
-"""A driver that is cancelled may stop its arm first, which takes it a few seconds."""
+END_S = 6.0
+"""A driver that is cancelled may stop its arm first, which takes it a few seconds. Less than what a
+cancelled job is given as a whole."""
 
 T = TypeVar("T")
 
