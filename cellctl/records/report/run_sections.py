@@ -34,11 +34,12 @@ from cellctl.records.report.text import (
     quantity,
     when,
 )
+from cellctl.records.run_recorder import EXPOSURES
 from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
-_ON_FIRST_PAGE = frozenset({GAUGE_HOLES, PARTS})
+_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}
@@ -63,7 +64,7 @@ def further_figures(
     keys = dict.fromkeys(
         entry.key
         for entry in record.documents
-        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in _ON_FIRST_PAGE | shown
+        if not entry.key.endswith(REPLAY_INPUT) and entry.key not in _SHOWN_ELSEWHERE | shown
     )
     documents = tuple(fact for key in keys for fact in facts(record.document(key)))
     lists = (FactList(figures), FactList(documents))

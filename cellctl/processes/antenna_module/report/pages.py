@@ -2,6 +2,7 @@
 
 import base64
 from collections.abc import Iterator, Mapping, Sequence
+from struct import unpack_from
 from typing import Any
 
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
@@ -37,7 +38,8 @@ _TILES = (
     (keys.PLACED, "Moved on release", 1.0, "mm", 3),
 )
 """Key, title, factor and unit of the tile, digits."""
-_PICTURE_WIDTH, _PICTURE_HEIGHT = 900, 340
+_PNG_SIZES = 16
+"""Bytes before the width in a PNG."""
 
 
 def pages(record: RunRecord, read: ReadArtefact) -> ProcessPages:
@@ -98,9 +100,11 @@ def _pictures(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
 def _embedded(png: bytes) -> str:
     """A picture within an SVG, so that the report stays one file."""
     data = base64.b64encode(png).decode()
+    # The header of every PNG: signature, then the first chunk with both sizes.
+    width, height = unpack_from(">II", png, _PNG_SIZES)
     return (
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_PICTURE_WIDTH} {_PICTURE_HEIGHT}">'
-        f'<image width="{_PICTURE_WIDTH}" height="{_PICTURE_HEIGHT}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}">'
+        f'<image width="{width}" height="{height}" '
         f'href="data:image/png;base64,{data}"/></svg>'
     )
 

@@ -85,7 +85,10 @@ def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:
         "serial number, board not recorded",
     ):
         assert words in text, words
-    assert report.read_text(encoding="utf-8").count("data:image/png;base64") == 2
+    text = report.read_text(encoding="utf-8")
+    assert text.count("data:image/png;base64") == 2
+    # As large as the pictures are, so that no empty frame surrounds them.
+    assert text.count('viewBox="0 0 90 34"') == 2
 
 
 def test_a_second_grip_is_told_with_what_was_wrong_with_the_first(
