@@ -164,18 +164,12 @@ class ConnectorTable(Table):
 
 def read_connector(path: Path) -> Connector:
     """Read a connector file; raises ``ConnectorFileInvalid`` with everything that is wrong."""
-    try:
-        return parse_connector(read_bytes(path), str(path))
-    except ValueError as error:
-        raise ConnectorFileInvalid(str(error)) from error
+    return parse_connector(read_bytes(path, ConnectorFileInvalid), str(path))
 
 
 def parse_connector(content: bytes, name: str) -> Connector:
     """The content of a connector file of that name; raises ``ConnectorFileInvalid``."""
-    try:
-        table = parse_toml(content, name, ConnectorTable)
-    except ValueError as error:
-        raise ConnectorFileInvalid(str(error)) from error
+    table = parse_toml(content, name, ConnectorTable, ConnectorFileInvalid)
     return Connector(
         name=table.name,
         kind=table.kind,

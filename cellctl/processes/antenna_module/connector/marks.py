@@ -97,18 +97,12 @@ class MarksTable(Table):
 
 def read_marks(path: Path) -> Marks:
     """Read a file of marks; raises ``MarksFileInvalid`` with everything that is wrong."""
-    try:
-        return parse_marks(read_bytes(path), str(path))
-    except ValueError as error:
-        raise MarksFileInvalid(str(error)) from error
+    return parse_marks(read_bytes(path, MarksFileInvalid), str(path))
 
 
 def parse_marks(content: bytes, name: str) -> Marks:
     """The content of a file of marks of that name; raises ``MarksFileInvalid``."""
-    try:
-        table = parse_toml(content, name, MarksTable)
-    except ValueError as error:
-        raise MarksFileInvalid(str(error)) from error
+    table = parse_toml(content, name, MarksTable, MarksFileInvalid)
     turn = Rotation.from_euler("z", table.connector_yaw_deg, degrees=True)
     place_m = np.array([*table.connector_mm, -table.height_mm]) * MM
     return Marks(

@@ -7,6 +7,7 @@ from typing import Annotated, Any, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from cellctl.calibration.input_file import error_words
+from cellctl.errors.base import CellError
 from cellctl.sealed_json import content_id
 
 PositiveMm = Annotated[float, Field(gt=0, le=1000)]
@@ -29,24 +30,24 @@ class Table(BaseModel):
 M = TypeVar("M", bound=Table)
 
 
-def parse_toml(content: bytes, name: str, model: type[M]) -> M:
-    """The content of a file of that name; raises ``ValueError`` with everything that is wrong."""
+def parse_toml(content: bytes, name: str, model: type[M], invalid: type[CellError]) -> M:
+    """The content of a file of that name; raises ``invalid`` with everything that is wrong."""
     try:
         data = tomllib.loads(content.decode())
     except (ValueError, RecursionError) as error:
-        raise ValueError(f"{name} is not TOML: {error}") from error
+        raise invalid(f"{name} is not TOML: {error}") from error
     try:
         return model.model_validate(as_tuples(data))
     except ValidationError as error:
-        raise ValueError(f"{name}: {error_words(error)}") from error
+        raise invalid(f"{name}: {error_words(error)}") from error
 
 
-def read_bytes(path: Path) -> bytes:
-    """A file's content; raises ``ValueError`` with the reason."""
+def read_bytes(path: Path, invalid: type[CellError]) -> bytes:
+    """A file's content; raises ``invalid`` with the reason."""
     try:
         return path.read_bytes()
     except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from error
+        raise invalid(f"{path}: {error.strerror or error}") from error
 
 
 def as_tuples(value: Any) -> Any:
