@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 from cellctl.processes.antenna_module.calibrations import TOOL_TURN
+from cellctl.processes.antenna_module.faults.plugging import PlugBentPin
 from cellctl.processes.antenna_module.record import keys
 from cellctl.records import RunStore
 from cellctl.records.entries import RunResult
 from tests.rigs.whole_cell.own_cell import OwnCell
+from tests.unit.records.conftest import start
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "antenna-module")
@@ -123,6 +125,27 @@ def test_a_seat_that_comes_early_ends_with_the_module_out_of_its_socket(antenna:
     assert record.head.result == RunResult.BAD
     assert [phase.number for phase in record.phases].count(80) == 1
     assert [one.name for one in record.artefacts].count(keys.CURVE) == 1
+
+
+def test_a_module_that_has_met_a_force_fault_is_refused_when_it_comes_again(
+    antenna: OwnCell,
+) -> None:
+    antenna.fake(seed=2).ready()
+    store = RunStore(antenna.data)
+    try:
+        earlier = start(store, serial="MOD-0002", process="antenna-module")
+        store.close_run(earlier, RunResult.BAD, fault_number=PlugBentPin.number)
+    finally:
+        store.close()
+    daemon = antenna.daemon()
+    daemon.ready()
+    with antenna.control() as control:
+        control.request("load")
+    plc = antenna.plc("--recipe", "1", "--serial", "MOD-0002")
+    assert plc.end(120) != 0, plc.stdout
+    assert [entry["number"] for entry in daemon.log if entry.get("event") == "fault"] == [486]
+    with antenna.control() as control:
+        assert control.request("truth")["truth"]["module"] == "tray"
 
 
 def test_the_marks_are_turned_over_camera_2_and_kept_as_a_calibration(antenna: OwnCell) -> None:
