@@ -6,6 +6,7 @@ A program of its own, because it runs under sanitizers, which are loaded before 
 import logging
 import os
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from itertools import product
@@ -86,6 +87,7 @@ def some_images(cameras: list[Any]) -> None:
 
 def faults(producer: Path, fakes: FakeCameras) -> None:
     """What goes wrong with images, with the stream, and with the camera."""
+    taken(producer, fakes)
     with opened(producer) as (left, right):
         triggered(left, "Software")
         nodes_of(left).ChunkModeActive.value = True
@@ -96,6 +98,7 @@ def faults(producer: Path, fakes: FakeCameras) -> None:
                 nodes_of(left).TriggerSoftware.execute()
                 with suppress(ValueError):  # of a truncated one
                     image(left, 1.0)
+        hangs(left, fakes)
         fakes.inject(LEFT, "slow_ms", 300)
         nodes_of(left).TriggerSoftware.execute()
         left.stop()  # within the exposure
@@ -123,6 +126,37 @@ def faults(producer: Path, fakes: FakeCameras) -> None:
         nodes_of(left).TriggerSoftware.execute()
         width, height, data = image(left)
         assert np.array_equal(data.reshape(height, width), expected_image(1, 64, 48, "Mono8"))
+
+
+def hangs(left: Any, fakes: FakeCameras) -> None:
+    """A register that does not answer for a while: Python stands still meanwhile, all of it."""
+    fakes.inject(LEFT, "hang")
+    begun_s = time.monotonic()
+    ends_it = os.fork()
+    if not ends_it:
+        time.sleep(0.2)
+        fakes.inject(LEFT, "hang", 0)
+        os._exit(0)
+    nodes_of(left).TriggerSoftware.execute()
+    assert time.monotonic() - begun_s >= 0.2
+    os.waitpid(ends_it, 0)
+    assert image(left) is not None
+
+
+def taken(producer: Path, fakes: FakeCameras) -> None:
+    """A camera that another program has, and one that is open here already."""
+    producers = Producers((producer,))
+    there = {found.seen.serial_number: found for found in producers.look()}
+    there[LEFT].create()
+    fakes.inject(RIGHT, "busy")
+    for serial in (LEFT, RIGHT):
+        try:
+            there[serial].create()
+        except ERRORS:
+            continue
+        raise AssertionError(f"{serial} was opened twice")
+    fakes.inject(RIGHT, "busy", 0)
+    producers.close()
 
 
 def loss(producer: Path, fakes: FakeCameras) -> None:

@@ -12,6 +12,9 @@ from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import FakeCameras
 from tests.wire.gige.conftest import LEFT, camera, descriptors
 
+INJECTED = ("incomplete or not available", "already in use")
+"""What harvesters warns of where a fault was injected."""
+
 
 def session(producer: Path, what: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """`producer_session`, or `cell_session` for "cell", in a process of its own."""
@@ -35,12 +38,34 @@ def test_harvesters_has_nothing_to_warn_of(producer: Path) -> None:
 def test_faults_leave_the_producer_usable(producer: Path, what: str) -> None:
     done = session(producer, what)
     assert done.stdout == "clean\n", done.stderr
+    # It warns of what was injected, and of nothing that the producer would lack.
+    warned = [line for line in done.stderr.splitlines() if " :: WARNING :: " in line]
+    assert all(any(said in line for said in INJECTED) for line in warned), done.stderr
+
+
+def test_the_command_of_make_builds_it(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "fakes.gentl.build", str(tmp_path)]
+    built = subprocess.run(command, capture_output=True, text=True, check=True)
+    path = Path(built.stdout.strip())
+    assert path.parent == tmp_path
+    assert session(path, "good").stdout == "clean\n"
+    recipe = (Path(__file__).parents[3] / "Makefile").read_text(encoding="utf-8")
+    assert "\nproducer: venv\n\t$(BIN)/python -m fakes.gentl.build $(FOLDER)\n" in recipe
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("what", ["good", "faults", "loss", "cell"])
-def test_under_sanitizers(tmp_path: Path, what: str) -> None:
-    producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined")
+@pytest.mark.parametrize(
+    ("what", "options"),
+    [
+        ("good", ()),
+        ("good", ("-DLINE_PADDING=12", "-DTICKS_PER_S=125000000")),
+        ("faults", ()),
+        ("loss", ()),
+        ("cell", ()),
+    ],
+)
+def test_under_sanitizers(tmp_path: Path, what: str, options: tuple[str, ...]) -> None:
+    producer = build_producer(tmp_path, "-g", "-fsanitize=address,undefined", *options)
     # The C++ library too: the sanitizer looks for its exceptions before Python loads anything.
     preloaded = " ".join(map(_library, ("libasan.so", "libstdc++.so.6")))
     done = session(
