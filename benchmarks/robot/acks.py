@@ -28,6 +28,7 @@ from scipy.spatial.transform import RigidTransform
 
 from benchmarks.robot.far_controllers import Ports, serve_controller
 from benchmarks.robot.rpc_bench import far_end
+from benchmarks.robot.stalls import StallWatch
 from cellctl.interfaces.robot import Robot
 from drivers.robot.siasun.channels.running_command import RunningCommand
 from drivers.robot.siasun.driver import SiasunRobot
@@ -53,9 +54,19 @@ class AckRow:
     max_ms: float
     socket_p50_ms: float
     socket_p99_ms: float
+    stall_ms: float
+    """Longest time for which driver or controller got no turn on this PC."""
 
 
 Wait = Callable[..., Awaitable[None]]
+
+
+@dataclass(slots=True)
+class Far:
+    """The arm, and how long its controller got no turn, which is known when it has ended."""
+
+    robot: Robot
+    stalled_s: float = 0.0
 
 
 class Accepted:
@@ -89,7 +100,7 @@ class Accepted:
 
 
 @asynccontextmanager
-async def sjl_arm(way: str, statement_s: float) -> AsyncIterator[Robot]:
+async def sjl_arm(way: str, statement_s: float) -> AsyncIterator[Far]:
     """A driver connected to a controller in a process of its own."""
     command, state = free_ports(2)
     ports: Ports = {"CMD": command, "STA": state}
@@ -97,24 +108,26 @@ async def sjl_arm(way: str, statement_s: float) -> AsyncIterator[Robot]:
     ours, theirs = context.Pipe()
     process = context.Process(target=serve_controller, args=(theirs, way, ports, statement_s))
     process.start()
+    robot = SiasunRobot("arm", arm_settings(command, state, connect_timeout_s=20.0, **SLOW))
+    far = Far(robot)
     try:
-        robot = SiasunRobot("arm", arm_settings(command, state, connect_timeout_s=20.0, **SLOW))
         async with robot:
             await robot._state.wait(lambda status: not status.latched, 10.0)
-            yield robot
+            yield far
     finally:
         ours.send("end")
+        far.stalled_s = await asyncio.to_thread(ours.recv)
         process.join(5.0)
 
 
 @asynccontextmanager
-async def rpc_arm() -> AsyncIterator[Robot]:
-    """The same over the remote interface."""
+async def rpc_arm() -> AsyncIterator[Far]:
+    """The same over the remote interface; only the driver's own process is watched."""
     async with far_end() as bench, bench.robot() as robot:
-        yield robot
+        yield Far(robot)
 
 
-WAYS: dict[str, Callable[[], AbstractAsyncContextManager[Robot]]] = {
+WAYS: dict[str, Callable[[], AbstractAsyncContextManager[Far]]] = {
     "SJL/1": partial(sjl_arm, "sjl", 0.0),
     "jobs, 0.2 ms a statement": partial(sjl_arm, "jobs", 0.0002),
     "jobs, 1 ms a statement": partial(sjl_arm, "jobs", 0.001),
@@ -128,7 +141,9 @@ async def measure(way: str, calls: int) -> list[AckRow]:
     times: dict[str, list[float]] = {"step": [], "release": []}
     bare: list[float] = []
     accepted = Accepted()
-    async with far_end() as bench, WAYS[way]() as robot:
+    stalls = StallWatch()
+    async with far_end() as bench, WAYS[way]() as far, stalls:
+        robot = far.robot
         reader, writer = await asyncio.open_connection("127.0.0.1", bench.echo_port)
         home = robot.state(2.0).base_T_flange
         for turn in range(calls):
@@ -151,8 +166,9 @@ async def measure(way: str, calls: int) -> list[AckRow]:
         writer.write_eof()
         await reader.read()
         writer.close()
+    stall_ms = round(1000 * max(stalls.longest_s, far.stalled_s), 1)
     return [
-        AckRow(f"{way}: {name}", len(found), *_ms(found, 50, 99, 100), *_ms(bare, 50, 99))
+        AckRow(f"{way}: {name}", len(found), *_ms(found, 50, 99, 100), *_ms(bare, 50, 99), stall_ms)
         for name, found in times.items()
         if found
     ]
@@ -165,12 +181,13 @@ def _ms(seconds: list[float], *percents: int) -> list[float]:
 def table(rows: list[AckRow]) -> str:
     """The rows as a table of a document."""
     lines = [
-        "| way | calls | p50, ms | p99, ms | max, ms | bare socket p50, ms | p99, ms |",
-        "|---|" + "--:|" * 6,
+        "| way | calls | p50, ms | p99, ms | max, ms | bare socket p50, ms | p99, ms "
+        "| longest stall, ms |",
+        "|---|" + "--:|" * 7,
     ]
     lines += [
         f"| {row.way} | {row.calls} | {row.p50_ms:.2f} | {row.p99_ms:.2f} | {row.max_ms:.2f} "
-        f"| {row.socket_p50_ms:.2f} | {row.socket_p99_ms:.2f} |"
+        f"| {row.socket_p50_ms:.2f} | {row.socket_p99_ms:.2f} | {row.stall_ms:.0f} |"
         for row in rows
     ]
     return "\n".join(lines)

@@ -27,7 +27,7 @@ from benchmarks.robot.rpc_streams import refused, streamed
 from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.protocol import request
 
-PERIODS_MS = (8, 20, 40)
+PERIODS_MS = (10, 20, 40)
 
 
 async def round_trips(bench: Bench, count: int) -> dict[str, Figures]:

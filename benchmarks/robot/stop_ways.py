@@ -2,17 +2,24 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from contextlib import AbstractAsyncContextManager, AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.guarded_motion.guarded_moves import POLL_S, guarded
 from cellctl.cell.robot_layers.permitted_robot import PermittedRobot
-from cellctl.interfaces.robot import Robot
+from cellctl.cell.robot_layers.robot_layer import RobotLayer
+from cellctl.guard.client import GuardClient
+from cellctl.interfaces.robot import Robot, RobotState
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
+from fakes.wire.sri.box import SriBox
 from fakes.world.robot import RobotArm
+from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, until
 from tests.rigs.wire.duco_rig import duco_rig
 from tests.rigs.wire.job_rig import job_rig
 from tests.rigs.wire.permit_loop import PERMIT, permit_loop
@@ -42,6 +49,9 @@ class Ready:
     arm: RobotArm
     moving: Callable[[], bool]
     stop: Callable[[], Awaitable[None]]
+    decided_s: Callable[[], float] | None = None
+    """Monotonic time of a decision that another program takes after ``stop``; None where ``stop``
+    is the decision."""
 
 
 Way = Callable[[], AbstractAsyncContextManager[Ready]]
@@ -111,6 +121,62 @@ async def _dead_job() -> AsyncIterator[Ready]:
         yield Ready(robot, rig.arm, rig.controller.moving, stop)
 
 
+class _GuardedRobot(RobotLayer):
+    """Moves as the steps of a process do: beside the guard."""
+
+    def __init__(self, robot: Robot, guard: GuardClient) -> None:
+        super().__init__(robot)
+        self._guard = guard
+
+    async def move_linear(
+        self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
+    ) -> RobotState:
+        move = self._robot.move_linear(
+            base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
+        )
+        await guarded(self._robot, self._guard, move)
+        return self._robot.state(SLOW["stale_s"])
+
+
+@asynccontextmanager
+async def _trip() -> AsyncIterator[Ready]:
+    """A trip of the real guard beside jobs that overhear its stop and that of the daemon, so that
+    the contact, which the daemon opens, is what stops the arm."""
+    async with (
+        job_rig(channels=("CMD", "STA", "GRD"), statement_s=STATEMENT_S, **SLOW) as rig,
+        permit_loop(rig, watchdog_ms=WATCHDOG_MS) as (io, _),
+        AsyncExitStack() as stack,
+    ):
+        force = [0.0] * 6
+        box = SriBox(lambda _: noisy(force))
+        sensor = {"transport": "tcp", "host": "127.0.0.1", "rate_hz": 500}
+        sensor["port"] = await box.start_tcp()
+        stack.push_async_callback(box.stop)
+        channel = rig.guard.model_dump(include={"robot_name", "guard_port"})
+        guard = GuardClient("sri", sensor, "siasun-sjl", channel, SETTINGS)
+        stack.push_async_callback(guard.stop)
+        starting = asyncio.create_task(guard.start())
+        await rig.connect()
+        await starting
+        await guard.set_gravity_compensation(NOTHING)
+        await until(lambda: guard.health().flange_age_s < PATIENT.flange_age_s)
+        await guard.acknowledge()
+        await rig.robot.rearm()
+        await guard.arm(PATIENT)
+
+        async def stop() -> None:
+            # One word of each channel: the repetitions, half a second later, are heard.
+            rig.controller.faults.inject("ignore_stop", count=2)
+            force[2] = 2.0 * PATIENT.raw[2]
+
+        def decided_s() -> float:
+            assert guard.trip is not None
+            return guard.trip.time_s
+
+        robot = _GuardedRobot(PermittedRobot(rig.robot, io, PERMIT), guard)
+        yield Ready(robot, rig.arm, rig.controller.moving, stop, decided_s)
+
+
 @asynccontextmanager
 async def _rpc(*, silent: bool) -> AsyncIterator[Ready]:
     async with duco_rig() as rig:
@@ -167,6 +233,9 @@ WAYS: dict[str, tuple[str, Way, float]] = {
     ),
     "digital output, background job ended by an alarm": (
         "no program of it", _dead_job, ROUND_MS + HOST_MS,
+    ),
+    "trip of the guard, digital output by the daemon": (
+        "no program of it", _trip, 1000.0 * POLL_S + 2 * HOST_MS,
     ),
     "RPC, silent guard": (
         "its service", partial(_rpc, silent=True), DEADMAN_MS + HOST_MS,

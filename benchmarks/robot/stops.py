@@ -82,6 +82,8 @@ async def once(way: Way, turn: int) -> float:
             # Not cancelled: the driver would ask for a stop of its own over a wire that is silent.
             with contextlib.suppress(CellError):
                 await job
+            if ready.decided_s is not None:
+                decided_s = ready.decided_s()
         return 1000.0 * (ordered_s[0] - decided_s)
 
 

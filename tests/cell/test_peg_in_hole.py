@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.packml.reject import RejectCode
+from cellctl.errors.calibration import CalibrationInvalidated
+from cellctl.processes.peg_in_hole.faults import PanelOffReference
 from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
@@ -85,9 +86,8 @@ def test_an_arm_that_was_mastered_anew_is_found_at_the_panel(pin: OwnCell) -> No
         control.request("master", robot="arm", joint=2, deg=TURNED_DEG)
     moved = pin.plc("--serial", "MOVED")
     assert moved.end(100) != 0
-    faults = [str(entry) for entry in daemon.log if entry.get("event") == "fault"]
-    assert any("F337" in fault for fault in faults), faults
+    daemon.logged("fault", number=PanelOffReference.number)
     again = pin.plc("--serial", "AGAIN")
     assert again.end(60) != 0
-    assert again.messages[-1]["reject_code"] == RejectCode.CALIBRATION_INVALID
+    daemon.logged("fault", number=CalibrationInvalidated.number)
     take_reference()

@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
-from cellctl.errors.link import LinkError, ProtocolViolation
+from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation
 from cellctl.errors.robot import MotionRejected
 from drivers.robot.siasun.channels.running_command import RunningCommand
 from drivers.robot.siasun.codec.poses import read_pose, write_pose
@@ -17,6 +17,9 @@ from drivers.robot.siasun.codec.words import Words
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 
+MOST_COMMANDS = 2_800_000
+"""Of one session. The sum of a record of SJL/2 has seven digits in front of its point: what session,
+offsets and values leave of them, less 0.1 million."""
 ROUND_TRIPS = 500
 """So many are remembered."""
 
@@ -73,6 +76,11 @@ class CommandChannel:
         context means that nobody waits for its end any more. Raises as ``run`` does."""
         if self._running is not None:
             raise MotionRejected(f"{self._robot}: another motion is running")
+        if self._seq >= MOST_COMMANDS:
+            # Nothing runs now, and nothing is sent: the robot calls again, for a session that
+            # counts from 1, and is re-armed as after any loss of a link.
+            self.channel.drop(LinkLost(f"{self.channel}: all numbers of the session are used up"))
+            raise LinkLost(f"{self.channel}: a new session begins, Clear and Reset")
         # An answer that comes too late would be taken for one to the next command, so the channel
         # is dropped when this one is not answered as it should be.
         command = self._running = RunningCommand(
