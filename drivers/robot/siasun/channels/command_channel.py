@@ -18,8 +18,8 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 
 MOST_COMMANDS = 2_800_000
-"""Of one session. The sum of a record of SJL/2 has seven digits in front of its point: what session,
-offsets and values leave of them, less 0.1 million."""
+"""Of one session. The sum of a record of SJL/2 has seven digits in front of its point: what
+session, offsets and values leave of them, less 0.1 million."""
 ROUND_TRIPS = 500
 """So many are remembered."""
 
