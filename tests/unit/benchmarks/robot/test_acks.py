@@ -13,10 +13,11 @@ def test_a_way_is_measured_beside_a_bare_socket(
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith(f"| {way}")]
     assert len(lines) == (1 if "RPC" in way else 2)
     for line in lines:
-        calls, p50, p99, most, bare, _ = (float(cell) for cell in line.split("|")[2:-1])
+        calls, p50, p99, most, bare, _, stall = (float(cell) for cell in line.split("|")[2:-1])
         assert calls == 3
         assert 0.0 < p50 <= p99 <= most
         assert bare > 0.0
+        assert stall >= 0.0
 
 
 def test_jobs_cannot_answer_before_they_have_read_their_command(
@@ -29,5 +30,6 @@ def test_jobs_cannot_answer_before_they_have_read_their_command(
 
 
 def test_every_way_is_in_the_table() -> None:
-    rows = [AckRow(way, 10, 1.0, 2.0, 3.0, 0.1, 0.2) for way in WAYS]
-    assert all(f"| {way} | 10 | 1.00 | 2.00 | 3.00 | 0.10 | 0.20 |" in table(rows) for way in WAYS)
+    rows = [AckRow(way, 10, 1.0, 2.0, 3.0, 0.1, 0.2, 7.0) for way in WAYS]
+    figures = "10 | 1.00 | 2.00 | 3.00 | 0.10 | 0.20 | 7"
+    assert all(f"| {way} | {figures} |" in table(rows) for way in WAYS)
