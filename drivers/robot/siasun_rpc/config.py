@@ -48,9 +48,10 @@ class SiasunRpcConfig(_Controller, MotionLimits, ErrorList):
     silence_s: Seconds = 0.5
     """A controller that answers nothing, or sends no state frame, for this long counts as lost."""
     joint_acceleration_percent: Annotated[int, Field(ge=1, le=100)] = 25
-    servo_period_ms: Annotated[int, Field(ge=4, le=100)] | None = None
+    servo_period_ms: Annotated[int, Field(ge=10, le=100)] | None = None
     """Period of streamed setpoints. None, as long as it was not measured on this arm and this PC:
-    streamed motion is not offered then."""
+    streamed motion is not offered then. Shorter ones are not proven (docs/protocols/siasun-rpc.md,
+    section 9)."""
     servo_joint_speed_deg_s: Annotated[float, Field(gt=0.0, le=225.0)] = 20.0
     """Greatest speed of any joint in streamed motion, held by the controller."""
     servo_joint_acceleration_deg_s2: Annotated[float, Field(gt=0.0, le=2000.0)] = 200.0

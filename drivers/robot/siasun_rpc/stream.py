@@ -83,10 +83,10 @@ class ServoStream(PoseStream):
         await self.begin()
         try:
             yield
-        except TargetOutOfBounds:
-            # The setpoint was not sent. The arm goes no further than to the last one, while a stop
-            # with its dead time would let it run on; where standstill is not confirmed, whoever
-            # leaves the stream stops it.
+        except (TargetOutOfBounds, SetpointRefused):
+            # The setpoint was not sent, or not taken. The arm goes no further than to the last one,
+            # while a stop with its dead time would let it run on; where standstill is not
+            # confirmed, whoever leaves the stream stops it.
             with contextlib.suppress(CellError):
                 await self.finish(self.limits.loss_s)
             raise
@@ -176,10 +176,10 @@ class ServoStream(PoseStream):
         self._motion.raise_end()
         self._motion.over = False
         task, *stops = await self._exchange(call, *words)
-        self._motion.task = cast(int, task)
-        if self._motion.task < 0:
+        if cast(int, task) < 0:
             texts = await self._link.vendor_errors()
             raise SetpointRefused(f"{self._robot}: servoj_pose gave {task}; {' | '.join(texts)}")
+        self._motion.task = cast(int, task)
         if stops and stops[0] != stops[1]:
             raise NotRearmed(f"{self._robot}: the guard has stopped the arm")
 

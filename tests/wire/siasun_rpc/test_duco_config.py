@@ -62,7 +62,7 @@ def test_what_both_refuse(key: str, value: object) -> None:
     ("key", "value"),
     [
         ("workspace_min_mm", [900.0, -900.0, 0.0]),
-        ("servo_period_ms", 3),
+        ("servo_period_ms", 9),
         ("servo_period_ms", 80),
         ("servo_smooth_speed", 0.5),
         ("servo_joint_speed_deg_s", 226.0),

@@ -64,3 +64,23 @@ async def test_a_setpoint_that_is_refused(
             await move(rig, 1.0)
         await rearm(rig)
         await move(rig, 1.0)
+
+
+@pytest.mark.parametrize("by_the_controller", [True, False])
+async def test_an_arm_that_lags_behind_stands_at_the_last_setpoint_that_was_taken(
+    monkeypatch: pytest.MonkeyPatch, *, by_the_controller: bool
+) -> None:
+    """A stop would let it run on through its dead time, beyond every setpoint."""
+    monkeypatch.setattr("fakes.wire.duco.logic._SERVO_S", 0.08)
+    async with duco_rig() as rig:
+        await rig.robot.connect()
+        step_m = rig.robot.stream_offer().limits.step_m
+        before = rig.robot.state().base_T_flange
+        with pytest.raises((SetpointRefused, TargetOutOfBounds)):
+            await refuse(rig, by_the_controller=by_the_controller)
+        assert not rig.logic.moving()
+        assert rig.logic.stops == 0
+        here = rig.arm.encoder_pose(rig.logic.clock())
+        travelled_m = before.translation[2] - here.translation[2]
+        assert travelled_m == pytest.approx(GOOD * step_m, abs=1e-6)
+        assert rig.robot.state().stop_latched
