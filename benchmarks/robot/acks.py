@@ -167,15 +167,12 @@ async def measure(way: str, calls: int) -> list[AckRow]:
         await reader.read()
         writer.close()
     stall_ms = round(1000 * max(stalls.longest_s, far.stalled_s), 1)
-    figures = {
-        name: (*_ms(found, 50, 99, 100), *_ms(bare, 50, 99))
-        for name, found in times.items()
-        if found
-    }
-    return [
-        AckRow(f"{way}: {name}", len(times[name]), *milliseconds, stall_ms=stall_ms)
-        for name, milliseconds in figures.items()
-    ]
+    rows = []
+    for name, found in times.items():
+        if found:
+            figures = [*_ms(found, 50, 99, 100), *_ms(bare, 50, 99), stall_ms]
+            rows.append(AckRow(f"{way}: {name}", len(found), *figures))
+    return rows
 
 
 def _ms(seconds: list[float], *percents: int) -> list[float]:
