@@ -21,8 +21,6 @@ Client = int
 """A connection, as long as it stands."""
 REMOTE, ENABLED, SAFETY_RUN, SAFETY_STOP_0 = 2, 6, 5, 9
 MOST_LOAD_KG = 35.0
-_SERVO_S = 0.008
-"""Time in which the arm reaches a streamed setpoint that is one small step away."""
 
 
 class DucoLogic:
@@ -53,6 +51,8 @@ class DucoLogic:
         self.tool_frame, self.work_object = [0.0] * 6, [0.0] * 6
         """Frames that are chosen there, in m and rad."""
         self._frames = {"tool": tool, "work object": work_frame}
+        self.servo_s = 0.008
+        """Time in which the arm reaches a streamed setpoint that is one small step away."""
         self._deadlines: dict[Client, float] = {}
         self._stopping = False
 
@@ -142,7 +142,7 @@ class DucoLogic:
             return self._refuse(TaskEnd.PARAMETERS, f"unknown frame {frames}")
         if self._stopping:
             return self.tasks.begin(TaskEnd.STOPPED).number
-        return self._begin(lambda: self.arm.follow(self.clock(), self._matrix(pose), _SERVO_S))
+        return self._begin(lambda: self.arm.follow(self.clock(), self._matrix(pose), self.servo_s))
 
     def _move(self, start: Callable[[], None]) -> int:
         self.tick()  # so that a stop that has just ended is not taken for one of this motion

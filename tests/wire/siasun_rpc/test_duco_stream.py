@@ -68,11 +68,11 @@ async def test_a_setpoint_that_is_refused(
 
 @pytest.mark.parametrize("by_the_controller", [True, False])
 async def test_an_arm_that_lags_behind_stands_at_the_last_setpoint_that_was_taken(
-    monkeypatch: pytest.MonkeyPatch, *, by_the_controller: bool
+    *, by_the_controller: bool
 ) -> None:
     """A stop would let it run on through its dead time, beyond every setpoint."""
-    monkeypatch.setattr("fakes.wire.duco.logic._SERVO_S", 0.08)
     async with duco_rig() as rig:
+        rig.logic.servo_s = 0.08
         await rig.robot.connect()
         step_m = rig.robot.stream_offer().limits.step_m
         before = rig.robot.state().base_T_flange
