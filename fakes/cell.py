@@ -58,6 +58,8 @@ class Cell:
         self.robots = {
             name: self._controller(name, robot)
             for name, robot in scenario.robots.items()
+            # Those are servers of the rack. The others here connect to the PC by themselves, as
+            # their job programs do.
             if robot.controller != "rpc"
         }
         self.stopping = asyncio.Event()
@@ -108,6 +110,7 @@ class Cell:
         while not self.stopping.is_set():
             now_s = self.clock()
             self.world.advance(now_s)
+            # After each advance, so that it sees every place that the arms have been at.
             self.watch.sample(now_s)
             await asyncio.sleep(_ADVANCE_S)
 

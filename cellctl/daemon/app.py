@@ -71,12 +71,16 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
     async with AsyncExitStack() as stack:
         data_dir = overrides.data_dir or Path(config.data_dir)
         store = AsyncRunStore(data_dir)
+        # The stack unwinds from its end: arms first, links next, and last of all the store, because
+        # everything before it still writes down how it ended.
         stack.callback(store.close)
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, stop.set)
         stack.callback(cell.workers.close)
         unit = UnitController(cell, store)
         stack.push_async_callback(unit.background.drain)
+        # Before anybody can command: runs that an earlier process left open are closed as
+        # interrupted, and its alarms are known again.
         await unit.open()
         arbiter, plc = await _command_path(config.plc, unit, store)
         local = local_api(cell, unit, arbiter, store, data_dir, registers=plc.shown)
@@ -86,6 +90,8 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.push_async_callback(local.server.stop)
         await local.server.start()
         stack.push_async_callback(cell.disconnect)
+        # The last thing on the stack is the first to happen: the arm is stopped while every link
+        # still stands and the fault is known.
         stack.push_async_exit(partial(_end, unit))
         await until_told(stop, _work(cell, unit, supervise(cell, unit, plc, publisher, store), plc))
         _log.info("asked to end")
@@ -134,6 +140,8 @@ async def until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> No
 
 def _numbered(error: BaseException) -> CellError:
     while isinstance(error, BaseExceptionGroup):
+        # The first is the cause. A task group cancels all others because of it, and what they raise
+        # on their way out says nothing more.
         error = error.exceptions[0]
     if isinstance(error, CellError):
         return error
@@ -156,6 +164,8 @@ async def _work(
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(supervision)
         await unit.come_up()
+        # Also with devices that are off: the daemon itself is up and waits for Clear. Systemd would
+        # start it again and again, and nobody could clear it.
         notify("READY=1")
         if not unit.live:
             _tell(cell, plc, ready=False, error=str(unit.machine.fault or "aborted"))

@@ -37,6 +37,7 @@ class DiskWatch:
             await self._fail(run, fault)
 
     async def _fail(self, run: int, fault: CellError) -> None:
+        # A disk that is full stays full, and one alarm a run is enough to read.
         self._told = run
         await self._unit.machine.fail(fault)
 

@@ -17,6 +17,7 @@ def notify(state: str) -> None:
     address = os.environ.get("NOTIFY_SOCKET")
     if not address:
         return
+    # An abstract socket of Linux: systemd writes its leading zero byte as @.
     if address.startswith("@"):
         address = "\0" + address[1:]
     try:

@@ -33,6 +33,7 @@ async def supervise(
     beat = partial(_beat, plc, Watchdog())
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(unit.machine.beat_while_alive(beat))
+        # The line would only see its heartbeat freeze, and not why.
         tasks.create_task(plc.failed())
         tasks.create_task(_publish(publisher))
         tasks.create_task(_watch_links(cell, unit))
@@ -89,6 +90,7 @@ class LinkMonitor:
         Devices that were never reached are the matter of Clear.
         """
         if not self._unit.live:
+            # Clear connects everything anew, so what is broken after it is news.
             self._broken.clear()
             return
         for name, check in self._cell.health_checks().items():
@@ -109,6 +111,8 @@ class LinkMonitor:
     async def _look_at_trip(self, name: str, trip: GuardTrip | None) -> None:
         """A trip that no step waits for is a fault; the guard's death is one of the above."""
         known, self._trips[name] = self._trips.get(name), trip
+        # By identity: the client keeps one object for as long as a trip is latched, and a second
+        # trip with the same figures is a second event.
         if trip is None or trip is known or trip.reason is TripReason.GUARD_DIED:
             return
         if not self._unit.awaits_trips(name):

@@ -66,6 +66,7 @@ class Gatekeeper:
         asked_for = host_name(request.headers.get("host", ""))
         if name and _is_loopback(address) and asked_for not in LOOPBACK:
             return ""
+        # A proxy on the panel itself would lend its place to whoever sits behind it.
         if name and request.headers.get("x-forwarded-for"):
             return ""
         return name
@@ -78,10 +79,12 @@ def require_own_page(request: Request) -> None:
     """
     if request.headers.get("content-type", "").split(";")[0] != "application/json":
         raise Problem(415, "media-type", "send application/json")
+    # A browser does not send this header by itself, so no other page can have it sent.
     if request.headers.get("authorization"):
         return
     origin = request.headers.get("origin")
     same = request.headers.get("sec-fetch-site") == "same-origin"
+    # Sec-Fetch-Site is missing on plain http; Origin comes with every POST and DELETE.
     if origin is not None:
         same = origin.partition("://")[2] == request.headers.get("host", "")
     if not same:

@@ -101,6 +101,8 @@ class ArchiveReader:
 
     async def _ask(self, read: Callable[[RunStore], T]) -> T:
         def work() -> T:
+            # Never created by a reader: an empty store in the place of one that is not mounted
+            # would look like a cell that has done nothing.
             with closing(RunStore(self.data_dir, create=False)) as store:
                 return read(store)
 

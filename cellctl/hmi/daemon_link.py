@@ -40,6 +40,7 @@ class DaemonLink:
             try:
                 await self._follow()
             except (OSError, EOFError, TimeoutError, ValueError) as error:
+                # Once, and not at every try: a daemon may be away for a night.
                 if self._hub.linked:
                     _log.warning("daemon lost", reason=type(error).__name__)
             await self._hub.set_linked(linked=False)
@@ -54,6 +55,8 @@ class DaemonLink:
                     line = await reader.readuntil()
                 await self._hub.take(line)
                 if not self._hub.linked:
+                    # Only after the first line: a socket that accepts and says nothing is no
+                    # daemon.
                     await self._hub.set_linked(linked=True)
         finally:
             writer.transport.abort()

@@ -40,6 +40,7 @@ class Streams:
         """
         version = 0
         try:
+            # How long a browser waits before it connects again by itself, in ms.
             yield b"retry: 1000\n\n"
             while True:
                 # The beat makes the write to a client fail that has gone without a word.

@@ -50,6 +50,8 @@ class Child:
                 env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
         child = cls(name, process, Queue(), log)
+        # Read all the time: a pipe that nobody empties fills up, and the child would stand still in
+        # its next print.
         threading.Thread(target=child._read, daemon=True).start()
         return child
 
@@ -59,6 +61,7 @@ class Child:
             try:
                 message = json.loads(line)
             except ValueError:
+                # Libraries print, too; a line that is no JSON must not end the reading.
                 message = {"text": line.rstrip()}
             self.lines.put(message if isinstance(message, dict) else {"text": message})
         self.lines.put(None)
@@ -111,6 +114,7 @@ class Child:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(STOP_TIMEOUT_S)
         with contextlib.suppress(ProcessLookupError):
+            # The group: whatever the child has started and left behind goes with it.
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait(STOP_TIMEOUT_S)
 

@@ -115,6 +115,8 @@ def _with_gige_cameras(
             "tries": 1,
         }
         text = _edited(text, section, device["settings"])
+    # Edited as text, so that comments and line numbers stay, and checked as data: a file that is
+    # written in another way must not be changed by half.
     if tomllib.loads(text) != written:
         raise UnusualCellFile(
             f"{cell} does not have driver and settings of each camera in one line of its section"

@@ -82,6 +82,7 @@ class Session:
         self._console.print(
             f"{self._demo.title}: starting fake cell (seed {self._seed}) and daemon …"
         )
+        # Before the fake cell: it writes the file by which the producer finds its cameras.
         self._gentl, how = way_of_images(
             self._files.cameras, self._files.cell, self._load_scenario, self._folder / "gentl"
         )
@@ -176,6 +177,7 @@ class Session:
         parts = ("--serial", serial, "--mate-serial", mate)
         result = self._line("--recipe", str(self._demo.recipe), *parts)
         faults = self._faults()
+        # Asked at once: the truth is that of the end of the job.
         truth = self._control.request("truth")["truth"]
         self._console.print("writing record and report …")
         wall_s = time.monotonic() - self._begun_s

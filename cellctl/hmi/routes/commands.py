@@ -27,6 +27,7 @@ UNLIMITED = frozenset({"stop", "abort"})
 _STATUS = {
     RejectCode.ROLE_MISSING: 403,
     RejectCode.NOT_AT_A_PANEL: 403,
+    # The precondition was the state that the person saw.
     RejectCode.SUPERSEDED: 412,
 }
 
@@ -54,11 +55,14 @@ async def command(request: Request, body: CommandBody, key: Key, visitor: Asked)
     """
     parts = request.app.state.parts
     name = body.command.request
+    # Whoever wants the cell to stop is never told to wait.
     if name not in UNLIMITED:
         wait_s = parts.commands.wait_s(visitor.key)
         if wait_s:
             raise Problem(429, "commands", "too many commands").later(wait_s)
     if visitor.session is not None:
+        # A command is what shows that somebody is there. Looking on does not, because a page goes
+        # on asking for the view when its person has left.
         visitor.session.used_s = now_s()
     message = PageCommand(on_behalf=_on_behalf(visitor, body, key), command=body.command)
     try:

@@ -86,9 +86,11 @@ async def version() -> dict[str, str]:
 async def events(request: Request, visitor: Asked) -> StreamingResponse:
     """Server-sent events ``snapshot``, ``description``, ``link`` and ``beat``."""
     streams = request.app.state.parts.streams
+    # Before the response begins: once it streams, its status can no longer be 429.
     streams.admit(visitor.key)
     return StreamingResponse(
         streams.events(visitor.key),
         media_type="text/event-stream",
+        # nginx would else collect events until its buffer is full.
         headers={"Cache-Control": "no-store", "X-Accel-Buffering": "no"},
     )

@@ -61,6 +61,8 @@ async def artefact(request: Request, number: int, name: str, _visitor: Asked) ->
     headers = {"ETag": etag, "Cache-Control": "private, max-age=31536000, immutable"}
     if request.headers.get("if-none-match") == etag:
         return Response(status_code=304, headers=headers)
+    # A process may keep files of any type in a record, HTML with scripts among them. Shown from
+    # here it would act as this page.
     if file.media_type not in _SHOWN:
         headers["Content-Disposition"] = f'attachment; filename="{file.sha256[:12]}"'
     return Response(data, media_type=file.media_type, headers=headers)
@@ -70,6 +72,7 @@ async def artefact(request: Request, number: int, name: str, _visitor: Asked) ->
 async def report(request: Request, number: int, _visitor: Asked) -> Response:
     """The report as one file to keep, made now; a page of its own, not a part of this one."""
     archive = request.app.state.parts.archive
+    # Asked first, so that a number that does not exist is 404 and costs no process.
     await archive.run(number)
     with tempfile.TemporaryDirectory() as folder:
         data = await _made(archive.data_dir, number, Path(folder))

@@ -33,6 +33,7 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> dict[st
     """Sign in; the answer sets a cookie that scripts cannot read."""
     parts = request.app.state.parts
     address = address_of(request)
+    # By the address and not by the name: otherwise anybody could lock a colleague out.
     wait_s = parts.sign_ins.wait_s(address)
     if wait_s:
         raise Problem(429, "sign-ins", "too many tries from here").later(wait_s)

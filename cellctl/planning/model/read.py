@@ -73,6 +73,8 @@ def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: 
     shape, pose = _shape(keys, folder)
     link = keys.link if isinstance(keys, LinkBodyKeys) else 0
     solid = Solid(name, arm, link, pose, shape, margin_m, keys.stand_in)
+    # Fixtures may be anywhere in the hall; a part of an arm that lies metres from its link was
+    # written in another unit.
     reach_m = float(np.linalg.norm(pose[:3, 3])) + shape.radius_m
     if arm is not None and reach_m > _FARTHEST_M:
         raise SizeImplausible(
@@ -98,6 +100,7 @@ def _capsule(keys: CapsuleKeys) -> tuple[Shape, Array]:
     way_m = end_m - start_m
     length_m = float(np.linalg.norm(way_m))
     turn = Rotation.identity()
+    # A capsule without length is a ball, which has no direction to be turned to.
     if length_m > 0.0:
         turn = Rotation.align_vectors([way_m], [[0.0, 0.0, 1.0]])[0]
     pose = RigidTransform.from_components((start_m + end_m) / 2, turn)

@@ -43,6 +43,7 @@ class CapsuleShape(Shape):
     def mesh(self) -> trimesh.Trimesh:
         """About the origin."""
         mesh = trimesh.creation.capsule(self.length_m, self.ball_m, count=[12, 12])
+        # FCL has a capsule about its middle; the picture must not depend on where trimesh has it.
         mesh.apply_translation(-mesh.bounds.mean(axis=0))
         return mesh
 

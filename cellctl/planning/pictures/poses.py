@@ -29,6 +29,8 @@ def drawn_bodies(scene: CellScene) -> Iterator[DrawnBody]:
     for name, arm in scene.arms.items():
         for number, pose in enumerate(arm.config.poses_deg):
             for solid, matrix in scene.placed({name: arm.taught_rad(pose)}):
+                # The base of an arm is in the same place at every pose: drawn once, or its ghosts
+                # would cover it.
                 if solid.arm == name and not (solid.still and number):
                     mesh = solid.shape.mesh().copy().apply_transform(matrix)
                     yield DrawnBody(f"{solid.name} at {pose}", solid, mesh, ghost=number > 0)

@@ -46,6 +46,7 @@ def polyline(arm: PlannedArm, move: StatedMove) -> Array:
 def _linear(arm: PlannedArm, move: StatedMove, start_rad: Array) -> Array:
     end = move.end.base_T_flange
     if end is None:
+        # A place that is taught by joints: the line goes to where these put the flange.
         end = arm.base_T_flange(move.end.joints_rad)
     way = linear_joint_way(arm.chain, start_rad, end, _STEPS)
     if isinstance(way, BrokenWay):

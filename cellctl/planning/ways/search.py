@@ -33,11 +33,13 @@ def free_way(
     RRT-Connect (Kuffner and LaValle, ICRA 2000), the quickest of a few tries. A seed gives the same
     way again unless the time is up. Raises ``NoFreeWay``.
     """
+    # The straight line first: where it is free, any other way would be longer.
     direct = np.vstack([start_rad, end_rad])
     if is_free_way(around, direct):
         return direct
     found = []
     for number in range(tries):
+        # From 1 on: OMPL does not accept 0 for a seed.
         rough = _tree(around, start_rad, end_rad, seed * tries + number + 1, search_s / tries)
         if rough is not None:
             rng = np.random.default_rng([seed, number])
@@ -70,6 +72,8 @@ def _tree(
     around: Surroundings, start_rad: Array, end_rad: Array, seed: int, search_s: float
 ) -> Array | None:
     util.noOutputHandler()
+    # OMPL has one generator for the whole process; without a seed of ours two runs would plan two
+    # ways.
     util.RNG.setSeed(seed)
     space = base.RealVectorStateSpace(6)
     bounds = base.RealVectorBounds(6)
@@ -91,6 +95,7 @@ def _tree(
     setup.setStartAndGoalStates(_state(space, start_rad), _state(space, end_rad))
     setup.setPlanner(geometric.RRTConnect(setup.getSpaceInformation()))
     setup.solve(search_s)
+    # Out of time OMPL also gives a way that only comes near the goal.
     if not setup.haveExactSolutionPath():
         return None
     states = setup.getSolutionPath().getStates()
@@ -132,6 +137,8 @@ def _between(way_rad: Array, place: float) -> Array:
 
 
 def _lines_free(around: Surroundings, way_rad: Array) -> bool:
+    # Less than the tree has kept, or its own lines would not pass; more than nothing, so that
+    # points may still be rounded.
     return is_free_way(around, way_rad, RESERVE_M / 2)
 
 

@@ -76,6 +76,8 @@ class Eyes:
         await settle(self.arm.guard)
         if self.exposures is not None:
             await self.exposures.find(camera)
+        # Taken before the first image and asked again after the last: an image between two
+        # different poses belongs to neither.
         state = self.arm.robot.state()
         images, found = [], []
         for number in range(1, self.frames + 1):

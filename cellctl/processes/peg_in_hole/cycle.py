@@ -97,6 +97,7 @@ async def search_and_insert(
     task = plan.task
     order = ", then ".join(name.value for name in plan.choice.order)
     tell(f"search: {order}")
+    # For its time stamp: the deadline of the search counts on the clock of the samples.
     begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
     probe = TouchProbe(
         motions,
@@ -119,6 +120,7 @@ async def search_and_insert(
         seat_force_n=fed.seat_force_n,
         seat_slope_n_m=fed.seat_slope_n_m,
         capture=capture,
+        # The part may as well have slipped in the search, which presses up to its own limit.
         greatest_force_n=max(fed.greatest_force_n, task.limits.search_n),
         grip_force_n=plan.grip_force_n,
         retouch_error_m=None,

@@ -24,6 +24,8 @@ async def leave_hole(cell: PegCell) -> None:
     There is no gripper in the process: the part comes along, as it is held.
     """
     recipes = peg_recipes(cell.cell.config)
+    # After a restart nobody remembers which recipe has run, so each is asked whether the tip is in
+    # its hole.
     for recipe in recipes:
         await _out_of(cell, recipe)
     if recipes:
@@ -41,6 +43,7 @@ async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
     missing_m = _CLEAR_M + uncertain_m - height_m
     if np.hypot(x_m, y_m) > _BESIDE_M or missing_m <= 0:
         return
+    # Along the axis of the hole: in any other direction a tight peg would jam.
     up = base_T_hole.rotation.apply([0.0, 0.0, missing_m])
     target = RigidTransform.from_translation(up) * here
     wrench_frame = pose_from_xyzabc(recipe.flange_T_tip)
@@ -50,4 +53,5 @@ async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
         await move(
             cell.robot.move_linear(target, speed_m_s=_SLOW_M_S, acceleration_m_s2=_SLOW_M_S2)
         )
+    # Those were the limits of a pull; the move home arms limits of its own.
     await cell.arm.guard.disarm()

@@ -49,6 +49,7 @@ def draw_part(scenario: SocketScenario, seed: int, number: int) -> PegPart:
 def fit_with(section: FitSection, faults: FaultBoard) -> Fit:
     """Shape with the faults that are injected now."""
     fit = nominal_fit(section)
+    # Without a hole no other fault of it has a meaning.
     if faults.active("hole_absent"):
         return replace(fit, hole_present=False)
     if (fault := faults.active("blocked")) is not None:

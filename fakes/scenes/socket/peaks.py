@@ -23,6 +23,8 @@ class ForcePeaks:
         """The wrench on the peg in this millisecond, shape (6,)."""
         longest = len(self._last)
         self._quiet = 0 if wrench.any() else self._quiet + 1
+        # Nothing in the longest window, so no mean can grow. Most of the time nothing touches, and
+        # this is called a thousand times a second.
         if self._quiet > longest:
             return
         self._tick += 1

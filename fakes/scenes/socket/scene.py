@@ -77,6 +77,7 @@ class SocketScene(World[SocketScenario]):
 
     def faults_changed(self) -> None:
         """Faults of hole and fingers act at once."""
+        # The peg stays where it is: a fault of the hole is injected while it stands there.
         self.peg.change(fit_with(self.scenario.fit, self.faults))
         self.peg.hold_with(grip_force_n(self.scenario, self.faults))
 

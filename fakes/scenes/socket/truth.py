@@ -18,9 +18,11 @@ def truth_of(world: "SocketScene") -> dict[str, Any]:
     peg, part = world.peg, world.part
     x, y, z, tilt_x, tilt_y, yaw = peg.pose
     wanted = world.nominal_fit
+    # Beside the mouth the tip may hang below the face of a plug without being in anything.
     within = math.hypot(x, y) < peg.fit.mouth_radius_m
     depth_mm = -z / MM if within else 0.0
     wrong = [name for name in _HOLE_FAULTS if world.faults.active(name)]
+    # By the hole that was wanted: deep in a wrong one is not seated.
     seated = within and depth_mm > wanted.depth_m / MM - _SEAT_MM and not wrong
     return {
         "load": world.loads,

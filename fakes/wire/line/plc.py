@@ -99,6 +99,7 @@ class Line:
             )
             if report.state == "IDLE":
                 return
+            # Somebody else has started that job, and it is not ours to stop.
             if report.state == "EXECUTE":
                 raise CellRefused(report, "the cell works on another part")
             seq, taken = await self.command(_WAYS_TO_IDLE.get(report.state, STOP))
@@ -123,6 +124,7 @@ class Line:
         """
         while True:
             before = await self._link.until(lambda _report: True, STEP_TIMEOUT_S)
+            # Numbers go round without 0, which says that no command was given yet.
             self._seq = seq = max(before.ack_seq, self._seq) % 0xFFFF + 1
             if before.ack_seq == 0:
                 self._seq = seq = 1
@@ -183,6 +185,7 @@ async def play(host: str, port: int, job: dict[str, object], connect_timeout_s: 
         try:
             await asyncio.wait({work, watch}, return_when=asyncio.FIRST_COMPLETED)
             if not work.done():
+                # The link has ended before the job: its error is what happened.
                 watch.result()
             report = work.result()
         finally:

@@ -39,6 +39,7 @@ class InsertionSample:
         """x and y of where the axial force acts, shape (2,); None below ``least_n``."""
         if self.force_n[2] <= least_n:
             return None
+        # From m = r × f with f along z.
         lever = np.array([-self.moment_n_m[1], self.moment_n_m[0]]) / self.force_n[2]
         return np.asarray(lever)
 

@@ -127,6 +127,7 @@ def _verdict(failed: set[str], *, points_at_one: bool) -> InsertionVerdict:
         return InsertionVerdict.SEATED
     # The entry comes first: what goes wrong there explains what follows.
     if _EARLY in failed:
+        # A module that is turned touches with one contact first, too, and shows by its moment.
         if points_at_one and _MOMENT not in failed:
             return InsertionVerdict.BENT_PIN
         sideways = _EARLY_SIDE in failed or _MOMENT in failed

@@ -54,6 +54,8 @@ class InsertionWatch:
     def feed(self, sample: InsertionSample) -> InsertionTrip | None:
         """The next sample; the trip, once there is one."""
         smooth, slow = self._latest.of(sample), self._slow.of(sample)
+        # The first bound that was passed is the cause; what is passed after it is often its
+        # consequence.
         if self.trip is None:
             self.trip = self._judge(smooth, slow)
         self._trend.append((sample.t_s, smooth.axial_n))
@@ -84,6 +86,7 @@ class InsertionWatch:
         if axial_n <= self._limits.entry_axial_n:
             return False
         before = [force for _, force in self._trend]
+        # Against its own past: a steady pull of a hose lies above no mean of itself.
         return not before or axial_n > float(np.mean(before)) + self._limits.entry_rise_n
 
 

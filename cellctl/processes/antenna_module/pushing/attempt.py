@@ -50,6 +50,7 @@ class PushAttempt:
         # A resistance at the rim of the connector turns by half its length.
         lever_m = max(self.socket.outline_m) / 2.0
         moment_n_m = bounds.axial_n * lever_m + _LEAST_MOMENT_N_M
+        # Infinite in a phase that bounds no turning moment.
         turn_n_m = min(bounds.moment_z_n_m, moment_n_m)
         side_n, axial_n = bounds.side_n, bounds.axial_n
         limits = (side_n, side_n, axial_n, moment_n_m, moment_n_m, turn_n_m)
@@ -91,6 +92,7 @@ class PushAttempt:
 
     def feed_watch(self) -> InsertionTrip | None:
         """Show the watch every sample since the last call; the bound that was passed, if any."""
+        # Every sample and not the newest: a peak between two moves is a contact as well.
         for sample in self.curve().after(self.fed_s):
             self.fed_s = sample.t_s
             self.watch.feed(sample)
@@ -99,6 +101,7 @@ class PushAttempt:
     def curve(self) -> InsertionCurve:
         """What was recorded so far, as far as the depth is known."""
         recorded = self.recorder.curve()
+        # While the arm has not reported yet, nobody knows at which depth a sample was taken.
         known = np.isfinite(recorded.travel_m)
         wrench = recorded.wrench[known]
         return InsertionCurve(

@@ -25,6 +25,7 @@ async def back_out(attempt: PushAttempt, fault: CellError, stand_off_m: float) -
     Faults of the robot leave the arm where it is. Aborts and stops never come here: they cancel.
     """
     try:
+        # First of all, whatever the fault was: the arm may still be on its way into the socket.
         await attempt.robot.stop()
         pressing = isinstance(fault, (PluggingError, ForceError, LineLostInContact))
         if pressing and able_to_leave(attempt.robot, attempt.guard):
@@ -47,6 +48,7 @@ async def leave(attempt: PushAttempt, stand_off_m: float) -> None:
     turn = (mx + MOMENT_N_M, my + MOMENT_N_M, mz + MOMENT_N_M)
     await attempt.arm_with(guard_limits((*most, *turn), attempt.sensing))
     here = attempt.robot.state().base_T_flange
+    # From where the stop has left the arm, not from where it was sent.
     up_m = attempt.way.depth_of(here) + stand_off_m
     target = attempt.way.outwards_from(here, up_m)
     trip = await attempt.move(

@@ -41,6 +41,7 @@ async def push_in(attempt: PushAttempt, step_m: float) -> float:
     seat = _SeatFinder(limits.seat_rise_n, limits.seat_within_m)
     while True:
         next_m = min(depth_m + _step_m(attempt, depth_m, step_m), deepest_m)
+        # As deep as the drawing allows, and nothing has stopped the plug.
         if next_m <= depth_m:
             raise PlugShortSeat(f"no seat felt down to {depth_m / MM:.2f} mm")
         bounds = limits.at(next_m)
@@ -48,6 +49,7 @@ async def push_in(attempt: PushAttempt, step_m: float) -> float:
             # Armed anew at standstill: within a phase the limits are the same everywhere.
             await attempt.arm(bounds)
             phase = bounds.phase
+        # A step and not a straight move: the controller itself refuses one that is too long.
         motion = attempt.robot.step(attempt.way.pose_at(next_m), speed_m_s=bounds.speed_m_s)
         await _watched(attempt, motion, phase)
         depth_m = next_m
@@ -122,6 +124,8 @@ _BY_CAUSE: dict[TripCause, type[PluggingError]] = {
 def _met(attempt: PushAttempt, cause: TripCause, words: str) -> PluggingError:
     """The fault that the curve so far names; it may point at a contact, which a trip cannot."""
     curve = attempt.curve()
+    # At the entry the curve can name a single bent contact; a fault that only says that there is no
+    # seat yet is none.
     if cause is TripCause.AXIAL_EARLY and len(curve.t_s) >= _FEWEST_SAMPLES:
         judged = judge_insertion(curve, attempt.socket, attempt.limits).fault
         if judged is not None and not isinstance(judged, PlugShortSeat):

@@ -31,6 +31,7 @@ async def pick(found: ModuleFound) -> Picked:
     await run.cell.gripper.close()
     gripped = run.cell.arm.robot.state().base_T_flange
     await run.mover.slowly_to(above)
+    # Asked again in the air: on the tray a part lies between the jaws whether they hold it or not.
     await run.cell.gripper.confirm_part()
     # The arm is in the same orientation, so what the sensor itself is off drops out.
     hanging_n = await _force_n(run)

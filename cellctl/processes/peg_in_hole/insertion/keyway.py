@@ -35,6 +35,7 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
     motion = await motions.feed(through_m, task.limits.search_n)
     greatest_rad = _SWEEP_RATIO * keys.uncertainty_rad
     for target_rad in (greatest_rad, -greatest_rad):
+        # Through, or stopped by something else than the keys, which turning would not help.
         if motion.ended is not Ended.FORCE or not _on_keys(motion.last, task, keys):
             return
         motion = await motions.turn(

@@ -70,6 +70,7 @@ def choose_search(task: SearchTask, wanted: SearchName | None = None) -> SearchC
     """
     parameters = search_parameters(task)
     estimates = estimate_searches(task, parameters)
+    # A recipe that names a search is taken at its word: nothing follows when it finds nothing.
     asked = _default_order(task) if wanted is None else (wanted,)
     if not is_wide(task) and task.cell.loop_n_s_m > _GREATEST_LOOP_N_S_M:
         raise SearchImpossible(
@@ -86,6 +87,7 @@ def choose_search(task: SearchTask, wanted: SearchName | None = None) -> SearchC
         and not (name in TILTED and noisy is not None)
     )
     if not order:
+        # Noise is the reason only where no other search was asked for; else time is.
         if noisy is not None and all(name in TILTED for name in asked):
             raise HeightTooNoisy(noisy)
         raise SearchImpossible(_reason(asked, estimates, limit_s))

@@ -59,6 +59,7 @@ def read_ticks(text: str) -> dict[str, Array]:
         rows = list(csv.reader(io.StringIO(text)))
     except csv.Error as error:
         raise ValueError(f"no table of ticks: {error}") from error
+    # With other columns or other units it would be read, and be wrong.
     if len(rows) < 2 or tuple(rows[0]) != COLUMNS:
         raise ValueError("no table of ticks")
     values = np.array([[float(cell) for cell in row] for row in rows[1:]])

@@ -62,6 +62,8 @@ async def _touch_arc(probe: TouchProbe, edge_m: Array, rim_m: float) -> list[Arr
     for angle in _angles():
         outwards = np.array([np.cos(angle), np.sin(angle)])
         known = len(points) >= 3
+        # Along its first edge the plug is known from the slide, across it only as well as the hole
+        # was before.
         gap_m = _NEAR_M if known else _NEAR_M + task.cell.uncertainty_m * abs(np.sin(angle))
         begin_m = centre_m + (rim_m + gap_m) * outwards
         if not points:
@@ -75,6 +77,7 @@ async def _touch_arc(probe: TouchProbe, edge_m: Array, rim_m: float) -> list[Arr
             None if known else far_m_s,
         )
         probe.still_in_time(touched.last)
+        # Nothing was met at this angle; three of the touches are enough for a circle.
         if touched.ended is not Ended.FORCE:
             continue
         probe.trace.note(touched.last, Felt.WALL)

@@ -35,6 +35,7 @@ async def slide_to_edge(probe: TouchProbe, direction: Array, rim_m: float) -> Ed
     A loss of support within the uncertainty of the hole may be the hole: there the peg is pressed.
     """
     begin_m = await _here(probe)
+    # A little more than the diameter: an edge is in reach from anywhere on the face.
     end_m = begin_m + 2.2 * rim_m * direction
     while True:
         stop = LostSupport(probe.press_n)
@@ -42,6 +43,7 @@ async def slide_to_edge(probe: TouchProbe, direction: Array, rim_m: float) -> Ed
         if motion.ended is Ended.TRAVEL:
             return None
         here_m = motion.last.task_position_tip_m[:2]
+        # Where the support began to go: until that was believed the peg has gone on.
         lost_m = here_m if stop.begin is None else stop.begin.task_position_tip_m[:2]
         if np.linalg.norm(lost_m) > rim_m / 2:
             probe.trace.note(motion.last, Felt.EDGE)

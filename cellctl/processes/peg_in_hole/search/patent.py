@@ -87,6 +87,7 @@ class PatentCircumcentre(SearchStrategy):
         if second is None or third is None:
             return None
         chords = (second.length_m / (2 * rim_m), third.length_m / (2 * rim_m))
+        # Better no centre than one that a small error of a point has moved far.
         if not all(_LEAST_CHORD < chord < _MOST_CHORD for chord in chords):
             return None
         points = np.stack([edge.point_m for edge in (first, second, third)])

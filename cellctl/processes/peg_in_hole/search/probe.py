@@ -98,6 +98,8 @@ class TouchProbe:
         await self.motions.back_out(_LIFT_M - at_m)
         over = np.array([*xy_m, at_m - _LIFT_M])
         await self.motions.move_free(over, rotation, _FREE_M_S)
+        # A tilted peg tells the hole by how deep it dips; a fifth beyond the deepest dip there is
+        # nothing left to wait for.
         deeper_m = 1.2 * self.parameters.tilted_dip.value if np.any(rotation) else _LIFT_M
         down = np.array([0.0, 0.0, 1.0])
         touched = await self.motions.touch(down, _LIFT_M + deeper_m, self.press_n)
@@ -110,6 +112,7 @@ class TouchProbe:
             way_m,
             self.press_n,
             speed_m_s,
+            # Asked in the motion itself: one slide may take longer than the time that is left.
             lambda sample: until(sample) or self._late(sample),
             self.task.limits.search_n,
         )
@@ -169,7 +172,9 @@ class TouchProbe:
                     break
                 if await self._enters_between(stop.begin, motion.last):
                     return True
+                # It was a scratch or an edge: the turn goes on behind it and does not begin anew.
                 rest_m = _beyond(rest_m, motion.last.task_position_tip_m[:2])
+            # A turn without an entry is knowledge too: a strategy that follows finds it in the map.
             self.hole_map.rule_out(way_m + centre_m)
         return False
 
@@ -177,6 +182,8 @@ class TouchProbe:
         """Back to the middle of where nothing carried the peg, and press there."""
         here_m = end.task_position_tip_m[:2]
         if begin is not None:
+            # The peg has crossed the hole along a chord, and no point of a chord is nearer to the
+            # centre than its middle.
             middle_m = (begin.task_position_tip_m[:2] + here_m) / 2
             speed = self.parameters.touch_speed.value
             await self.motions.slide(
@@ -214,6 +221,7 @@ def held(depth_m: float) -> Stop:
 
     def condition(sample: ContactSample) -> bool:
         if sample.task_position_tip_m[2] <= depth_m:
+            # One reading above that depth begins the time anew, so noise cannot add up to an entry.
             since.clear()
             return False
         since.append(sample.time_s)

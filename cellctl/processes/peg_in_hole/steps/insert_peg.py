@@ -40,6 +40,7 @@ async def find_and_insert(touched: FaceTouched) -> PegInserted:
         await record_failure(run.recorder, log, fault)
         raise
     finally:
+        # Whatever came of it: map and path show where a search has looked that found nothing.
         await record_search(run.recorder, log)
     return PegInserted(run, touched.frames, result)
 
@@ -51,6 +52,8 @@ async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleR
     await motions.touch(_DOWN, 2 * CLEAR_M, plan.task.limits.search_n)
     try:
         result = await search_and_insert(motions, plan, _ON_FACE, log, run.say)
+        # Before the arm leaves the part: what was found is on the disk then, also when the way out
+        # fails.
         await motions.hold_while(record_cycle(run, result))
         if result.judgement.fault is not None:
             raise result.judgement.fault

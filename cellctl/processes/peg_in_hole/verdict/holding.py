@@ -21,6 +21,7 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
     """Of two; the part is left at the angle at which it was."""
     begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
     upright = np.array([0.0, 0.0, float(begun.task_rotation_tip_rad[2])])
+    # Only the change counts: the moment that is there before the turn is none of the keys.
     free_nm = float(begun.moment_nm[2])
     hold = np.array([0.0, 0.0, _PRESS_N])
 
@@ -33,6 +34,8 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
         target = upright + np.array([0.0, 0.0, sign * (2 * keys.window_rad + _BEYOND_RAD)])
         turned = await motions.turn(target, hold, _TURN_RAD_S, met)
         resisted += turned.ended is Ended.CONDITION
+        # Back each time, so that both directions begin from the same angle and the part stays as it
+        # was.
         await motions.turn(upright, hold, _TURN_RAD_S)
     return resisted
 

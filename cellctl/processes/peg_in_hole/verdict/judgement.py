@@ -116,6 +116,7 @@ def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLim
 
 def _capture_checks(capture: LateralCapture | None, task: SearchTask) -> Checks:
     most_mm = 2 * task.fit.clearance_m / _MM + _PLAY_MM
+    # Never pushed: nothing has resisted, and no figure is known.
     found = capture or LateralCapture(0, None, None, nan, nan)
     return (
         LimitCheck(RESISTED, found.resisted, 4, "", "min"),
@@ -128,6 +129,7 @@ def _capture_checks(capture: LateralCapture | None, task: SearchTask) -> Checks:
 
 def _slip_check(evidence: InsertionEvidence) -> LimitCheck:
     """Either no force could make the part slip, or a touch shows that it did not."""
+    # A grip force of 0 is as unknown as none: no number, so that the check fails.
     ratio = _known(evidence.greatest_force_n) / (evidence.grip_force_n or nan)
     by_force = LimitCheck(SLIP, ratio, _MOST_OF_GRIP, "")
     if by_force.passed:

@@ -16,6 +16,8 @@ _SETTLE_S = 1.0
 
 def push_force_n(cell: CellFigures) -> float:
     """More than friction, and more than the slope of a chamfer, could resist with."""
+    # How much a 45° chamfer with this friction holds against a push, as a multiple of what presses
+    # on it: the tangent of 45° and the angle of friction together.
     slope = (1 + cell.friction) / (1 - cell.friction)
     return max(_LEAST_PUSH_N, 2 * _PRESS_N * slope) + 1.3 * cell.force_sigma_n
 
@@ -35,6 +37,8 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
             pushes.append(await motions.touch(direction, way_m, push_n, _SPEED_M_S))
     depths = [push.last.task_position_tip_m[2] for push in pushes]
     forces = np.array([push.last.force_n for push in pushes])
+    # Between two opposite pushes the force must change by both of them. A sensor that is dead shows
+    # the same twice.
     change_n = max(np.ptp(forces[:2, 0]), np.ptp(forces[2:, 1]))
     return LateralCapture(
         resisted=sum(push.ended is Ended.FORCE for push in pushes),
@@ -51,4 +55,5 @@ def _play_m(
     if not first.ended is second.ended is Ended.FORCE:
         return None
     apart = first.last.task_position_tip_m[axis] - second.last.task_position_tip_m[axis]
+    # Each push ends beyond its wall by what the arm yields under it.
     return float(apart) - 2 * yields_m
