@@ -19,6 +19,7 @@ from genicam import genapi, gentl
 from harvesters.core import Harvester
 
 from drivers.camera.gige.library_process.delivered import delivered
+from drivers.camera.gige.library_process.loss_event import LossEvent
 from drivers.camera.gige.library_process.producers import Producers
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 
@@ -160,7 +161,7 @@ def taken(producer: Path, fakes: FakeCameras) -> None:
 
 
 def loss(producer: Path, fakes: FakeCameras) -> None:
-    """The event of the device module that says, once, that its camera is lost."""
+    """The event of a device module that says, once, that its camera is lost; to the driver too."""
     harvester = Harvester()
     harvester.add_file(str(producer))
     harvester.update()
@@ -174,6 +175,18 @@ def loss(producer: Path, fakes: FakeCameras) -> None:
     assert not told(event, 50)
     event.unregister_event()
     device.close()
+    device.open(gentl.DEVICE_ACCESS_FLAGS_LIST.DEVICE_ACCESS_EXCLUSIVE)
+    for_driver = LossEvent(device)
+    assert not for_driver.told()
+    fakes.inject(LEFT, "lost")
+    assert for_driver.told()
+    assert not for_driver.told()
+    for_driver.close()
+    assert not for_driver.told()
+    device.close()
+    no_events = LossEvent(device)
+    assert not no_events.told()
+    no_events.close()
     harvester.reset()
 
 

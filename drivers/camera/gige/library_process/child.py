@@ -82,6 +82,8 @@ class _Cameras:
 
     def close(self) -> None:
         """Let everything go; a camera that is gone does not hinder the others."""
+        for camera in self._open:
+            camera.close()
         self._open = []
         if self._producers is not None:
             self._producers.close()

@@ -12,6 +12,7 @@ from drivers.camera.gige.library_process.chunks import image_chunks
 from drivers.camera.gige.library_process.delivered import delivered, format_name, said, time_stamp
 from drivers.camera.gige.library_process.features import Features
 from drivers.camera.gige.library_process.image_memory import ImageMemory
+from drivers.camera.gige.library_process.loss_event import LossEvent
 from drivers.camera.gige.library_process.producers import Found
 from drivers.camera.gige.library_process.selection import label_of, opened
 from drivers.camera.gige.library_process.trouble import (
@@ -28,6 +29,8 @@ _EMPTY_S = 0.003
 """How long one looks for images that were left over: longer than a poll of the event."""
 _ASK_S = 0.5
 """Without an image for so long, the camera is asked whether it is there."""
+_LOOK_S = 0.05
+"""How often one looks for an event that says that it is not."""
 FREE_RUNNING_SKIP = 2
 """Images of a free-running camera that are passed over after a request. The first may have been
 exposed before the request and read out after it; the exposure of the second may have begun while
@@ -47,6 +50,7 @@ class GenicamCamera:
         self._acquirer.timeout_period_on_update_event_data_call = POLL_MS
         self._incomplete = _Count()
         self._acquirer.add_callback(ImageAcquirer.Events.INCOMPLETE_BUFFER, self._incomplete)
+        self._loss = LossEvent(self._acquirer.device.module)
         self._last_stamp = 0
         self._last_number = 0
         self._trigger_s = math.nan
@@ -83,6 +87,10 @@ class GenicamCamera:
         with camera_errors(self.label):
             self._acquirer.stop()
 
+    def close(self) -> None:
+        """Let go of what would be left when the producers are closed."""
+        self._loss.close()
+
     def drop_old(self) -> None:
         """Give back whatever was exposed before this call."""
         while self._waiting():
@@ -107,14 +115,17 @@ class GenicamCamera:
         ``SILENT`` when none comes in time.
         """
         skip = FREE_RUNNING_SKIP if self._settings.trigger == "none" else 0
-        until_s = now_s() + self._settings.image_timeout_s
+        asked_s = now_s()
+        until_s = asked_s + self._settings.image_timeout_s
         incomplete = self._incomplete.count
         while (left_s := until_s - now_s()) > 0:
-            buffer = self._fetch(min(left_s, _ASK_S))
+            buffer = self._fetch(min(left_s, _LOOK_S))
             if self._incomplete.count > incomplete:
                 raise TroubleError(Trouble.DAMAGED, f"{self.label}: packets are missing")
             if buffer is None:
-                self._require_alive()
+                if self._loss.told() or now_s() - asked_s >= _ASK_S:
+                    self._require_alive()
+                    asked_s = now_s()
                 continue
             if skip:
                 skip -= 1
