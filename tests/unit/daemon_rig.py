@@ -215,7 +215,9 @@ class DaemonRig:
         self.publisher.publish()
         return self.port.status
 
-    def _measurer(self, cell: object, geometry: HeadGeometry, method: str) -> TruthMeasurer:
+    def _measurer(
+        self, cell: object, geometry: HeadGeometry, method: str, exposures: object
+    ) -> TruthMeasurer:
         self.measurers.append(TruthMeasurer(self.bench, geometry, self.bench.base_T_c1()))
         return self.measurers[-1]
 
