@@ -7,12 +7,12 @@ from importlib.metadata import version
 from typing import Any
 
 from cellctl import log
+from cellctl.api.modbus.encoding import Value, input_block
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
+from cellctl.api.modbus.register_blocks import RegisterFile
 from cellctl.api.modbus.register_map import HOLDING, INPUT, Item
-from cellctl.api.modbus.register_values import Value, input_block
-from cellctl.api.modbus.registers import RegisterFile
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.api.modbus.submission import LineSubmission

@@ -9,8 +9,8 @@ old Stop does no harm, and a new one that is ignored leaves a robot moving.
 
 from collections.abc import Sequence
 
+from cellctl.api.modbus.encoding import WordOrder, decode
 from cellctl.api.modbus.register_map import item
-from cellctl.api.modbus.register_values import WordOrder, decode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import Options, Source, UnitCommand

@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable
 from enum import IntEnum
 
-from cellctl.api.modbus.registers import AddressRefused, RegisterFile
+from cellctl.api.modbus.register_blocks import AddressRefused, RegisterFile
 
 READ_HOLDING, READ_INPUT, WRITE_ONE, WRITE_MANY, MASK_WRITE, READ_WRITE, DEVICE_ID = (
     3, 4, 6, 16, 22, 23, 43,

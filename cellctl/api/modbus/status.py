@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
+from cellctl.api.modbus.encoding import Value, millionths, thousandths
 from cellctl.api.modbus.register_map import MAP_VERSION, REFUSALS, STATUS_BITS, VALIDITY_REGISTERS
-from cellctl.api.modbus.register_values import Value, millionths, thousandths
 from cellctl.calibration.store.kind import Kinds
 from cellctl.errors.internal import Unexpected
 from cellctl.runtime.cell_status import CellStatus

@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator
 import pytest
 
 from cellctl.api.modbus.pdu import Responder
-from cellctl.api.modbus.registers import RegisterFile
+from cellctl.api.modbus.register_blocks import RegisterFile
 from cellctl.api.modbus.server import ModbusServer, ServerLimits, tune
 from cellctl.errors.line import CannotListen
 from cellctl.errors.link import PortInUse

@@ -2,9 +2,9 @@
 
 import pytest
 
+from cellctl.api.modbus.encoding import encode
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.register_map import HOLDING_SIZE, item
-from cellctl.api.modbus.register_values import encode
 from cellctl.packml import Command, RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import Source, UnitCommand

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.api.modbus.pdu import Responder
-from cellctl.api.modbus.registers import RegisterFile
+from cellctl.api.modbus.register_blocks import RegisterFile
 
 PLC = "192.0.2.10"
 

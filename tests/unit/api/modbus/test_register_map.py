@@ -7,6 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cellctl.api.modbus.encoding import (
+    WordOrder,
+    decode,
+    encode,
+    input_block,
+    millionths,
+    thousandths,
+)
 from cellctl.api.modbus.register_map import (
     HOLDING,
     HOLDING_SIZE,
@@ -17,14 +25,6 @@ from cellctl.api.modbus.register_map import (
     Item,
     Kind,
     item,
-)
-from cellctl.api.modbus.register_values import (
-    WordOrder,
-    decode,
-    encode,
-    input_block,
-    millionths,
-    thousandths,
 )
 from cellctl.api.modbus.status import Handshake, require_registers, values
 from cellctl.calibration.store.kind import CalibrationKind
