@@ -35,6 +35,7 @@ from drivers.robot.siasun.channels.state_channel import StateChannel
 from drivers.robot.siasun.channels.stream import SiasunStream
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.described_arm import DescribedArm
+from drivers.robot.siasun.followed_stream import followed
 from drivers.robot.siasun.link_facts import link_facts
 from drivers.robot.siasun.targets import MotionTarget, Targets
 
@@ -184,7 +185,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
                 lambda session, seq: protocol.begin_stream(session, seq, figures)
             ) as command:
                 stream = SiasunStream(self._command.channel, command, self._bounds, limits, offer)
-                async with stream.followed(self._config.stop_timeout_s):
+                async with followed(stream, self._config.stop_timeout_s):
                     yield stream
         except BaseException as error:
             await self._leave_stream(error, command)

@@ -1,5 +1,4 @@
-"""A SIASUN collaborative arm over its documented remote interface
-(docs/protocols/siasun-rpc.md)."""
+"""A SIASUN collaborative arm over its remote interface (docs/protocols/siasun-rpc.md)."""
 
 import asyncio
 from collections.abc import AsyncIterator, Iterator
@@ -16,6 +15,7 @@ from cellctl.errors.robot import (
     MotionAborted,
     MotionRejected,
     NotRearmed,
+    SetpointRefused,
     StopFailed,
     StreamSilent,
     TargetOutOfBounds,
@@ -32,6 +32,7 @@ from cellctl.interfaces.streaming_robot import (
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.described_arm import DescribedArm
+from drivers.robot.siasun.followed_stream import followed
 from drivers.robot.siasun.targets import MotionTarget, Targets
 from drivers.robot.siasun_rpc import calls
 from drivers.robot.siasun_rpc.codec.messages import Request
@@ -174,7 +175,8 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             try:
                 await motion.check_guard()
                 motion.over = False
-                async with stream.followed(self._config.stop_timeout_s):
+                end_s = self._config.stop_timeout_s
+                async with followed(stream, end_s, not_taken=SetpointRefused):
                     yield stream
             except BaseException as error:
                 stream.close()

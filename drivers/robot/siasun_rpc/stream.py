@@ -6,9 +6,8 @@ asks before each setpoint what became of the one before, and starts from the las
 """
 
 import asyncio
-import contextlib
 import math
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from typing import cast
 
 import numpy as np
@@ -21,7 +20,6 @@ from cellctl.errors.robot import (
     SetpointRefused,
     StreamSilent,
     StreamStale,
-    TargetOutOfBounds,
 )
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
 from drivers.robot.siasun.bounds import Bounds
@@ -76,21 +74,6 @@ class ServoStream(PoseStream):
         """The newest report; there is one as soon as the stream has begun."""
         assert self._report is not None  # ``begin`` has returned
         return self._report
-
-    @contextlib.asynccontextmanager
-    async def followed(self, timeout_s: float) -> AsyncIterator[None]:
-        """From the first tick to standstill, for which the controller has ``timeout_s``."""
-        await self.begin()
-        try:
-            yield
-        except (TargetOutOfBounds, SetpointRefused):
-            # The setpoint was not sent, or not taken. The arm goes no further than to the last one,
-            # while a stop with its dead time would let it run on; where standstill is not
-            # confirmed, whoever leaves the stream stops it.
-            with contextlib.suppress(CellError):
-                await self.finish(self.limits.loss_s)
-            raise
-        await self.finish(timeout_s)
 
     async def begin(self) -> None:
         """Ask for the pose in which the stream starts. Nothing that moves is sent."""

@@ -1,17 +1,11 @@
 """A stream of setpoints over CMD, and the ticks that the controller answers with."""
 
 import asyncio
-import contextlib
-from collections.abc import AsyncIterator
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.base import CellError
 from cellctl.errors.link import ProtocolViolation
-from cellctl.errors.robot import (
-    StreamSilent,
-    TargetOutOfBounds,
-)
+from cellctl.errors.robot import StreamSilent
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
 from drivers.robot.siasun import protocol
 from drivers.robot.siasun.bounds import Bounds
@@ -45,21 +39,6 @@ class SiasunStream(PoseStream):
         """The newest report; there is one as soon as the stream has begun."""
         assert self._report is not None  # ``begin`` has returned
         return self._report
-
-    @contextlib.asynccontextmanager
-    async def followed(self, timeout_s: float) -> AsyncIterator[None]:
-        """From the first tick to standstill, for which the controller has ``timeout_s``."""
-        await self.begin()
-        try:
-            yield
-        except TargetOutOfBounds:
-            # The setpoint was not sent. The arm goes no further than to the last one, while a stop
-            # with its dead time would let it run on; where standstill is not confirmed, whoever
-            # leaves the stream stops it.
-            with contextlib.suppress(CellError):
-                await self.finish(self.limits.loss_s)
-            raise
-        await self.finish(timeout_s)
 
     async def begin(self) -> None:
         """Wait for the first tick, whose pose is the start of the stream."""
