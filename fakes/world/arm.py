@@ -141,6 +141,7 @@ def _wrist_angles(
         [sum(axis[i] * tool[i][column] for i in range(3)) for column in range(3)] for axis in axes
     )
     bend = atan2(hypot(xy, xz), xx)
+    # A4 and A6 turn about one axis there, and only their sum is known: A6 stays where it was.
     if abs(sin(bend)) < 1e-9:
         return [(atan2(zy, yy) - near_q6, bend, near_q6)]
     return [
@@ -149,6 +150,8 @@ def _wrist_angles(
 
 
 def _nearest_turn(joints: list[float], near: list[float]) -> list[float]:
+    # The same posture a whole turn away is another place of the joint, which a controller does not
+    # jump to.
     return [q + tau * round((n - q) / tau) for q, n in zip(joints, near, strict=True)]
 
 

@@ -90,6 +90,8 @@ class RobotArm:
             path = LinearPath(self.settings.chain_mm, self.encoder_pose(time_s), target, near)
         except OutOfReachError as error:
             raise RefusedMotionError("REACH") from error
+        # Looked at over the whole path before it begins, so that such a motion is refused and not
+        # broken off in its middle.
         jumps = np.abs(np.diff(path.knots, axis=0)).max() > _JUMP_RAD
         if jumps or any(singular(knot) for knot in path.knots):
             raise RefusedMotionError("SINGULAR")
@@ -128,6 +130,7 @@ class RobotArm:
         """Go to a streamed setpoint, base_T_flange as a 4x4 matrix, within one period and without
         ramps; raises ``RefusedMotionError``."""
         length_m = way_m(*matrix_distance(self.encoder_matrix(time_s), target))
+        # Standing still in a stream is the same setpoint again.
         if length_m < _STILL_M:
             return
         near = self.joints(time_s)
@@ -147,6 +150,7 @@ class RobotArm:
             latency_s = self.settings.stop_latency_ms / 1000
             latency_s *= timing.stop_latency_factor if timing else 1.0
         braking = 1 / self.settings.ramp_s
+        # Along a path in joints the ramp is one of joint speed, along a line one of the flange.
         if isinstance(self._path, LinearPath | StreamSegment):
             braking = self.settings.stop_deceleration_mm_s2 * MM
         braking *= timing.braking_factor if timing else 1.0

@@ -17,6 +17,8 @@ class Wander:
     """
 
     def __init__(self, rng: np.random.Generator, sigma: Array, correlation_m: float) -> None:
+        # The spectrum of exp(-x / length) is the distribution of Cauchy, whose quantiles are
+        # tangents; it is cut off at the shortest wave.
         cut = np.arctan(2 * np.pi / _SHORTEST_M * correlation_m)
         self._rate_per_m = np.tan(rng.uniform(-cut, cut, (6, _WAVES))) / correlation_m
         self._phase = rng.uniform(0, 2 * np.pi, (6, _WAVES))

@@ -115,6 +115,7 @@ class World(ABC, Generic[S_co]):
             self._tick += 1
             self.time_s = self._tick * STEP_S
             for sensor in self.sensors.values():
+                # Arm before load: what hangs on the flange moves with the end of this millisecond.
                 moving = sensor.follow(self.time_s)
                 load = self.load_on(sensor.name, sensor.flange, moving=moving)
                 sensor.keep(self._tick, load)
@@ -134,6 +135,7 @@ class World(ABC, Generic[S_co]):
         mount_T_camera = self.truth.cameras[camera].mount_T_camera
         drift = self._camera_flaws[camera].drift
         if drift is not None:
+            # On the side of the camera: it drifts on its mount, and the mount does not.
             mount_T_camera *= RigidTransform.from_matrix(drift.at(self.time_s))
         carrier = self.scenario.all_cameras()[camera].carried_by
         return mount_T_camera if carrier is None else self.flange(carrier) * mount_T_camera

@@ -56,6 +56,7 @@ class DucoController:
         while True:
             if self.logic.faults.active("cut"):
                 for writer in self._writers:
+                    # Not closed but cut: what is still in the buffer is lost with the line.
                     writer.transport.abort()
             self.logic.tick()
             await asyncio.sleep(_TICK_S)
@@ -85,12 +86,14 @@ class DucoController:
     async def _report(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         wrong = self.logic.faults.active
         if wrong("misaligned"):
+            # A reader that does not look for the beginning of a frame is out of step from here on.
             writer.write(frame.pack(self.logic)[700:])
         while not reader.at_eof():
             if not (wrong("silent") or wrong("frames_stop")):
                 writer.write(frame.pack(self.logic))
                 await writer.drain()
             with suppress(TimeoutError):
+                # Sleeps for a period, and wakes at once when the client hangs up.
                 await asyncio.wait_for(reader.read(1), frame.PERIOD_S)
 
     # -- service --------------------------------------------------------------------------------

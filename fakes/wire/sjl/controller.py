@@ -120,11 +120,14 @@ class SjlController:
         )
         try:
             connection: socket.socket = writer.get_extra_info("socket")
+            # A record is smaller than a packet: Nagle would hold a STAT back until the one before
+            # is acknowledged.
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             session = await self._hello(channel, reader, writer)
             await self._session(channel, session, reader, writer)
         finally:
             self._senders.pop(channel, None)
+            # However it ended: the page of the protocol has the robot stop when a channel is gone.
             self.logic.closed(channel, self._clock())
             writer.close()
             with suppress(OSError):
@@ -167,6 +170,7 @@ class SjlController:
         sender = self._senders[channel] = Sender(writer, self.faults)
         self.logic.opened(channel, session, self._clock())
         jobs = [sender.run(), self._listen(channel, reader)]
+        # CMD answers and says nothing by itself; STA and GRD report without being asked.
         if channel != "CMD":
             jobs.append(self._report(sender))
         tasks = [asyncio.ensure_future(job) for job in jobs]
@@ -183,6 +187,7 @@ class SjlController:
         try:
             while True:
                 line = await _line(reader)
+                # Read and thrown away: from the side of the PC the connection still stands.
                 if not self.faults.active("half_open"):
                     self._take(channel, decode(line))
         except RecordError:
@@ -209,6 +214,8 @@ class SjlController:
             if not (record and self.faults.active("frozen_stat")):
                 record = encode(self._stat(count))
             sender.send(record)
+            # By the time that was due, or the rate would fall by what sending takes; never to make
+            # up for what was missed.
             due_s = max(due_s + _STAT_PERIOD_S, self._clock())
             await asyncio.sleep(max(due_s - self._clock(), 0.001))
 

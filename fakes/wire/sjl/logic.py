@@ -86,6 +86,7 @@ class Controller:
         if self.links.pop(channel, None) is None:
             return
         self.lost.add(channel)
+        # Nobody is left on that channel to hear that the arm stands.
         self._stops = [stop for stop in self._stops if stop[0] != channel]
         self._halt(time_s, "LINK")
 
@@ -119,6 +120,7 @@ class Controller:
         session, count = integer(fields[1]), integer(fields[2])
         if fields[0] == "BEAT":
             link = self.links[channel]
+            # A beat of an earlier session says nothing about the PC of this one.
             if session == link.session:
                 link.beat_s = time_s
             return []
@@ -135,6 +137,7 @@ class Controller:
         if not (self.latched or self.contact_closed()):
             self._halt(time_s, "STOP")
         out = self._advance_stream(time_s)
+        # Both kinds of answer are given at standstill, and not before.
         if self.moving(time_s) or not (self._motion or self._stops):
             return out
         pose = pose_fields(self.arm.encoder_matrix(time_s))

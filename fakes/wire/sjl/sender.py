@@ -58,6 +58,7 @@ class Sender:
 
 def _spoiled(record: bytes) -> bytes:
     """The record with its last digit before the sum changed; the sum stays as it was."""
+    # A digit and not any byte: the record stays well formed, and only its sum tells.
     body, star, rest = record.rpartition(b"*")
     places = [index for index, byte in enumerate(body) if chr(byte).isdigit()]
     if not places:

@@ -75,8 +75,10 @@ class Stream:
         if number <= last_number:
             self._late += 1
             return
+        # Counted and taken all the same: it is newer than what the arm has.
         self._late += number <= self._tick
         setpoint = written_matrix(values)
+        # Where a setpoint was lost the next one may be as far away as both together.
         steps = number - last_number
         limits = self._limits
         if _exceeds(self._setpoint, setpoint, steps * limits.step_mm, steps * limits.step_deg):
