@@ -4,6 +4,7 @@ Each test takes the other ways to a stop away from the controller of the main ar
 contact is left.
 """
 
+import json
 import signal
 import time
 from collections.abc import Callable, Iterator
@@ -122,3 +123,13 @@ def test_a_frozen_daemon_leaves_the_arm_to_the_watchdog_of_the_coupler(jobs: Own
         assert moving.plc.command("Reset", mode=MAINTENANCE) == 0
         moving.plc.done(60)
         assert moving.contact_closed()
+
+
+@pytest.mark.long
+@pytest.mark.timeout(400)
+def test_the_deck_is_assembled_with_the_contacts_in_the_loops(jobs: OwnCell) -> None:
+    out = jobs.folder / "run"
+    demo = jobs.demo(out, "--seed", "1", "--quiet")
+    assert demo.end(300) == 0, demo.stdout + demo.stderr
+    demo.nobody_left()
+    assert json.loads((out / "result.json").read_text(encoding="utf-8"))["result"] == "good"

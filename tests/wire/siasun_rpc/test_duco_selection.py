@@ -8,6 +8,7 @@ from thrift.protocol.TBinaryProtocol import TBinaryProtocol
 from thrift.Thrift import TMessageType, TType
 from thrift.transport.TTransport import TMemoryBuffer
 
+from cellctl.cell.robot_reports import listen
 from fakes.wire.duco.tasks import TaskEnd
 from tests.rigs.wire.duco_rig import DucoRig, duco_rig
 
@@ -26,6 +27,15 @@ async def test_load_tool_and_work_object() -> None:
         assert found.flange_T_tool is not None
         assert found.base_T_work is not None
         assert found.base_T_work.apply([0.0, 1.0, 0.0]) == pytest.approx([0.0, 0.0, 0.0])
+
+
+async def test_people_read_it_in_millimetres() -> None:
+    async with duco_rig() as rig:
+        rig.logic.tool_load, rig.logic.tool_frame = LOAD, [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
+        await rig.robot.connect()
+        shown = (await listen(rig.robot, 0.05)).as_json()["selected_at_the_pendant"]
+        assert (shown["load_kg"], shown["load_com_mm"]) == (4.2, [0.0, 10.0, 60.0])
+        assert shown["flange_T_tool_xyzabc_mm_deg"] == [0.0] * 6
 
 
 async def test_beside_another_tool_the_centre_of_mass_is_not_believed() -> None:

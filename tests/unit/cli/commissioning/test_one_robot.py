@@ -100,6 +100,20 @@ def test_a_robot_says_who_it_is_and_how_often(cell_file: Path) -> None:
     assert "override_percent" in text.stdout
 
 
+@pytest.mark.usefixtures("watched")
+def test_the_load_of_the_cell_file_beside_what_the_controller_tells(cell_file: Path) -> None:
+    text = cell_file.read_text(encoding="utf-8")
+    load = "load = { mass_kg = 4.5, com_mm = [0, 0, 60], tolerance_kg = 0.5, tolerance_mm = 20 }"
+    cell_file.write_text(text.replace("[robots.arm]\n", f"[robots.arm]\n{load}\n", 1))
+    found = heard(run("robot", cell_file, "arm", "--seconds", 0.5, "--json"))
+    assert found["load"] == {
+        "in_the_cell_file": "4.5 kg at 0, 0, 60 mm of the flange",
+        "may_differ_by": "0.5 kg, 20 mm",
+    }
+    told = found["selected_at_the_pendant"]
+    assert told["load_kg"] == "not told by this controller", "no job can read it"
+
+
 class Daemon(threading.Thread):
     """Answers one question for a robot, as the daemon of a cell with this name would."""
 
