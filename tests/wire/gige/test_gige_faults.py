@@ -132,6 +132,16 @@ async def test_a_producer_that_cannot_be_used(
     assert words in await refused(path, ProducerUnusable)
 
 
+async def test_the_folder_of_the_variable_is_enough(
+    producer: Path, fakes: FakeCameras, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of several folders, in which other files lie too."""
+    (tmp_path / "read.me").write_text("no producer")
+    monkeypatch.setenv("GENICAM_GENTL64_PATH", f"{tmp_path}:{producer.parent}")
+    async with camera(producer, producers=()) as eye:
+        await eye.grab()
+
+
 async def test_without_a_producer_the_variable_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -147,6 +157,8 @@ async def test_without_a_producer_the_variable_is_named(
         ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
         ({"region": Region(width=20, height=4000)}, "16 to 48"),
         ({"features": {"Gain": 99.0}}, "0.0 to 24.0"),
+        ({"packet_bytes": 9004}, "576 to 9000 in steps of 4"),
+        ({"packet_delay_ticks": 100_001}, "0 to 100000"),
         ({"features": {"Binning": 2}}, "no feature Binning; it has"),
     ],
 )
@@ -159,7 +171,10 @@ async def test_a_refused_feature_says_what_is_allowed(
 
 async def test_settings_reach_the_camera(producer: Path, fakes: FakeCameras) -> None:
     region = Region(width=32, height=16, offset_x=8, offset_y=4)
-    async with camera(producer, region=region, pixel_format="Mono12", gain_db=3.0) as eye:
+    network = {"packet_bytes": 8000, "packet_delay_ticks": 65_000}
+    async with camera(
+        producer, region=region, pixel_format="Mono12", gain_db=3.0, **network
+    ) as eye:
         image = await eye.grab()
     assert image.pixels.shape == (16, 32)
     first = fakes.exposures(LEFT)

@@ -291,6 +291,19 @@ class TriggerNodes:
         return self.delays[str(self.TriggerSelector.value)]
 
 
+@pytest.mark.parametrize("name", ["GevSCPSPacketSize", "DeviceStreamChannelPacketSize"])
+def test_packets_are_set_for_the_network_by_the_name_of_either_edition(name: str) -> None:
+    nodes = TriggerNodes()
+    size, delay = Node(1500), Node(0)
+    setattr(nodes, name, size)
+    nodes.GevSCPD = delay  # type: ignore[attr-defined]
+    settings = GigeCameraConfig(
+        camera=Selection(serial_number=LEFT), packet_bytes=8000, packet_delay_ticks=65_000
+    )
+    Features(nodes, "eye").set_up(settings)
+    assert (size.value, delay.value) == (8000, 65_000)
+
+
 def test_another_trigger_that_was_left_on_is_switched_off() -> None:
     nodes = TriggerNodes()
     settings = GigeCameraConfig(camera=Selection(serial_number=LEFT))
