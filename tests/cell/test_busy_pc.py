@@ -28,6 +28,7 @@ def busy() -> Iterator[None]:
 def test_a_part_beside_many_busy_programs(own: OwnCell) -> None:
     demo = own.demo(own.folder / "run")
     code = demo.end(840)
+    assert "images come through a GenTL producer" in demo.stdout
     assert (code == 0 and "seed 1: good" in demo.stdout) or (
         code == 2 and "this computer was too slow" in demo.stderr
     ), demo.stdout + demo.stderr

@@ -20,6 +20,7 @@ def test_all_procedures_in_their_order_open_the_gate(own: OwnCell) -> None:
     demo = own.demo(out, "--calibrate")
     assert demo.end(870) == 0, demo.stdout + demo.stderr
     demo.nobody_left()
+    assert "images come through a GenTL producer" in demo.stdout
     for procedure in PROCEDURES:
         assert f"procedure {procedure.number}: {procedure.title}" in demo.stdout
     calibrations = CalibrationStore(out / "calibration", CALIBRATIONS)
