@@ -4,7 +4,6 @@ from typing import Any, cast
 
 from cellctl import plugins
 from cellctl.config.devices import (
-    GROUPS,
     CameraConfig,
     DigitalIoConfig,
     ForceSensorConfig,
@@ -41,13 +40,13 @@ def first_link_mm(robot: RobotConfig) -> tuple[float | None, float | None]:
     )
 
 
-def sets_exposures(section: str, camera: CameraConfig) -> bool:
+def sets_exposures(group: str, camera: CameraConfig) -> bool:
     """Whether the driver can set an exposure; True for one that is unknown, which is another fault.
 
-    ``section`` is that of the cell file: ``cameras`` or ``stereo_cameras``.
+    ``group`` is that of its entry point (``cellctl.plugins``).
     """
     try:
-        driver: Any = plugins.load(GROUPS[section], camera.driver)
+        driver: Any = plugins.load(group, camera.driver)
     except UnknownDriver:
         return True
     return driver.set_exposure is not AdjustableExposure.set_exposure

@@ -1,6 +1,6 @@
 """Check of cameras whose exposure is to be found: their drivers must be able to set one."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import CameraConfig
@@ -10,12 +10,9 @@ from cellctl.config.issue import ConfigIssue
 
 def exposure_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
     """Cameras and heads with ``auto_exposure`` and a driver that cannot set an exposure."""
-    sections: Mapping[str, Mapping[str, CameraConfig]] = {
-        "cameras": cell.cameras,
-        "stereo_cameras": cell.stereo_cameras,
-    }
-    for section, cameras in sections.items():
-        for name, camera in cameras.items():
-            if camera.auto_exposure is not None and not sets_exposures(section, camera):
-                allowed = f"driver {camera.driver} cannot set exposures; gige can"
-                yield ConfigIssue(f"{section}.{name}.auto_exposure", "a setting", allowed)
+    for path, (group, device) in cell.devices().items():
+        if not isinstance(device, CameraConfig) or device.auto_exposure is None:
+            continue
+        if not sets_exposures(group, device):
+            allowed = f"driver {device.driver} cannot set exposures; gige can"
+            yield ConfigIssue(f"{path}.auto_exposure", "a setting", allowed)

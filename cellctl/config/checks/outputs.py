@@ -1,7 +1,7 @@
 """Checks of the digital outputs that robots and cameras use: the permit of an arm, a lamp."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cellctl.config.cell import CellConfig
@@ -46,15 +46,9 @@ def _permits(cell: CellConfig) -> Iterator[_Use]:
 
 
 def _lights(cell: CellConfig) -> Iterator[_Use]:
-    sections: Mapping[str, Mapping[str, CameraConfig]] = {
-        "cameras": cell.cameras,
-        "stereo_cameras": cell.stereo_cameras,
-    }
-    for section, cameras in sections.items():
-        for name, camera in cameras.items():
-            if camera.light is not None:
-                key = f"{section}.{name}.light"
-                yield _Use(key, camera.light.device, camera.light.output)
+    for path, (_, device) in cell.devices().items():
+        if isinstance(device, CameraConfig) and device.light is not None:
+            yield _Use(f"{path}.light", device.light.device, device.light.output)
 
 
 def _is_there(cell: CellConfig, use: _Use, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssue]:
