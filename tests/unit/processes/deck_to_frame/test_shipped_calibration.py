@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.calibration.arm_reference import MOVED_M, ArmReference, require_arm_at_reference
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
+from cellctl.errors.robot import ArmOffReference
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces import Target
 from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, CALIBRATIONS, PAYLOAD
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
@@ -54,11 +57,28 @@ def test_fake_devices_do_not_age_so_their_calibrations_never_expire() -> None:
     assert store.fault(CALIBRATIONS, timedelta(hours=1), newest=IN_MANY_YEARS) is None
 
 
-def test_the_base_frame_knows_where_the_arm_was_seen(calibrations: CalibrationSnapshot) -> None:
-    """Procedure 109 of the demonstration's cell compares the arm with it."""
+def test_the_arm_stands_where_its_base_frame_was_measured_until_it_is_mastered_anew(
+    calibrations: CalibrationSnapshot,
+) -> None:
+    """What procedure 109 of the demonstration's cell compares, with an arm of a world of its own
+    and another seed than that of the calibration."""
     reference = calibrations.get(BASE_FRAME).reference
     assert reference is not None
-    assert len({target.name for target in reference.targets}) == 6
+    assert len(reference.targets) == 6
+    world = DeckOnFrame(DeckScenario.read(CONFIG / "deck.scenario.toml"), 7)
+    arm = world.arms["main"]
+
+    def look() -> ArmReference:
+        arm.start_joint(world.time_s, reference.joints_rad, 50)
+        world.advance(arm.standstill_s + 1.0)
+        seen = world.targets("tracker", 25)
+        targets = (Target(one.name, one.position_m, one.sigma_m) for one in seen)
+        return ArmReference(reference.joints_rad, tuple(targets))
+
+    assert require_arm_at_reference(reference, look()) < MOVED_M
+    arm.master(1, np.radians(0.03))
+    with pytest.raises(ArmOffReference):
+        require_arm_at_reference(reference, look())
 
 
 @pytest.mark.parametrize("index", [0, 1])
