@@ -22,6 +22,7 @@ from benchmarks.antenna.chain.optics import (
 from benchmarks.antenna.chain.trials import CONTACTS_M
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
 from cellctl.processes.antenna_module.vision.measure import measure_connector, measure_marks
@@ -34,6 +35,7 @@ from cellctl.vision.camera.single_camera import SingleCamera
 from cellctl.vision.camera.stereo_head import CameraModel
 from fakes.render.connectors import api
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG, ContactKind
+from fakes.world.connector.scene import ConnectorBody
 from fakes.world.scene import LensTruth, MonoTruth
 
 _FOLDER = Path("config/connectors")
@@ -85,13 +87,8 @@ class ImageOptics:
             # off their places is the affair of the benchmarks of the vision.
             true_position_m=0.0,
         )
-        window = _Window.about(self.drawn, believed_plane, _CONNECTOR_M)
-        shown = api.render(
-            window.camera(self.drawn.true), (body,), api.ConnectorLook(_LAMPS), seed=self._seed()
-        )
-        model = window.model(self.drawn.believed)
-        plane = _plane(model, believed_plane, believed_plane * flip)
-        found = measure_connector(shown.image, model, plane, _connector(self.kind))
+        look = self._shown(body, believed_plane, flip, _CONNECTOR_M)
+        found = measure_connector(look.image, look.model, look.plane, _connector(self.kind))
         return _turned(found.camera_T_connector, flip)
 
     def _marks(
@@ -99,13 +96,23 @@ class ImageOptics:
     ) -> UncertainPose:
         flip = _flip("pins")
         body = api.gripper_marks(camera_T_object * flip)
-        window = _Window.about(self.drawn, believed_plane, _MARKS_FIELD_M)
-        shown = api.render(
-            window.camera(self.drawn.true), (body,), api.ConnectorLook(_LAMPS), seed=self._seed()
-        )
+        look = self._shown(body, believed_plane, flip, _MARKS_FIELD_M)
+        found = measure_marks(look.image, look.model, look.plane, _marks())
+        return _turned(found.camera_T_marks, flip)
+
+    def _shown(
+        self,
+        body: ConnectorBody,
+        believed_plane: RigidTransform,
+        flip: RigidTransform,
+        sides_m: tuple[float, float],
+    ) -> "_Shown":
+        """The image of a body by the true camera, and what the believed one says of it."""
+        window = _Window.about(self.drawn, believed_plane, sides_m)
+        camera, look = window.camera(self.drawn.true), api.ConnectorLook(_LAMPS)
+        image = api.render(camera, (body,), look, seed=self._seed()).image
         model = window.model(self.drawn.believed)
-        plane = _plane(model, believed_plane, believed_plane * flip)
-        return _turned(measure_marks(shown.image, model, plane, _marks()).camera_T_marks, flip)
+        return _Shown(image, model, _plane(model, believed_plane, believed_plane * flip))
 
     def _seed(self) -> int:
         return int(self.chance.integers(2**31))
@@ -121,6 +128,15 @@ def with_images(cell: DrawnCell, seed: int) -> DrawnCell:
         optics1=ImageOptics(drawn1, "holes", np.random.default_rng([seed, 11])),
         optics2=ImageOptics(drawn2, "pins", np.random.default_rng([seed, 12])),
     )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Shown:
+    """An image with all that it is measured by."""
+
+    image: Image
+    model: SingleCamera
+    plane: PlaneCalibration
 
 
 @dataclass(frozen=True, slots=True, eq=False)
