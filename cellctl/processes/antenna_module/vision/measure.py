@@ -38,7 +38,7 @@ from cellctl.vision.camera.image_checks import check_image
 from cellctl.vision.camera.single_camera import SingleCamera
 
 SIGMA_LIMIT_M = 3e-6
-YAW_LIMIT_RAD = float(np.radians(0.04))
+YAW_LIMIT_RAD = float(np.radians(0.02))
 _LEAST_SHARE = 0.6
 _SCALE_LIMIT = 5.0
 _OTHER_SIZES = (2.0, 0.5)

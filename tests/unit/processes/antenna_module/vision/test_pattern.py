@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import pytest
 
+from cellctl.processes.antenna_module.faults.connector import ConnectorUncertain
 from cellctl.processes.antenna_module.vision.measure import (
     contact_pattern,
     measure_connector,
@@ -40,6 +41,13 @@ def test_errors_are_as_large_as_is_stated_of_them() -> None:
         assert not measured.fault
         squares.append(measured.nees / 3.0)
     assert 0.4 < np.mean(squares) < 2.2
+
+
+def test_a_yaw_that_is_known_to_no_better_than_0_02_degrees_is_refused() -> None:
+    poor = replace(CLEAN, noise_grey=3.0, blur_px=(2.0, 2.0), um_per_px=(35.0, 35.0))
+    given = trial(3, poor)
+    with pytest.raises(ConnectorUncertain, match=r"0\.03\d°"):
+        measure_connector(given.pixels.plane, given.camera, given.plane, given.connector)
 
 
 @pytest.mark.parametrize("name", ["micro-d-15", "d-sub-15"])
