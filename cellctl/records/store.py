@@ -7,7 +7,7 @@ A folder with ``store.sqlite`` and ``files/``. All methods block, belong to one 
 from collections.abc import Mapping
 from datetime import datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from sqlalchemy import select
 
@@ -24,7 +24,11 @@ from cellctl.records.entries import (
     RunRecord,
     RunResult,
 )
+from cellctl.records.files import motion_file
 from cellctl.records.files.artefacts import ArtefactFolder
+from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
+from cellctl.records.files.mcap_reading import is_readable
+from cellctl.records.files.unfinished import UnfinishedRecordings
 from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
@@ -44,6 +48,7 @@ class RunStore:
         self.path = path
         self._database = Database(path / "store.sqlite", create=create)
         self.artefacts = ArtefactFolder(path / "files")
+        self._unfinished = UnfinishedRecordings(path / "unfinished")
         self._ownership = Ownership(path / "owner.lock")
 
     def close(self) -> None:
@@ -61,8 +66,15 @@ class RunStore:
             still_open = select(schema.RunRow).where(schema.RunRow.ended.is_(None))
             found = session.scalars(still_open).all()
             for row in found:
+                if (data := self._unfinished.read(row.number)) is not None and is_readable(data):
+                    sha256 = self.artefacts.put(data)
+                    file = motion_file.NAME, MCAP_MEDIA_TYPE, sha256, len(data)
+                    session.add(rows.artefact(row.number, *file))
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
-            return [row.number for row in found]
+            interrupted = [row.number for row in found]
+        # Those of runs that were closed too: a daemon may die between storing and removing.
+        self._unfinished.clear()
+        return interrupted
 
     def start_run(
         self,
@@ -123,18 +135,20 @@ class RunStore:
         """A file of the run; its SHA-256. The bytes are on the disk before the row is."""
         # In this order a power cut leaves a file without a row at worst, no row without its file.
         sha256 = self.artefacts.put(data)
-        row = schema.ArtefactRow(
-            run=run,
-            time=utc_now(),
-            name=name,
-            sha256=sha256,
-            size=len(data),
-            media_type=media_type,
-        )
         with self._database.write() as session:
             rows.open_run(session, run)
-            session.add(row)
+            session.add(rows.artefact(run, name, media_type, sha256, len(data)))
         return sha256
+
+    def open_recording(self, run: int) -> BinaryIO:
+        """A file for the motion of an open run; one that is left open is found after a crash."""
+        return self._unfinished.open(run)
+
+    def keep_recording(self, run: int) -> None:
+        """Make the recording of a run, which is complete, one of its files."""
+        if (data := self._unfinished.read(run)) is not None:
+            self.add_artefact(run, motion_file.NAME, data, MCAP_MEDIA_TYPE)
+            self._unfinished.remove(run)
 
     def close_run(
         self,
@@ -195,15 +209,7 @@ class RunStore:
 
     def add_calibration(self, stored: StoredCalibration) -> None:
         """Keep a calibration for good; the same one again is no change."""
-        row = schema.CalibrationRow(
-            id=stored.id,
-            kind=stored.kind,
-            serial_number=stored.serial_number,
-            software=stored.software,
-            made=stored.made,
-            valid_until=stored.valid_until,
-            record=stored.record,
-        )
+        row = rows.calibration(stored)
         with self._database.write() as session:
             if session.get(schema.CalibrationRow, stored.id) is None:
                 session.add(row)
@@ -226,9 +232,8 @@ class RunStore:
 
     def calibrations(self) -> list[Calibration]:
         """Every calibration that was ever stored, newest first."""
-        query = select(schema.CalibrationRow).order_by(schema.CalibrationRow.made.desc())
         with self._database.read() as session:
-            return [rows.to_entry(row, Calibration) for row in session.scalars(query)]
+            return reading.calibrations(session)
 
     def audit(self, actor: str, action: str, detail: Mapping[str, Any] | None = None) -> None:
         """Append to the audit log."""
@@ -240,8 +245,7 @@ class RunStore:
     def audit_log(self) -> list[AuditEntry]:
         """Every entry of the audit log, oldest first."""
         with self._database.read() as session:
-            found = session.scalars(select(schema.AuditRow).order_by(schema.AuditRow.id))
-            return [rows.to_entry(row, AuditEntry) for row in found]
+            return reading.audit_log(session)
 
     def note_line_seq(self, seq: int) -> None:
         """Remember the last command number of the line, before the command is obeyed."""

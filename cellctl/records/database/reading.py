@@ -14,6 +14,7 @@ from cellctl.records.database.schema import (
     AlarmRow,
     ArtefactRow,
     AuditRow,
+    CalibrationRow,
     DocumentRow,
     FigureRow,
     GaugeRow,
@@ -28,6 +29,8 @@ from cellctl.records.entries import (
     PRODUCTION,
     Alarm,
     Artefact,
+    AuditEntry,
+    Calibration,
     Document,
     Figure,
     Gauge,
@@ -42,6 +45,18 @@ from cellctl.records.seals import Seal
 from cellctl.records.trend import Sample
 
 T = TypeVar("T")
+
+
+def calibrations(session: Session) -> list[Calibration]:
+    """Every calibration that was ever stored, newest first."""
+    found = session.scalars(select(CalibrationRow).order_by(CalibrationRow.made.desc()))
+    return [to_entry(row, Calibration) for row in found]
+
+
+def audit_log(session: Session) -> list[AuditEntry]:
+    """Every entry of the audit log, oldest first."""
+    found = session.scalars(select(AuditRow).order_by(AuditRow.id))
+    return [to_entry(row, AuditEntry) for row in found]
 
 
 def figure_keys(session: Session) -> list[str]:

@@ -6,12 +6,15 @@ from typing import Any, TypeVar
 from sqlalchemy import Select, select
 from sqlalchemy.orm import Session
 
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import RunClosed, RunUnknown
 from cellctl.records.database import ledger
 from cellctl.records.database.schema import (
     AlarmRow,
+    ArtefactRow,
     Base,
+    CalibrationRow,
     DocumentRow,
     FigureRow,
     PassRow,
@@ -50,6 +53,26 @@ def to_entry(row: Any, entry: type[T]) -> T:
     """A row as the dataclass that names a part of its columns."""
     values = {item.name: getattr(row, item.name) for item in fields(entry)}  # type: ignore[arg-type]
     return entry(**values)
+
+
+def artefact(run: int, name: str, media_type: str, sha256: str, size: int) -> ArtefactRow:
+    """The row of a file of a run, whose bytes are on the disk by now."""
+    return ArtefactRow(
+        run=run, time=utc_now(), name=name, sha256=sha256, size=size, media_type=media_type
+    )
+
+
+def calibration(stored: StoredCalibration) -> CalibrationRow:
+    """The row of a calibration."""
+    return CalibrationRow(
+        id=stored.id,
+        kind=stored.kind,
+        serial_number=stored.serial_number,
+        software=stored.software,
+        made=stored.made,
+        valid_until=stored.valid_until,
+        record=stored.record,
+    )
 
 
 def existing_run(session: Session, number: int) -> RunRow:

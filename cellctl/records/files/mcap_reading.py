@@ -61,3 +61,12 @@ def read_mcap(data: bytes) -> McapContent:
         if not messages:
             raise RecordingUnreadable(str(error) or type(error).__name__) from error
     return McapContent(tuple(messages), facts, complete)
+
+
+def is_readable(data: bytes) -> bool:
+    """True when at least one message can be read."""
+    try:
+        read_mcap(data)
+    except RecordingUnreadable:
+        return False
+    return True

@@ -10,11 +10,10 @@ Message times are wall-clock times; ``time_s`` counts from the start of the reco
 dies leaves no file.
 """
 
-import io
 import json
 from collections.abc import Mapping
 from datetime import datetime
-from typing import Any
+from typing import Any, BinaryIO
 
 from mcap.writer import CompressionType, Writer
 
@@ -22,7 +21,9 @@ from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 
 NAME = "motion.mcap"
-_CHUNK_BYTES = 256 * 1024
+_CHUNK_BYTES = 64 * 1024
+"""Half a second of a cell with one force sensor: what is lost of the last moments when the daemon
+dies, since a chunk is written as a whole."""
 _WRENCH = ("fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
 _POSE = ("x_mm", "y_mm", "z_mm", "a_deg", "b_deg", "c_deg")
 # A bool is an int too, hence first.
@@ -30,15 +31,16 @@ _JSON_TYPES = ((bool, "boolean"), (int, "integer"), (float, "number"), (str, "st
 
 
 class MotionWriter:
-    """Collects the messages of one run in memory, compressed. Belongs to one thread at a time."""
+    """Writes the messages of one run, compressed. Belongs to one thread at a time.
 
-    def __init__(self, started: datetime, start_s: float) -> None:
+    Every method raises what the file raises, ``OSError``.
+    """
+
+    def __init__(self, file: BinaryIO, started: datetime, start_s: float) -> None:
         """``started`` is the wall-clock time of the monotonic ``start_s``."""
         self._start_ns, self._start_s = int(started.timestamp() * 1e9), start_s
-        self._stream = io.BytesIO()
-        self._writer = Writer(
-            self._stream, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD
-        )
+        self._file = file
+        self._writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         self._writer.start(profile="", library="cellctl")
         self._channels: dict[str, int] = {}
 
@@ -70,10 +72,13 @@ class MotionWriter:
             values = dict(zip(_WRENCH, wrench, strict=True))
             self._add(f"/force/{sensor}/raw", time_s, values)
 
-    def finish(self) -> bytes:
-        """The whole file; nothing may be added afterwards."""
+    def flush(self) -> None:
+        """Hand whole chunks to the kernel: what it has outlives this process."""
+        self._file.flush()
+
+    def finish(self) -> None:
+        """Write the end of the file; nothing may be added afterwards."""
         self._writer.finish()
-        return self._stream.getvalue()
 
     def _add(self, topic: str, time_s: float, values: Mapping[str, Any]) -> None:
         since_s = time_s - self._start_s

@@ -3,12 +3,13 @@
 import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Self
+from typing import BinaryIO, Self
 
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.cell.robot_layers.noted_robot import RobotNote, RobotNotes
 from cellctl.clock import now_s, utc_now
 from cellctl.errors import CellError
+from cellctl.errors.records import RecordNotWritten
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, RobotState
 from cellctl.records.files.motion_file import MotionWriter
@@ -33,16 +34,24 @@ class MotionRecorder:
     """Listens from ``start`` to ``finish``. Disturbs nobody: what cannot be read is left out."""
 
     def __init__(
-        self, robots: Mapping[str, Robot], guards: Mapping[str, GuardPort], notes: RobotNotes
+        self,
+        robots: Mapping[str, Robot],
+        guards: Mapping[str, GuardPort],
+        notes: RobotNotes,
+        file: BinaryIO,
     ) -> None:
-        """``notes`` are those of the robots."""
+        """``notes`` are those of the robots. The recording goes to ``file`` as it comes in, so that
+        a daemon that dies in contact leaves the force curve."""
+        self._file = file
         self._robots, self._guards, self._notes = robots, guards, notes
         self._collected = _Collected()
         self._reported_s: dict[str, float] = {}
         self._felt_s: dict[str, float] = {}
-        self._writer = MotionWriter(utc_now(), now_s())
+        self._writer = MotionWriter(file, utc_now(), now_s())
         self._task: asyncio.Task[None] | None = None
         self._writing: asyncio.Task[None] | None = None
+        self._fault: OSError | None = None
+        """What the file has refused: nothing is written after it."""
 
     def start(self) -> Self:
         """Begin to listen."""
@@ -52,8 +61,11 @@ class MotionRecorder:
         self._task = asyncio.create_task(self._run(), name="motion recorder")
         return self
 
-    async def finish(self) -> bytes:
-        """End and return the recording, see ``cellctl.records.files.motion_file``."""
+    async def finish(self) -> None:
+        """End the recording, see ``cellctl.records.files.motion_file``, and close its file.
+
+        Raises ``RecordNotWritten`` when the file did not take all of it.
+        """
         self._notes.listeners.remove(self._noted)
         if self._task is not None:
             self._task.cancel()
@@ -63,7 +75,9 @@ class MotionRecorder:
         self._collect_states()
         self._collect_samples()
         await asyncio.to_thread(self._write, self._collected)
-        return await asyncio.to_thread(self._writer.finish)
+        await asyncio.to_thread(self._end)
+        if self._fault is not None:
+            raise RecordNotWritten(f"motion: {self._fault.strerror}") from self._fault
 
     def _noted(self, note: RobotNote) -> None:
         self._collected.notes.append(note)
@@ -101,9 +115,23 @@ class MotionRecorder:
                 self._collected.samples.append((name, samples.time_s, samples.raw))
 
     def _write(self, collected: _Collected) -> None:
-        for note in collected.notes:
-            self._writer.command(note.robot, note.time_s, {"what": note.what, **note.values})
-        for name, state in collected.states:
-            self._writer.report(name, state)
-        for name, times_s, raw in collected.samples:
-            self._writer.force(name, times_s, raw)
+        if self._fault is not None:
+            return
+        try:
+            for note in collected.notes:
+                self._writer.command(note.robot, note.time_s, {"what": note.what, **note.values})
+            for name, state in collected.states:
+                self._writer.report(name, state)
+            for name, times_s, raw in collected.samples:
+                self._writer.force(name, times_s, raw)
+            self._writer.flush()
+        except OSError as error:
+            self._fault = error
+
+    def _end(self) -> None:
+        try:
+            with self._file:
+                if self._fault is None:
+                    self._writer.finish()
+        except OSError as error:
+            self._fault = self._fault or error

@@ -14,9 +14,7 @@ from cellctl.errors.records import RecordsError, RecordSilent
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import Document, RunResult
-from cellctl.records.files import motion_file
 from cellctl.records.files.disk_space import require_space
-from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
@@ -89,11 +87,9 @@ class JobRecord:
         _log.info("run closed", run=self.number, result=outcome.value)
 
     async def _keep_motion(self, motion: MotionRecorder) -> None:
-        data = await motion.finish()
         try:
-            await self.store.do(
-                RunStore.add_artefact, self.number, motion_file.NAME, data, MCAP_MEDIA_TYPE
-            )
+            await motion.finish()
+            await self.store.do(RunStore.keep_recording, self.number)
         # It serves later questions, as raw images do. The run has to be closed without it too.
         except RecordsError as error:
             _log.error("motion not kept", run=self.number, fault=str(error))
@@ -163,7 +159,8 @@ class JobRecord:
             **made_with,
         )
         cell = self._cell
-        self._motion = MotionRecorder(cell.robots, cell.guards, cell.robot_notes).start()
+        file = await self.store.do(RunStore.open_recording, self.number)
+        self._motion = MotionRecorder(cell.robots, cell.guards, cell.robot_notes, file).start()
 
 
 def _require_space(store: RunStore) -> None:

@@ -33,14 +33,16 @@ def state(time_s: float) -> RobotState:
 
 
 def recording(seconds: int = 2) -> bytes:
-    writer = MotionWriter(STARTED, START_S)
+    file = io.BytesIO()
+    writer = MotionWriter(file, STARTED, START_S)
     writer.command("main", START_S + 0.5, {"what": "step", "speed_mm_s": 2.0})
     for index in range(50 * seconds):
         writer.report("main", state(START_S + 0.02 * index))
     times_s = START_S + np.arange(1000 * seconds) / 1000
     raw = np.random.default_rng(1).normal(0.0, 10.0, (len(times_s), 6))
     writer.force("force", times_s, raw)
-    return writer.finish()
+    writer.finish()
+    return file.getvalue()
 
 
 def of_topic(messages: tuple[RecordedMessage, ...], topic: str) -> list[RecordedMessage]:

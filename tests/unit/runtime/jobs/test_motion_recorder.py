@@ -1,13 +1,17 @@
 """The record of a run has what robots were told and reported, and what force sensors felt."""
 
 import asyncio
+import errno
+import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from cellctl.cell.robot_layers.noted_robot import NotedRobot
 from cellctl.errors.link import LinkLost
+from cellctl.errors.records import RecordNotWritten
 from cellctl.packml.state import State
 from cellctl.records.files import motion_file
 from cellctl.records.files.mcap_reading import McapContent, read_mcap
@@ -27,9 +31,41 @@ def noted(tmp_path: Path) -> Bench:
     return bench
 
 
-def listening(bench: Bench) -> MotionRecorder:
-    cell = bench.cell
-    return MotionRecorder(cell.robots, cell.guards, cell.robot_notes).start()
+class Listening:
+    """A recorder with its file in memory."""
+
+    def __init__(self, bench: Bench, file: io.BytesIO | None = None) -> None:
+        self.file = Kept() if file is None else file
+        cell = bench.cell
+        self.recorder = MotionRecorder(
+            cell.robots, cell.guards, cell.robot_notes, self.file
+        ).start()
+
+    async def finish(self) -> bytes:
+        await self.recorder.finish()
+        assert isinstance(self.file, Kept)
+        return self.file.content
+
+
+class Kept(io.BytesIO):
+    """Its content outlives its closing."""
+
+    content = b""
+
+    def close(self) -> None:
+        self.content = self.getvalue()
+        super().close()
+
+
+class FullDisk(io.BytesIO):
+    """Takes so many bytes."""
+
+    room = 100
+
+    def write(self, data: Any) -> int:
+        if self.tell() + len(data) > self.room:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return super().write(data)
 
 
 def topics(content: McapContent) -> set[str]:
@@ -37,7 +73,7 @@ def topics(content: McapContent) -> set[str]:
 
 
 async def test_commands_reports_and_forces_are_recorded(noted: Bench) -> None:
-    recorder = listening(noted)
+    recorder = Listening(noted)
     arm = noted.cell.robots["aux_1"]
     assert isinstance(arm, NotedRobot)
     await arm.move_joint(np.full(6, 0.4), speed_ratio=0.2)
@@ -53,7 +89,7 @@ async def test_commands_reports_and_forces_are_recorded(noted: Bench) -> None:
 
 
 async def test_after_its_end_nothing_listens(noted: Bench) -> None:
-    recorder = listening(noted)
+    recorder = Listening(noted)
     await recorder.finish()
     assert noted.cell.robot_notes.listeners == []
     await noted.cell.robots["main"].stop()
@@ -61,11 +97,21 @@ async def test_after_its_end_nothing_listens(noted: Bench) -> None:
 
 async def test_a_silent_robot_is_a_gap(noted: Bench) -> None:
     noted.cell.aux_1.faults["state"] = LinkLost("aux_1")
-    recorder = listening(noted)
+    recorder = Listening(noted)
     await asyncio.sleep(0)
     content = read_mcap(await recorder.finish())
     assert "/robots/aux_1/report" not in topics(content)
     assert "/robots/aux_2/report" in topics(content)
+
+
+async def test_a_disk_that_is_full_ends_the_recording_and_nothing_else(noted: Bench) -> None:
+    file = FullDisk()
+    listening = Listening(noted, file)
+    await noted.cell.robots["main"].stop()
+    with pytest.raises(RecordNotWritten, match="No space left"):
+        await listening.recorder.finish()
+    assert file.closed
+    assert noted.cell.robot_notes.listeners == []
 
 
 @pytest.mark.parametrize("end", [State.COMPLETED, State.ABORTED])
@@ -81,3 +127,4 @@ async def test_each_run_has_one_whatever_its_end(rig: DaemonRig, end: State) -> 
     assert content.complete
     assert "/robots/main/report" in topics(content)
     assert await rig.archive.do(RunStore.verify) == []
+    assert list((rig.archive.path / "unfinished").iterdir()) == []
