@@ -10,6 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import app_with
+from cellctl.errors.base import CellError
 from cellctl.errors.camera import CameraFeatureRefused
 
 PAGE = (Path(__file__).parents[3] / "docs" / "cameras.md").read_text(encoding="utf-8")
@@ -55,7 +56,11 @@ def bench(tmp_path: Path) -> Path:
 
 
 def grab(bench: Path) -> None:
-    written = next(line for line in block("has one master").splitlines() if "grab" in line)
+    ran(next(line for line in block("has one master").splitlines() if "grab" in line), bench)
+
+
+def ran(written: str, bench: Path) -> None:
+    """A command of the page, with the files of the test."""
     words = written.removeprefix("cellctl ").split()
     out = bench.parent / words[words.index("--out") + 1]
     words = [{"bench.toml": str(bench), out.name: str(out)}.get(word, word) for word in words]
@@ -77,6 +82,23 @@ def test_the_first_image_of_a_strange_producer(bench: Path) -> None:
         "eye-000001.json",
         "eye-000001.png",
     ]
+
+
+def test_two_cameras_without_trigger_as_a_head(bench: Path) -> None:
+    """As "Heads without trigger" says: refused without the time for which nothing moves."""
+    text = bench.read_text(encoding="utf-8")
+    text = text.replace("[cameras.eye]", "[stereo_cameras.head_1]")
+    text = text.replace("settings.camera.serial_number", "settings.left.serial_number")
+    text += f'settings.right.serial_number = "1"\n{inline("settings.trigger = ")}\n'
+    bench.write_text(text, encoding="utf-8")
+    command = "cellctl grab bench.toml --head head_1 --out images"
+    assert f"`{command}`" in PAGE
+    with pytest.raises(CellError, match="max_difference_s"):
+        ran(command, bench)
+    bench.write_text(f"{text}settings.max_difference_s = 30.0\n", encoding="utf-8")
+    ran(command, bench)
+    names = sorted(path.name for path in (bench.parent / "images").iterdir())
+    assert names == [f"head_1-000001{end}" for end in ("-left.png", "-right.png", ".json")]
 
 
 def test_the_unit_is_as_the_page_tries_it() -> None:
