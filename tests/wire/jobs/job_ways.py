@@ -13,8 +13,8 @@ import pytest
 
 from cellctl.errors.base import CellError
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
+from tests.rigs.wire.any_rig import above, move, rearm, stands, until_moving, within
 from tests.rigs.wire.job_rig import JobRig
-from tests.wire.siasun.any_rig import above, move, rearm, stands, until_moving, within
 
 STARTED = {"LINK", "READ", "MORE"}
 BACKGROUND = {"LINK", "LOOP", "BEAT", "CUT", "WATCH", "PANEL", "PERMIT", "STATE", "POSE", "SUM"}

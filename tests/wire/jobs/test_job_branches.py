@@ -7,8 +7,8 @@ import pytest
 from fakes.jobs.program import load_program
 from fakes.scenario_file.sections import Channel
 from tests.rigs.wire.job_rig import JOBS, JobRig, job_rig
+from tests.rigs.wire.refusals import REFUSALS
 from tests.wire.jobs.job_ways import WAYS, Way
-from tests.wire.siasun.refusals import REFUSALS
 
 
 @pytest.mark.parametrize("name", WAYS)

@@ -7,8 +7,8 @@ import pytest
 from cellctl.errors.link import LinkLost
 from drivers.robot.siasun.channels.command_channel import MOST_COMMANDS
 from drivers.robot.siasun.codec.compact.words import CompactWords
+from tests.rigs.wire.any_rig import move, rearm, within
 from tests.rigs.wire.job_rig import JobRig, job_rig
-from tests.wire.siasun.any_rig import move, rearm, within
 
 LAST_SESSION = 999_999
 OFFSET = 1_000_000

@@ -5,9 +5,9 @@ from typing import cast
 
 import pytest
 
+from tests.rigs.wire.any_rig import AnyRig, Make
 from tests.rigs.wire.job_rig import job_rig
 from tests.rigs.wire.sjl_rig import sjl_rig
-from tests.wire.siasun.any_rig import AnyRig, Make
 
 
 @pytest.fixture(params=[sjl_rig, job_rig], ids=["records", "jobs"])

@@ -10,9 +10,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.link import VersionMismatch
 from tests.rigs.wire.job_rig import JobRig, job_rig
+from tests.rigs.wire.siasun_angles import EULERS, rotation_by_hand
+from tests.rigs.wire.siasun_cell import running
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.wire.siasun.siasun_angles import EULERS, rotation_by_hand
-from tests.wire.siasun.siasun_cell import running
 from tests.wire.siasun.test_siasun_kinematics import config_of
 
 ABC_DEG = [

@@ -12,8 +12,8 @@ from cellctl.errors.link import (
     VersionMismatch,
 )
 from drivers.robot.siasun.driver import SiasunRobot
+from tests.rigs.wire.siasun_cell import config
 from tests.rigs.wire.siasun_peer import Peer
-from tests.wire.siasun.siasun_cell import config
 
 
 async def test_nobody_comes() -> None:

@@ -15,8 +15,8 @@ from cellctl.errors.robot import (
     TargetOutOfBounds,
 )
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
+from tests.rigs.wire.siasun_cell import HERE, LATCHED, MOVING, THERE, THERE_TEXT, Cell, running
 from tests.rigs.wire.siasun_peer import POSE
-from tests.wire.siasun.siasun_cell import HERE, LATCHED, MOVING, THERE, THERE_TEXT, Cell, running
 
 
 @pytest.fixture

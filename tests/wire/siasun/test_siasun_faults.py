@@ -15,8 +15,8 @@ from cellctl.errors.robot import (
     RobotNotReady,
 )
 from fakes.scenario_file.sections import Channel
+from tests.rigs.wire.any_rig import AnyRig, Make, above, move, rearm, until_moving, within
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.wire.siasun.any_rig import AnyRig, Make, above, move, rearm, until_moving, within
 
 
 async def test_moves_arrive(rig: AnyRig) -> None:

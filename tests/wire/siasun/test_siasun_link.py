@@ -14,8 +14,8 @@ from cellctl.errors.robot import (
     MotionRejected,
     NotRearmed,
 )
+from tests.rigs.wire.siasun_cell import LATCHED, Cell, running
 from tests.rigs.wire.siasun_peer import POSE, Peer
-from tests.wire.siasun.siasun_cell import LATCHED, Cell, running
 
 
 @pytest.fixture

@@ -5,8 +5,8 @@ from collections.abc import AsyncIterator
 import pytest
 
 from cellctl.errors.robot import MotionAborted, NotRearmed
+from tests.rigs.wire.any_rig import move, rearm, until_moving, within
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.wire.siasun.any_rig import move, rearm, until_moving, within
 
 
 @pytest.fixture

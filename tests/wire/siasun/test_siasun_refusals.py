@@ -4,9 +4,9 @@ import pytest
 
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import ControllerFault, MotionAborted, MotionRejected, NotRearmed
+from tests.rigs.wire.any_rig import AnyRig, Make, above, move, rearm, stands, until_moving, within
 from tests.rigs.wire.job_rig import JobRig
-from tests.wire.siasun.any_rig import AnyRig, Make, above, move, rearm, stands, until_moving, within
-from tests.wire.siasun.refusals import REFUSALS
+from tests.rigs.wire.refusals import REFUSALS
 
 
 @pytest.mark.parametrize("reason", REFUSALS)

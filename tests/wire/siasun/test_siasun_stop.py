@@ -15,8 +15,8 @@ from cellctl.errors.robot import (
     NotRearmed,
     StopFailed,
 )
+from tests.rigs.wire.siasun_cell import THERE_TEXT, Cell, running
 from tests.rigs.wire.siasun_peer import POSE
-from tests.wire.siasun.siasun_cell import THERE_TEXT, Cell, running
 
 
 @pytest.fixture

@@ -23,9 +23,9 @@ from drivers.robot.siasun.config import SiasunStopChannelConfig
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from tests.rigs.wire.job_rig import JobRig, job_rig
 from tests.rigs.wire.ports import free_ports
+from tests.rigs.wire.siasun_angles import rotation_by_hand
 from tests.rigs.wire.siasun_peer import POSE, Peer
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.wire.siasun.siasun_angles import rotation_by_hand
 
 
 def config(timeout_s: float = 2.0) -> SiasunStopChannelConfig:

@@ -24,9 +24,9 @@ from cellctl.errors.robot import (
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
+from tests.rigs.wire.siasun_cell import HERE, LATCHED, Cell, running
 from tests.rigs.wire.siasun_peer import POSE
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.wire.siasun.siasun_cell import HERE, LATCHED, Cell, running
 
 LIMITS = StreamLimits(5e-5, np.radians(0.02), 0.01, np.radians(2.0), 0.1)
 STREAM_TEXT = "0.0500,0.0200,10.0000,2.0000,100"

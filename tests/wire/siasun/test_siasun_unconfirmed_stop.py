@@ -9,7 +9,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost
 from cellctl.errors.robot import MotionAborted, NotRearmed, StopFailed
 from cellctl.interfaces.robot import RobotState
-from tests.wire.siasun.any_rig import AnyRig, Make, move
+from tests.rigs.wire.any_rig import AnyRig, Make, move
 
 STOP_S = 0.4
 

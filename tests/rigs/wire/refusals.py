@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import ControllerFault, MotionRejected, NotRearmed, RobotNotReady
 from cellctl.geometry.pose import pose_to_xyzabc
-from tests.wire.siasun.any_rig import AnyRig, above
+from tests.rigs.wire.any_rig import AnyRig, above
 
 _SPEED_MM_S, _ACCELERATION_MM_S2 = 20.0, 200.0
 
