@@ -65,8 +65,7 @@ def test_the_loop_is_measured_and_used(pin: OwnCell) -> None:
 
 
 TURNED_DEG = 0.15
-"""Of the joint that lifts the arm: a few tenths of a degree of an arm that was mastered carelessly,
-so much less than what a hole of 0.1 mm play would show by itself."""
+"""Of the joint that lifts the arm; the tip comes 1.3 mm beside its place by it."""
 
 
 def test_an_arm_that_was_mastered_anew_is_found_at_the_panel(pin: OwnCell) -> None:
