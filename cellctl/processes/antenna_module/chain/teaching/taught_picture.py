@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, Array
 from cellctl.plot_style import LIMIT, style
 from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection, TaughtSlot
 from cellctl.processes.antenna_module.chain.teaching.teaching import TeachLimits
@@ -14,7 +14,8 @@ _UM = 1e-6
 
 @style()
 def taught_picture(correction: PlugCorrection, limits: TeachLimits | None = None) -> bytes:
-    """PNG: each taught plug beside the mean of its slot in x, y and yaw, limits, checks."""
+    """PNG: each taught plug beside the mean of its slot in x, y and yaw, their scatter, limits,
+    checks. Of a correction that was read from its record the single plugs are not known."""
     limits = limits or TeachLimits()
     figure = new_figure(14, 5)
     plane, yaw, text = figure.subplots(1, 3)
@@ -38,18 +39,24 @@ def taught_picture(correction: PlugCorrection, limits: TeachLimits | None = None
 
 def _draw(plane: Axes, yaw: Axes, slot: TaughtSlot) -> None:
     off = slot.from_mean
-    (points,) = plane.plot(off[:, 0] / _UM, off[:, 1] / _UM, "o", label=f"slot {slot.name}")
+    x, y = _circle(slot.scatter_m / _UM)
+    (scatter,) = plane.plot(x, y, label=f"slot {slot.name}, {slot.plugs} plugs, 1 σ")
+    plane.plot(off[:, 0] / _UM, off[:, 1] / _UM, "o", color=scatter.get_color())
+    deg = float(np.degrees(slot.scatter_rad))
+    yaw.axhspan(-deg, deg, alpha=0.15, color=scatter.get_color())
     numbers = np.arange(1, len(off) + 1)
-    yaw.plot(numbers, np.degrees(off[:, 2]), "o", color=points.get_color())
+    yaw.plot(numbers, np.degrees(off[:, 2]), "o", color=scatter.get_color())
     yaw.set_xticks(numbers)
 
 
 def _bound(axes: Axes, correction: PlugCorrection, limit_um: float) -> None:
     """The standard deviation per axis that is allowed, and room for what is beyond it."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    axes.plot(
-        limit_um * np.cos(turn), limit_um * np.sin(turn), "--", color=LIMIT, label="limit, 1 σ"
-    )
+    axes.plot(*_circle(limit_um), "--", color=LIMIT, label="limit, 1 σ")
     farthest_m = max(np.abs(slot.from_mean[:, :2]).max(initial=0.0) for slot in correction.slots)
     reach_um = 1.3 * max(limit_um, float(farthest_m) / _UM)
     axes.set(xlim=(-reach_um, reach_um), ylim=(-reach_um, reach_um), aspect="equal")
+
+
+def _circle(radius: float) -> tuple[Array, Array]:
+    turn = np.linspace(0.0, 2.0 * np.pi, 181)
+    return np.asarray(radius * np.cos(turn)), np.asarray(radius * np.sin(turn))

@@ -1,8 +1,11 @@
 """The picture of a teaching, and what it draws."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from cellctl.processes.antenna_module.calibrations import PLUG_CORRECTION
 from cellctl.processes.antenna_module.chain.schemes import DIFFERENCE
 from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching.taught_picture import taught_picture
@@ -34,3 +37,10 @@ def test_a_stored_correction_has_lost_its_single_plugs_but_not_its_picture(
     again = PlugCorrection.from_record(correction.to_record())
     assert again.slots[0].from_mean.shape == (0, 3)
     assert taught_picture(again).startswith(b"\x89PNG")
+
+
+def test_every_shipped_calibration_has_its_picture() -> None:
+    records = sorted(Path("config/antenna-calibration").glob("*.json"))
+    assert PLUG_CORRECTION.for_recipe(1).name in {path.stem for path in records}
+    for path in records:
+        assert path.with_suffix(".png").read_bytes().startswith(b"\x89PNG"), path
