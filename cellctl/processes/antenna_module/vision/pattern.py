@@ -1,13 +1,17 @@
 """Finds and measures a pattern of equal round features: the contacts of a connector, or marks."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.processes.antenna_module.vision.contact_fit.circle_fit import Circle, fit_circle
-from cellctl.processes.antenna_module.vision.contact_fit.rim_edges import rim_edges
+from cellctl.processes.antenna_module.vision.contact_fit.circle_fit import Circle
+from cellctl.processes.antenna_module.vision.contact_fit.circle_search import (
+    circle_near,
+    contrast_across,
+)
 from cellctl.processes.antenna_module.vision.contact_fit.spots import Spots, find_spots
 from cellctl.processes.antenna_module.vision.contact_fit.tip_fit import fit_tip
 from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
@@ -24,6 +28,8 @@ _COMMON_PX = 0.007
 """Standard deviation of what light and walls move all features of an image together, per axis: with
 noise averaged away, this is left on rendered pins."""
 _SUPPORT = 0.6
+_LOST = 4.0
+"""Scatter of a circle's edges over that of the others: more is another thing than its rim."""
 _STRENGTH = 0.35
 """An edge weaker than this share of the others is not that of a clean contact."""
 
@@ -118,7 +124,7 @@ def fit_pattern(
     starts = np.where(placement.spot[:, None] >= 0, spots_m[placement.spot], placed)
     radius_m = pattern.diameter_m / 2.0
     coarse = [
-        _circle(
+        circle_near(
             image,
             plane,
             start,
@@ -136,7 +142,7 @@ def fit_pattern(
     # better guess for each of them than the drawing, which knows neither light nor blur.
     alike_m = float(np.median(radii))
     fine = [
-        _circle(
+        circle_near(
             image,
             plane,
             start if circle is None else circle.centre_m,
@@ -147,6 +153,7 @@ def fit_pattern(
         )
         for start, circle in zip(starts, coarse, strict=True)
     ]
+    fine = _found_again(image, plane, pattern, fine, alike_m)
     if pattern.chamfer_m > 0:
         fine = [_tip(image, plane, pattern, circle) for circle in fine]
     features = _features(image, plane, pattern, fine, starts)
@@ -161,6 +168,37 @@ def fit_pattern(
         return None
     fit = _with_common_light(fit, _COMMON_PX * plane.m_per_px(fit.shift_m))
     return PatternFit(_with_all_residuals(fit, features, pattern), features)
+
+
+def _found_again(
+    image: Image,
+    plane: MeasuringPlane,
+    pattern: Pattern,
+    circles: list[Circle | None],
+    radius_m: float,
+) -> list[Circle | None]:
+    """Circles whose edges scatter far more than the others', anew from where the others put them.
+
+    A search that began beside its contact has met other edges than the rim.
+    """
+    scatters = [circle.scatter_m for circle in circles if circle is not None]
+    lost = [c is not None and c.scatter_m > _LOST * float(np.median(scatters)) for c in circles]
+    points = np.array(
+        [
+            [np.nan] * 2 if c is None or away else c.centre_m
+            for c, away in zip(circles, lost, strict=True)
+        ]
+    )
+    equal = np.tile(np.eye(2) * pattern.true_position_m**2, (len(points), 1, 1))
+    fit = fit_planar(pattern.positions_m, points, equal, pattern.true_position_m)
+    if fit is None or not any(lost):
+        return circles
+    placed = pattern.positions_m @ rotation(fit.yaw_rad).T + fit.shift_m
+    search = partial(circle_near, image, plane, sigma=_ALIKE, share=_FINE, bright=pattern.bright)
+    return [
+        search(start=place, radius_m=radius_m) if away else circle
+        for circle, place, away in zip(circles, placed, lost, strict=True)
+    ]
 
 
 def surplus(
@@ -185,37 +223,11 @@ def surplus(
     count = 0
     for place in candidates.spots_m[inside]:
         radius_m = pattern.diameter_m / 2.0
-        circle = _circle(
+        circle = circle_near(
             image, plane, place, radius_m, sigma=_PRIOR, share=_FINE, bright=pattern.bright
         )
         count += circle is not None and circle.support > 0.8
     return count
-
-
-def _circle(
-    image: Image,
-    plane: MeasuringPlane,
-    start: Array,
-    radius_m: float,
-    *,
-    sigma: float,
-    share: float,
-    bright: bool,
-) -> Circle | None:
-    """The rim near a start, its edges searched anew round the centre that was found."""
-    px_m = plane.m_per_px(start)
-    circle: Circle | None = None
-    # The search looks along rays from the centre: with a start that is off, it meets the rim
-    # aslant and weights its near side. A second round, from the centre found, is free of that.
-    for _ in range(2):
-        edges = rim_edges(image, plane, start, radius_m, share=share, bright=bright)
-        if edges is None:
-            return None
-        circle = fit_circle(edges, start, radius_m, radius_sigma_m=sigma * radius_m, px_m=px_m)
-        if circle is None or np.linalg.norm(circle.centre_m - start) > radius_m:
-            return None
-        start = circle.centre_m
-    return circle
 
 
 def _tip(
@@ -248,28 +260,19 @@ def _features(
         Feature(
             name,
             circle,
-            _contrast(image, plane, start if circle is None else circle.centre_m, pattern),
+            contrast_across(
+                image,
+                plane,
+                start if circle is None else circle.centre_m,
+                pattern.diameter_m,
+                bright=pattern.bright,
+            ),
             circle is not None
             and circle.support >= _SUPPORT
             and circle.slope_grey >= _STRENGTH * typical,
         )
         for name, circle, start in zip(pattern.names, circles, starts, strict=True)
     )
-
-
-def _contrast(image: Image, plane: MeasuringPlane, centre_m: Array, pattern: Pattern) -> float:
-    """Median grey inside less outside; 0 outside of the image."""
-    angle = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
-    unit = np.column_stack([np.cos(angle), np.sin(angle)]) * pattern.diameter_m / 2.0
-    levels: list[float] = []
-    for share in (0.5, 1.5):
-        pixels = np.rint(plane.to_px(centre_m + share * unit)).astype(int)
-        height, width = image.shape
-        if pixels.min() < 0 or pixels[:, 0].max() >= width or pixels[:, 1].max() >= height:
-            return 0.0
-        levels.append(float(np.median(image[pixels[:, 1], pixels[:, 0]])))
-    difference = levels[0] - levels[1]
-    return difference if pattern.bright else -difference
 
 
 def _with_common_light(fit: PlanarFit, sigma_m: float) -> PlanarFit:

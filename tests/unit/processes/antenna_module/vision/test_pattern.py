@@ -16,6 +16,8 @@ from cellctl.processes.antenna_module.vision.pattern import find_pattern, surplu
 from tests.rigs.antenna.outcomes import outcome
 from tests.rigs.antenna.pictures import CLEAN, HOLES, trial
 
+BESIDE = 30
+"""Seed of a picture of a good D-sub socket in which one search begins beside its hole."""
 TWICE = 39
 """Seed of a picture in which two holes of a good socket are found as two spots each."""
 
@@ -30,6 +32,12 @@ def test_a_hole_that_is_found_twice_is_no_hole_too_many() -> None:
     assert surplus(image, plane, pattern, candidates, connector.outline_m) == 0
     found = measure_connector(image, given.camera, given.plane, connector)
     assert all(contact.state == "ok" for contact in found.contacts)
+
+
+def test_a_hole_whose_search_began_beside_it_is_found_again() -> None:
+    given = trial(BESIDE, replace(HOLES, name="d-sub-15"))
+    found = measure_connector(given.pixels.plane, given.camera, given.plane, given.connector)
+    assert [contact.name for contact in found.contacts if contact.state != "ok"] == []
 
 
 def test_errors_are_as_large_as_is_stated_of_them() -> None:
