@@ -24,11 +24,10 @@ from cellctl.records.entries import (
     RunRecord,
     RunResult,
 )
-from cellctl.records.files import motion_file
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.files.mcap_reading import is_readable
-from cellctl.records.files.unfinished import UnfinishedRecordings
+from cellctl.records.files.unfinished import MOTION, UnfinishedRecordings
 from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
@@ -68,7 +67,7 @@ class RunStore:
             for row in found:
                 if (data := self._unfinished.read(row.number)) is not None and is_readable(data):
                     sha256 = self.artefacts.put(data)
-                    file = motion_file.NAME, MCAP_MEDIA_TYPE, sha256, len(data)
+                    file = MOTION, MCAP_MEDIA_TYPE, sha256, len(data)
                     session.add(rows.artefact(row.number, *file))
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
             interrupted = [row.number for row in found]
@@ -147,7 +146,7 @@ class RunStore:
     def keep_recording(self, run: int) -> None:
         """Make the recording of a run, which is complete, one of its files."""
         if (data := self._unfinished.read(run)) is not None:
-            self.add_artefact(run, motion_file.NAME, data, MCAP_MEDIA_TYPE)
+            self.add_artefact(run, MOTION, data, MCAP_MEDIA_TYPE)
             self._unfinished.remove(run)
 
     def close_run(

@@ -20,8 +20,8 @@ from mcap.writer import CompressionType, Writer
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 from cellctl.records.entries import Artefact
-from cellctl.records.files import motion_file
 from cellctl.records.files.mcap_reading import MEDIA_TYPE, read_mcap
+from cellctl.records.files.unfinished import MOTION
 
 _TOPIC = "/contact/force"
 _FACTS = "facts"
@@ -84,7 +84,7 @@ class CurveWriter:
 
 def is_curve(artefact: Artefact) -> bool:
     """Whether a file of a run is a force curve; the recording of the whole run is none."""
-    return artefact.media_type == MEDIA_TYPE and artefact.name != motion_file.NAME
+    return artefact.media_type == MEDIA_TYPE and artefact.name != MOTION
 
 
 def encode_curve(curve: ForceCurve, started: datetime, facts: Mapping[str, str]) -> bytes:

@@ -20,7 +20,6 @@ from mcap.writer import CompressionType, Writer
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.interfaces.robot import RobotState
 
-NAME = "motion.mcap"
 _CHUNK_BYTES = 64 * 1024
 """Half a second of a cell with one force sensor: what is lost of the last moments when the daemon
 dies, since a chunk is written as a whole."""

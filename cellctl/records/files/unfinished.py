@@ -6,6 +6,9 @@ from typing import BinaryIO
 from cellctl.atomic_files import make_folder_durably
 from cellctl.errors.records import RecordNotWritten
 
+MOTION = "motion.mcap"
+"""Name of a recording among the files of its run."""
+
 
 class UnfinishedRecordings:
     """A folder with one file for each open run. Methods raise ``RecordNotWritten``.

@@ -311,6 +311,12 @@ class StreamingRobotContract(ABC):
                 assert np.linalg.norm(way_m) <= ticks * step_m + CLOSE_M
                 last = report
             await hold_at(stream, raised(start, 6 * step_m))
+            # A busy PC may send two setpoints for one tick, and the controller does not miss one of
+            # them. Further ones are lost until it has missed three.
+            for _ in range(5):
+                if stream.report.lost < before.lost + 3:
+                    connected.lose_setpoints(3)
+                    await hold_at(stream, raised(start, 6 * step_m))
             assert stream.report.lost >= before.lost + 3
         assert abs(connected.flange().translation[2] - start.base_T_flange.translation[2]) < (
             6 * step_m + CLOSE_M

@@ -1,11 +1,13 @@
 """Procedure 103: the arm turns one axis at a time, and the solver finds the base."""
 
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
 import pytest
 
 from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
+from cellctl.calibration.store.envelope import read_calibration, write_stored
 from cellctl.errors.calibration import CalibrationInvalidated
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import ArmOffReference, ArmReferenceMissing
@@ -136,6 +138,10 @@ async def test_a_base_frame_without_a_reference_cannot_be_checked(
     rig: ProcedureRig, watching: Watching
 ) -> None:
     """As an older version has stored it; nothing is measured or voided then."""
+    folder = rig.bench.calibrations.path
+    stored = read_calibration(folder, BASE_FRAME.name)
+    record = {key: value for key, value in stored.record.items() if key != "reference"}
+    write_stored(folder, replace(stored, record=record))
     with pytest.raises(ArmReferenceMissing, match="without one"):
         await rig.procedures[109].run(rig.context)
     assert not watching.frames

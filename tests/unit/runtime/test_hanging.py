@@ -4,6 +4,7 @@ import asyncio
 import shutil
 import threading
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,7 @@ from cellctl.packml.command import Command
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
-from tests.unit.daemon_rig import DaemonRig
+from tests.unit.daemon_rig import WAIT_S, DaemonRig
 
 SHORT_S = 0.05
 
@@ -73,11 +74,23 @@ async def test_a_disk_that_hangs_when_the_run_is_opened(
     rig.bench.cell.time_limits = TimeLimits(open_record_s=SHORT_S, close_record_s=SHORT_S)
     await rig.restart()
     await rig.idle()
-    monkeypatch.setattr(RunStore, "start_run", lambda *_, **__: disk.wait(10))
+    starts = RunStore.start_run
+
+    def slow(store: RunStore, **fields: Any) -> int:
+        disk.wait(10)
+        return starts(store, **fields)
+
+    monkeypatch.setattr(RunStore, "start_run", slow)
     await rig.take(Command.START)
     await rig.to(State.ABORTED)
     assert rig.shown().first_out_alarm == RecordSilent.number
     assert not any(robot.moves for robot in rig.bench.cell.robots.values())
+    disk.set()
+    async with asyncio.timeout(WAIT_S):
+        # Completed late, and closed then; each look waits for its turn behind that.
+        while (await rig.record()).head.result != "aborted":
+            pass
+    assert not rig.bench.cell.robot_notes.listeners
 
 
 async def test_a_device_that_hangs_when_it_is_asked(rig: DaemonRig) -> None:

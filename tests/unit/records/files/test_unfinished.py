@@ -13,6 +13,7 @@ from cellctl.errors.records import RecordNotWritten
 from cellctl.records.entries import RunResult
 from cellctl.records.files import motion_file
 from cellctl.records.files.mcap_reading import read_mcap
+from cellctl.records.files.unfinished import MOTION
 from cellctl.records.store import RunStore
 from tests.unit.records.conftest import start
 
@@ -55,7 +56,7 @@ def test_a_daemon_that_is_killed_leaves_its_force_curve(tmp_path: Path) -> None:
     assert record.head.result == RunResult.INTERRUPTED
     (artefact,) = record.artefacts
     content = read_mcap(store.artefacts.get(artefact.sha256))
-    assert artefact.name == motion_file.NAME
+    assert artefact.name == MOTION
     assert not content.complete
     # At most the chunk that was being filled is lost: half a second and what compresses well.
     assert len(content.messages) >= 1000 * (felt_s - 1.0)

@@ -13,8 +13,8 @@ from cellctl.cell.robot_layers.noted_robot import NotedRobot
 from cellctl.errors.link import LinkLost
 from cellctl.errors.records import RecordNotWritten
 from cellctl.packml.state import State
-from cellctl.records.files import motion_file
 from cellctl.records.files.mcap_reading import McapContent, read_mcap
+from cellctl.records.files.unfinished import MOTION
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
 from tests.unit.cell.bench import Bench, make_bench
@@ -121,7 +121,7 @@ async def test_each_run_has_one_whatever_its_end(rig: DaemonRig, end: State) -> 
     await rig.started()
     await rig.to(end)
     record = await rig.record()
-    (artefact,) = (one for one in record.artefacts if one.name == motion_file.NAME)
+    (artefact,) = (one for one in record.artefacts if one.name == MOTION)
     data = await rig.archive.do(lambda store: store.artefacts.get(artefact.sha256))
     content = read_mcap(data)
     assert content.complete
