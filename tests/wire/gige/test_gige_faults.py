@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,6 +27,8 @@ from drivers.camera.gige.driver import GigeHead
 from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 from tests.wire.gige.conftest import LEFT, RIGHT, camera, descriptors
+
+EM_RISCV, EM_S390 = (number.to_bytes(2, sys.byteorder) for number in (243, 22))
 
 
 @contextmanager
@@ -130,6 +133,21 @@ async def test_a_producer_that_cannot_be_used(
     if content is not None:
         path.write_bytes(content)
     assert words in await refused(path, ProducerUnusable)
+
+
+@pytest.fixture
+def foreign(tmp_path: Path, producer: Path) -> Path:
+    """The same producer for another kind of processor."""
+    library = bytearray(producer.read_bytes())
+    machine = slice(18, 20)  # e_machine of an ELF file
+    library[machine] = EM_RISCV if library[machine] != EM_RISCV else EM_S390
+    path = tmp_path / "other.cti"
+    path.write_bytes(library)
+    return path
+
+
+async def test_a_producer_for_another_kind_of_processor(foreign: Path) -> None:
+    assert "other.cti cannot be loaded" in await refused(foreign, ProducerUnusable)
 
 
 async def test_the_folder_of_the_variable_is_enough(
