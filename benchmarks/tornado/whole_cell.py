@@ -60,7 +60,7 @@ def _run(command: list[str]) -> str:
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
-        process_group=0,
+        start_new_session=True,
     )
     try:
         return process.communicate()[1]

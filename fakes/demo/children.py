@@ -43,10 +43,9 @@ class Child:
                 stdout=subprocess.PIPE,
                 stderr=stderr,
                 text=True,
-                # Not a session of its own: where the kernel groups processes by session
-                # (autogroup, sched(7)), priorities would hold only within each of the children,
-                # and drawing images would take the processor from whoever moves.
-                process_group=0,
+                # Where the kernel shares processors by session (autogroup, sched(7)), the other
+                # programs of this terminal together weigh as much as this child alone.
+                start_new_session=True,
                 env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
             )
         child = cls(name, process, Queue(), log)

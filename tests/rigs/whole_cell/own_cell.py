@@ -193,10 +193,9 @@ class Program:
                 stdin=subprocess.DEVNULL,
                 stdout=stdout,
                 stderr=stderr,
-                # Not a session of its own: where the kernel groups processes by session
-                # (autogroup, sched(7)), priorities would hold only within each of the children,
-                # and drawing images would take the processor from whoever moves.
-                process_group=0,
+                # Where the kernel shares processors by session (autogroup, sched(7)), the other
+                # programs of this terminal together weigh as much as this child alone.
+                start_new_session=True,
                 env=os.environ | {_MARK: mark, "OPENBLAS_NUM_THREADS": "1"},
             )
         return cls(process, out, err, mark)
