@@ -1,7 +1,7 @@
 """Cameras, heads, trackers, grippers and digital I/O whose drivers may hang in a call."""
 
 from collections.abc import Coroutine, Mapping
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from cellctl.cell.patience.calls import PATIENCE_S, answer_within
 from cellctl.errors import CellError
@@ -20,12 +20,14 @@ from cellctl.interfaces.digital_io import DigitalIoState
 from cellctl.interfaces.target_tracker import Target
 
 T = TypeVar("T")
+D = TypeVar("D", bound=Device)
+Imager = TypeVar("Imager", bound=Camera | StereoCamera)
 
 
-class PatientDevice(Device):
+class PatientDevice(Device, Generic[D]):
     """Passes each call on; ``ReplyTimeout`` from one that does not come back in time."""
 
-    def __init__(self, device: Device, patience_s: float = PATIENCE_S) -> None:
+    def __init__(self, device: D, patience_s: float = PATIENCE_S) -> None:
         self.name = device.name
         self._device = device
         self._patience_s = patience_s
@@ -46,98 +48,77 @@ class PatientDevice(Device):
         return await answer_within(call, self.name, self._patience_s)
 
 
-class PatientImager(PatientDevice):
+class PatientImager(PatientDevice[Imager], Generic[Imager]):
     """What camera and head share."""
-
-    def __init__(self, imager: Camera | StereoCamera, patience_s: float = PATIENCE_S) -> None:
-        super().__init__(imager, patience_s)
-        self._imager = imager
 
     async def serial_number(self) -> str:
         """That of the device behind it."""
-        return await self._answer(self._imager.serial_number())
+        return await self._answer(self._device.serial_number())
 
     async def set_exposure(self, exposure_s: float) -> float:
         """As the device behind it."""
-        return await self._answer(self._imager.set_exposure(exposure_s))
+        return await self._answer(self._device.set_exposure(exposure_s))
 
 
-class PatientCamera(PatientImager, Camera):
+class PatientCamera(PatientImager[Camera], Camera):
     """A single camera."""
-
-    def __init__(self, camera: Camera, patience_s: float = PATIENCE_S) -> None:
-        super().__init__(camera, patience_s)
-        self._camera = camera
 
     async def grab(self) -> CameraImage:
         """As the camera behind it."""
-        return await self._answer(self._camera.grab())
+        return await self._answer(self._device.grab())
 
 
-class PatientHead(PatientImager, StereoCamera):
+class PatientHead(PatientImager[StereoCamera], StereoCamera):
     """A stereo head."""
-
-    def __init__(self, head: StereoCamera, patience_s: float = PATIENCE_S) -> None:
-        super().__init__(head, patience_s)
-        self._head = head
 
     async def grab(self) -> StereoPair:
         """As the head behind it."""
-        return await self._answer(self._head.grab())
+        return await self._answer(self._device.grab())
 
 
-class PatientTracker(PatientDevice, TargetTracker):
+class PatientTracker(PatientDevice[TargetTracker], TargetTracker):
     """A large-field head."""
-
-    def __init__(self, tracker: TargetTracker, patience_s: float = PATIENCE_S) -> None:
-        super().__init__(tracker, patience_s)
-        self._tracker = tracker
 
     async def serial_number(self) -> str:
         """That of the tracker behind it."""
-        return await self._answer(self._tracker.serial_number())
+        return await self._answer(self._device.serial_number())
 
     async def measure(self, frames: int = 1) -> tuple[Target, ...]:
         """As the tracker behind it."""
-        return await self._answer(self._tracker.measure(frames))
+        return await self._answer(self._device.measure(frames))
 
 
-class PatientGripper(PatientDevice, Gripper):
+class PatientGripper(PatientDevice[Gripper], Gripper):
     """A gripper; a call that is left does not stop its jaws."""
-
-    def __init__(self, gripper: Gripper, patience_s: float = PATIENCE_S) -> None:
-        super().__init__(gripper, patience_s)
-        self._gripper = gripper
 
     async def state(self) -> GripperState:
         """That of the gripper behind it."""
-        return await self._answer(self._gripper.state())
+        return await self._answer(self._device.state())
 
     async def open(self) -> GripperState:
         """As the gripper behind it."""
-        return await self._answer(self._gripper.open())
+        return await self._answer(self._device.open())
 
     async def close(self) -> GripperState:
         """As the gripper behind it."""
-        return await self._answer(self._gripper.close())
+        return await self._answer(self._device.close())
 
     async def confirm_part(self) -> GripperState:
         """As the gripper behind it."""
-        return await self._answer(self._gripper.confirm_part())
+        return await self._answer(self._device.confirm_part())
 
 
-class PatientIo(PatientDevice, DigitalIo):
+class PatientIo(PatientDevice[DigitalIo], DigitalIo):
     """Digital inputs and outputs."""
 
     def __init__(self, io: DigitalIo, patience_s: float = PATIENCE_S) -> None:
         super().__init__(io, patience_s)
-        self._io = io
         self.input_names, self.output_names = io.input_names, io.output_names
 
     async def read(self) -> DigitalIoState:
         """As the device behind it."""
-        return await self._answer(self._io.read())
+        return await self._answer(self._device.read())
 
     async def write(self, outputs: Mapping[str, bool]) -> None:
         """As the device behind it."""
-        await self._answer(self._io.write(outputs))
+        await self._answer(self._device.write(outputs))
