@@ -26,7 +26,7 @@ from cellctl.records.entries import (
 )
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
-from cellctl.records.files.mcap_reading import is_readable
+from cellctl.records.files.mcap_reading import has_messages
 from cellctl.records.files.unfinished import MOTION, UnfinishedRecordings
 from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
@@ -65,7 +65,7 @@ class RunStore:
             still_open = select(schema.RunRow).where(schema.RunRow.ended.is_(None))
             found = session.scalars(still_open).all()
             for row in found:
-                if (data := self._unfinished.read(row.number)) is not None and is_readable(data):
+                if (data := self._unfinished.read(row.number)) is not None and has_messages(data):
                     sha256 = self.artefacts.put(data)
                     file = MOTION, MCAP_MEDIA_TYPE, sha256, len(data)
                     session.add(rows.artefact(row.number, *file))

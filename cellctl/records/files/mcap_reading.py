@@ -3,12 +3,12 @@
 import io
 import json
 import struct
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from mcap.exceptions import McapError
-from mcap.records import Channel, Message, Metadata
+from mcap.records import Channel, McapRecord, Message, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
@@ -16,6 +16,10 @@ from cellctl.errors.records import RecordingUnreadable
 
 MEDIA_TYPE = "application/x-mcap"
 _RECORD_LIMIT = 16 * 1024 * 1024
+"""Keeps a damaged length from asking for all of the memory."""
+_DAMAGE = (McapError, ZstdError, ValueError, KeyError, EOFError, struct.error)
+"""Whatever a cut off or damaged file raises in its middle: what was read before that is good, each
+chunk has a checksum of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,10 +47,8 @@ def read_mcap(data: bytes) -> McapContent:
     messages: list[RecordedMessage] = []
     facts: dict[str, str] = {}
     complete = True
-    # The limit keeps a damaged length from asking for all of the memory.
-    reader = StreamReader(io.BytesIO(data), validate_crcs=True, record_size_limit=_RECORD_LIMIT)
     try:
-        for record in reader.records:
+        for record in _records(data):
             if isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, Message):
@@ -54,19 +56,22 @@ def read_mcap(data: bytes) -> McapContent:
                 messages.append(RecordedMessage(topics[record.channel_id], values))
             elif isinstance(record, Metadata):
                 facts = dict(record.metadata)
-    # Whatever a cut off or damaged file raises in its middle: the messages before that are good,
-    # each chunk has a checksum of its own.
-    except (McapError, ZstdError, ValueError, KeyError, EOFError, struct.error) as error:
+    except _DAMAGE as error:
         complete = False
         if not messages:
             raise RecordingUnreadable(str(error) or type(error).__name__) from error
     return McapContent(tuple(messages), facts, complete)
 
 
-def is_readable(data: bytes) -> bool:
-    """True when at least one message can be read."""
+def has_messages(data: bytes) -> bool:
+    """True when at least one message can be read; looks no further than to the first."""
     try:
-        read_mcap(data)
-    except RecordingUnreadable:
+        return any(isinstance(record, Message) for record in _records(data))
+    except _DAMAGE:
         return False
-    return True
+
+
+def _records(data: bytes) -> Iterator[McapRecord]:
+    """All records in their order; raises ``_DAMAGE`` where the file cannot be read on."""
+    reader = StreamReader(io.BytesIO(data), validate_crcs=True, record_size_limit=_RECORD_LIMIT)
+    yield from reader.records

@@ -1,5 +1,7 @@
 """Recordings of runs that are still open: files that a daemon which dies leaves behind."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,32 +24,38 @@ class UnfinishedRecordings:
 
     def open(self, run: int) -> BinaryIO:
         """A new file for a run."""
-        try:
+        path = self._path(run)
+        with _raising_not_written(path):
             make_folder_durably(self._folder)
-            return self._path(run).open("wb")
-        except OSError as error:
-            raise RecordNotWritten(f"recording of run {run}: {error.strerror}") from error
+            return path.open("wb")
 
     def read(self, run: int) -> bytes | None:
         """What the file of a run holds so far; None when there is none."""
-        try:
-            return self._path(run).read_bytes()
-        except FileNotFoundError:
-            return None
-        except OSError as error:
-            raise RecordNotWritten(f"recording of run {run}: {error.strerror}") from error
+        path = self._path(run)
+        with _raising_not_written(path):
+            return path.read_bytes() if path.exists() else None
 
     def remove(self, run: int) -> None:
         """Of a run whose recording stands in its record, or will never be one."""
-        try:
-            self._path(run).unlink(missing_ok=True)
-        except OSError as error:
-            raise RecordNotWritten(f"recording of run {run}: {error.strerror}") from error
+        _remove(self._path(run))
 
     def clear(self) -> None:
         """Remove the files of all runs: no run is open."""
         for path in self._folder.glob("*.mcap"):
-            self.remove(int(path.stem))
+            _remove(path)
 
     def _path(self, run: int) -> Path:
         return self._folder / f"{run}.mcap"
+
+
+def _remove(path: Path) -> None:
+    with _raising_not_written(path):
+        path.unlink(missing_ok=True)
+
+
+@contextmanager
+def _raising_not_written(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise RecordNotWritten(f"recording of run {path.stem}: {error.strerror}") from error
