@@ -66,10 +66,8 @@ def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
     """
     for name in QUIET_LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    stream: UnfailingStream | LogThread = (unfailing := UnfailingStream(sys.stderr))
-    if beside:
-        stream = LogThread(unfailing)
-        atexit.register(stream.close)
+    stderr = UnfailingStream(sys.stderr)
+    stream = cast(TextIO, _by_thread(stderr) if beside else stderr)
     before: list[Processor] = [
         structlog.contextvars.merge_contextvars,
         structlog.processors.add_log_level,
@@ -79,12 +77,12 @@ def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
     structlog.configure(
         processors=[*before, *after],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level)),
-        logger_factory=structlog.WriteLoggerFactory(cast(TextIO, stream)),
+        logger_factory=structlog.WriteLoggerFactory(stream),
         # Loggers are made at import, before this function runs. One that was used by then would
         # otherwise keep the old set-up.
         cache_logger_on_first_use=False,
     )
-    handler = logging.StreamHandler(cast(TextIO, stream))
+    handler = logging.StreamHandler(stream)
     handler.setFormatter(
         ProcessorFormatter(
             foreign_pre_chain=[*before, _add_module],
@@ -92,6 +90,12 @@ def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
         )
     )
     logging.basicConfig(level=level, handlers=[handler], force=True)
+
+
+def _by_thread(stream: UnfailingStream) -> LogThread:
+    thread = LogThread(stream)
+    atexit.register(thread.close)
+    return thread
 
 
 def _renderer() -> Processor:

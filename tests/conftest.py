@@ -1,9 +1,12 @@
 """How tests are marked and shared out between workers, and what slow machines are allowed."""
 
+import logging
+from collections.abc import Iterator
 from pathlib import Path
 
 import hypothesis
 import pytest
+import structlog
 from xdist.scheduler import LoadScopeScheduling
 
 pytest_plugins = ["tests.machine_pauses"]
@@ -22,6 +25,16 @@ _SHARED_MATING = ("tests/unit/processes/deck_to_frame/mating/test_mate.py",)
 hypothesis.settings.register_profile("same-examples", deadline=None, derandomize=True)
 hypothesis.settings.register_profile("explore", deadline=None, max_examples=1000)
 hypothesis.settings.load_profile("same-examples")
+
+
+@pytest.fixture
+def restored_logging() -> Iterator[None]:
+    """Logging is as it was when the test has ended."""
+    root = logging.getLogger()
+    handlers, level = root.handlers[:], root.level
+    yield
+    root.handlers[:], root.level = handlers, level
+    structlog.reset_defaults()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

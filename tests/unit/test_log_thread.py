@@ -7,7 +7,6 @@ import threading
 from collections.abc import Iterator
 
 import pytest
-import structlog
 
 from cellctl import log
 from cellctl.log_thread import LogThread
@@ -37,16 +36,7 @@ def disk() -> Iterator[SlowDisk]:
     disk.goes_on.set()
 
 
-@pytest.fixture
-def _restored() -> Iterator[None]:
-    root = logging.getLogger()
-    handlers, level = root.handlers[:], root.level
-    yield
-    root.handlers[:], root.level = handlers, level
-    structlog.reset_defaults()
-
-
-@pytest.mark.usefixtures("_restored")
+@pytest.mark.usefixtures("restored_logging")
 def test_who_logs_does_not_wait(disk: SlowDisk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stderr", disk)
     ends: list[object] = []
