@@ -33,7 +33,7 @@ from cellctl.records.figures import Limit
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Sight:
+class _PlugSight:
     """A plug with all of its contacts, and the marks beside it."""
 
     seen: Seen[ConnectorMeasurement]
@@ -73,14 +73,14 @@ async def inspect_plug(picked: Picked) -> PlugInspected:
     return PlugInspected(run, picked.module, plug=look, flange_T_connector=on_gripper)
 
 
-async def _sound_again(picked: Picked, first: ConnectorMisplaced) -> _Sight:
+async def _sound_again(picked: Picked, first: ConnectorMisplaced) -> _PlugSight:
     try:
         return await _sound(picked, "plug-again")
     except ConnectorMisplaced as second:
         raise GrippedOffTwice(f"first {first.detail}; then {second.detail}") from second
 
 
-async def _sound(picked: Picked, images: str) -> _Sight:
+async def _sound(picked: Picked, images: str) -> _PlugSight:
     run = picked.run
     await run.mover.to_taught(INSPECT_PLUG)
     try:
@@ -91,7 +91,7 @@ async def _sound(picked: Picked, images: str) -> _Sight:
         raise
 
 
-async def _look(run: PluggingRun, images: str) -> _Sight:
+async def _look(run: PluggingRun, images: str) -> _PlugSight:
     base_T_flange = run.cell.arm.robot.state().base_T_flange
     place = Place(
         pose=run.recipe.flange_T_plug,
@@ -115,7 +115,7 @@ async def _look(run: PluggingRun, images: str) -> _Sight:
         require_sound(frame)
     plug = combined(tuple(frame.camera_T_connector for frame in seen.frames))
     marks = combined(tuple(frame.marks.camera_T_marks for frame in seen.frames if frame.marks))
-    return _Sight(seen, plug, marks)
+    return _PlugSight(seen, plug, marks)
 
 
 def _mated(run: PluggingRun, camera_T_connector: UncertainPose) -> UncertainPose:

@@ -30,7 +30,7 @@ _AWAY_M = 5e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Sight:
+class _SocketSight:
     """A socket with all of its holes."""
 
     seen: Seen[ConnectorMeasurement]
@@ -71,7 +71,7 @@ async def locate_socket(inspected: PlugInspected) -> SocketLocated:
     )
 
 
-async def _look(run: PluggingRun, name: str) -> _Sight:
+async def _look(run: PluggingRun, name: str) -> _SocketSight:
     """Measured and sound; where chance has spoilt the picture, from a second one."""
     try:
         return await SecondLook(run).look(name, partial(_measured, run))
@@ -79,7 +79,7 @@ async def _look(run: PluggingRun, name: str) -> _Sight:
         raise SocketUnsound(fault.detail) from fault
 
 
-async def _measured(run: PluggingRun, name: str) -> _Sight:
+async def _measured(run: PluggingRun, name: str) -> _SocketSight:
     base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
     place = run.recipe.base_T_socket
     measure = partial(
@@ -95,15 +95,15 @@ async def _measured(run: PluggingRun, name: str) -> _Sight:
     except BAD_CONTACTS:
         await record_picture(run, keys.SOCKET_PICTURE, seen)
         raise
-    return _Sight(seen, combined(tuple(frame.camera_T_connector for frame in seen.frames)))
+    return _SocketSight(seen, combined(tuple(frame.camera_T_connector for frame in seen.frames)))
 
 
-def _base_T_socket(run: PluggingRun, sight: _Sight) -> RigidTransform:
+def _base_T_socket(run: PluggingRun, sight: _SocketSight) -> RigidTransform:
     base_T_cam1 = sight.seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
     return base_T_cam1 * sight.socket.pose
 
 
-async def _socket_look(run: PluggingRun, number: int, sight: _Sight) -> SocketLook:
+async def _socket_look(run: PluggingRun, number: int, sight: _SocketSight) -> SocketLook:
     key, seen = f"{keys.SOCKET}.{number}", sight.seen
     recorder = run.recorder
     await recorder.measurement(key, "cam1", "socket", sight.socket, frames=len(seen.frames))
