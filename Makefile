@@ -153,14 +153,19 @@ test-parallel test-version test-cell test-explore test-long coverage: export PYT
 
 # Three workers fill two processors, since some tests wait. Not more where there are more processors:
 # time limits within tests are those of two.
+# What failed beside other tests is run once more, alone, unless it is more than a few.
+AGAIN := --last-failed --last-failed-no-failures none --most-again 3
 test-parallel: venv
-	$(BIN)/pytest -n 3 -m "not cell and not long" --durations 25
+	$(BIN)/pytest -n 3 -m "not cell and not long" --durations 25 || \
+		$(BIN)/pytest -m "not cell and not long" $(AGAIN)
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
 # rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python.
 COMPUTES := vision calibration force processes procedures fakes benchmarks
+WHERE_PYTHON_MATTERS := $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 test-version: venv
-	$(BIN)/pytest -n 3 -m "not cell and not long" $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
+	$(BIN)/pytest -n 3 -m "not cell and not long" $(WHERE_PYTHON_MATTERS) || \
+		$(BIN)/pytest -m "not cell and not long" $(AGAIN) $(WHERE_PYTHON_MATTERS)
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv

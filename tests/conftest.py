@@ -1,5 +1,6 @@
 """How tests are marked and shared out between workers, and what slow machines are allowed."""
 
+import gc
 import logging
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,7 +10,7 @@ import pytest
 import structlog
 from xdist.scheduler import LoadScopeScheduling
 
-pytest_plugins = ["tests.machine_pauses"]
+pytest_plugins = ["tests.closing_servers", "tests.failed_again", "tests.machine_pauses"]
 
 _WHOLE_CELLS = Path(__file__).parent / "cell"
 _SHARED_IMAGES = (
@@ -42,6 +43,16 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if _WHOLE_CELLS in item.path.parents:
             item.add_marker("cell")
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Everything that is there now stays to the end: the garbage collector need not go through it.
+
+    Thousands of tests and their modules make it hold the program for half a second and more each
+    time, in which no event loop takes a turn and a driver under test loses its connection.
+    """
+    gc.collect()
+    gc.freeze()
 
 
 class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no types
