@@ -9,8 +9,8 @@ from typing import Annotated
 import typer
 
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
-from fakes.scenario_file import scenario as scenarios
 from fakes.scenario_file.sections import JobController
+from fakes.scenes.load import load
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
@@ -33,7 +33,7 @@ app = typer.Typer(
 @app.command()
 def taught(scenario: ScenarioOption = DEFAULT_SCENARIO) -> None:
     """Print taught poses of the nominal cell as JSON."""
-    json.dump(taught_poses(scenarios.load(scenario)), sys.stdout, indent=2)
+    json.dump(taught_poses(load(scenario)), sys.stdout, indent=2)
     sys.stdout.write("\n")
 
 
@@ -70,7 +70,7 @@ def run(
 
     ports = dict(_port(item) for item in port or [])
     scales = dict(_scale(item) for item in imperfection or [])
-    written = scenarios.load(scenario, scales)
+    written = load(scenario, scales)
     described = written if robots is None else written.with_controllers(robots)
     raise typer.Exit(asyncio.run(run_cell(described, seed, ports, gentl)))
 

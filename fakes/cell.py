@@ -22,7 +22,7 @@ from fakes.operator import Operator
 from fakes.priority import stand_apart
 from fakes.scenario_file.scenario import Scenario
 from fakes.scenario_file.sections import Robot
-from fakes.scenes.registry import open_world
+from fakes.scenes.load import open_world
 from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.world import Command

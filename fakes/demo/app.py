@@ -21,8 +21,8 @@ from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, req
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.gentl.build import NoCompilerError
 from fakes.imperfections import UnknownImperfection, parsed_scale
-from fakes.scenario_file import scenario as scenarios
 from fakes.scenario_file.sections import JobController
+from fakes.scenes.load import load
 from fakes.scenes.registry import UnknownScene
 
 DEFAULT_PROCESS = "deck-to-frame"
@@ -128,7 +128,7 @@ def _check(files: Files) -> None:
     require_simulated(files.cell)
     require_own_folder(files.out)
     try:
-        scenario = scenarios.load(files.scenario, files.imperfections)
+        scenario = load(files.scenario, files.imperfections)
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         raise ChildFailed(f"scenario {files.scenario}: {error}") from error
     check_ports(scenario, files.cell)

@@ -18,8 +18,9 @@ from fakes.demo.page import DemoPage, write_settings
 from fakes.demo.safety import own_calibrations
 from fakes.demo.stored_results import StoredResults
 from fakes.demo.verdict import why_not_good
-from fakes.scenario_file.scenario import Scenario, load
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenario_file.sections import JobController
+from fakes.scenes.load import load
 
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""

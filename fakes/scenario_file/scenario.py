@@ -5,14 +5,13 @@ The key ``scene`` names what stands in the cell; that scene brings a model with 
 written in this one is as it is there.
 """
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Self
 
 from pydantic import Field, field_validator, model_validator
 
-from fakes.imperfections import CATALOGUE, check_scales, scale_written
+from fakes.imperfections import CATALOGUE, check_scales
 from fakes.scenario_file.appearance import Rendering
 from fakes.scenario_file.sections import (
     Camera,
@@ -29,6 +28,7 @@ from fakes.scenario_file.sections import (
     StereoCamera,
     Tracker,
 )
+from fakes.scenario_file.written import read_written
 
 RESERVED = ("control", "world")
 """Names on the control port and on the command line that no device may have."""
@@ -62,8 +62,8 @@ class Scenario(Section):
 
     @classmethod
     def read(cls, path: Path, imperfections: Mapping[str, float] | None = None) -> Self:
-        """A file of this very model; scales and exceptions as with ``load``."""
-        return cls.model_validate(_read_toml(path, imperfections or {}))
+        """A file of this very model; scales and exceptions as with ``fakes.scenes.load.load``."""
+        return cls.model_validate(read_written(path, imperfections or {}))
 
     def size_of(self, imperfection: str) -> float:
         """Size of an imperfection whose size is that of the catalogue, in its unit there."""
@@ -178,38 +178,3 @@ class Scenario(Section):
             yield f"{name}.targets_on", tracker.targets_on
         for robot in self.taught:
             yield f"taught.{robot}", robot
-
-
-def load(path: Path, imperfections: Mapping[str, float] | None = None) -> Scenario:
-    """Read a scenario file with the model of the scene that it names.
-
-    ``imperfections`` are scales by name that replace those of the file. Raises ``OSError``,
-    ``tomllib.TOMLDecodeError``, ``pydantic.ValidationError``,
-    ``fakes.imperfections.UnknownImperfection`` or ``fakes.scenes.registry.UnknownScene``.
-    """
-    from fakes.scenes.registry import scene_class  # the scenes are built on this module
-
-    written = _read_toml(path, imperfections or {})
-    return scene_class(str(written.get("scene", ""))).scenario_model.model_validate(written)
-
-
-def _read_toml(path: Path, imperfections: Mapping[str, float]) -> dict[str, Any]:
-    with path.open("rb") as file:
-        written = tomllib.load(file)
-    if like := written.pop("like", None):
-        # Of one file only: a chain of them could not be read by a person.
-        with (path.parent / str(like)).open("rb") as file:
-            written = _merged(tomllib.load(file), written)
-    scales = {**written.get("imperfections", {}), **imperfections}
-    check_scales(scales)
-    return scale_written({**written, "imperfections": scales}, scales)
-
-
-def _merged(below: Mapping[str, Any], above: Mapping[str, Any], depth: int = 2) -> dict[str, Any]:
-    """Sections and devices are joined key by key; of what a device says the upper one counts."""
-    both = {
-        key: _merged(below[key], value, depth - 1)
-        for key, value in above.items()
-        if depth and isinstance(value, dict) and isinstance(below.get(key), dict)
-    }
-    return {**below, **above, **both}

@@ -3,7 +3,6 @@
 from importlib.metadata import entry_points
 from typing import Any
 
-from fakes.scenario_file.scenario import Scenario
 from fakes.world.world import World
 
 GROUP = "fakes.scene"
@@ -22,8 +21,3 @@ def scene_class(name: str) -> type[World[Any]]:
         raise UnknownScene(f"scene {name!r}: {point.value} is not a World")
     known = ", ".join(sorted(point.name for point in entry_points(group=GROUP))) or "none"
     raise UnknownScene(f"there is no scene {name!r}; known scenes: {known}")
-
-
-def open_world(scenario: Scenario, seed: int) -> World[Any]:
-    """The world of a scenario: its devices by the hardware seed, all else by ``seed``."""
-    return scene_class(scenario.scene)(scenario, seed)

@@ -19,7 +19,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from fakes.demo.control import Control
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config"

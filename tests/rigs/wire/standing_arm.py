@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fakes.scenario_file.scenario import load
 from fakes.scenario_file.sections import Robot
+from fakes.scenes.load import load
 from fakes.world.robot import RobotArm
 from fakes.world.truth import RobotTruth, draw
 from tests.rigs.wire.scenarios import as_on_a_real_cell

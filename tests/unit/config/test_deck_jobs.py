@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 
 CONFIG = Path(__file__).parents[3] / "config"
 

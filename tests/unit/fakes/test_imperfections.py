@@ -7,9 +7,9 @@ import pytest
 from pydantic import ValidationError
 
 from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
-from fakes.scenario_file.scenario import load
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
+from fakes.scenes.load import load
 
 CONFIG = Path(__file__).parents[3] / "config"
 SHIPPED = CONFIG / "deck.scenario.toml"

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from fakes.motion_watch import MotionWatch
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.scenario_file.scenario import Scenario, load
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenario_file.sections import Channel
+from fakes.scenes.load import load
 from fakes.wire.sjl.logic import Controller, Outbox, Record
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw

@@ -7,8 +7,8 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 from fakes.faults import ROBOT_FAULTS, FaultBoard
-from fakes.scenario_file.scenario import load
 from fakes.scenario_file.sections import Channel
+from fakes.scenes.load import load
 from fakes.wire.sjl.controller import SjlController
 from fakes.wire.sjl.records import decode, encode
 from fakes.world.robot import RobotArm

@@ -13,7 +13,7 @@ from fakes.jobs.motion import Motions
 from fakes.jobs.program import load_program
 from fakes.jobs.strings import WORDS
 from fakes.jobs.task import Shared, Task
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm
 from fakes.world.truth import draw

@@ -16,7 +16,7 @@ from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.driver import SiasunRobot
 from drivers.robot.siasun.kinematics import arm_chain
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 from fakes.world.arm import forward_matrix, nominal_links
 from tests.rigs.wire.sjl_rig import sjl_rig
 from tests.rigs.wire.standing_arm import SCENARIO

@@ -10,8 +10,8 @@ from cellctl.config.load import load_cell
 from fakes.demo import gentl
 from fakes.demo.gentl import GentlPath, UnusualCellFile, way_of_images
 from fakes.gentl.build import NAME, NoCompilerError
-from fakes.scenario_file import scenario as scenarios
 from fakes.scenario_file.scenario import Scenario
+from fakes.scenes.load import load as load_scenario
 
 CONFIG = Path(__file__).parents[4] / "config"
 
@@ -35,7 +35,7 @@ def without_compiler(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def deck() -> Scenario:
-    return scenarios.load(CONFIG / "deck.scenario.toml")
+    return load_scenario(CONFIG / "deck.scenario.toml")
 
 
 def through_gentl(cell: Path, load: Any, folder: Path) -> GentlPath:
@@ -69,7 +69,7 @@ def test_heads_are_pairs_of_gige_cameras(tmp_path: Path, built: list[tuple[str, 
 
 def test_single_cameras_too(tmp_path: Path, built: list[tuple[str, ...]]) -> None:
     def load() -> Scenario:
-        return scenarios.load(CONFIG / "antenna.scenario.toml")
+        return load_scenario(CONFIG / "antenna.scenario.toml")
 
     path = through_gentl(CONFIG / "antenna.toml", load, tmp_path / "gentl")
     eye = load_cell(path.cell).cameras["camera_1"]

@@ -7,7 +7,7 @@ import pytest
 from fakes.cell import Cell
 from fakes.faults import JOB_FAULTS, ROBOT_FAULTS
 from fakes.jobs.controller import JobController
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 from fakes.wire.sjl.controller import SjlController
 
 CONFIG = Path(__file__).parents[4] / "config"

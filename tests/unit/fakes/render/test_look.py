@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from fakes.render.look import options_of
-from fakes.scenario_file.scenario import load
+from fakes.scenes.load import load
 
 SCENARIO = Path(__file__).parents[4] / "config" / "deck.scenario.toml"
 

@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 from pydantic import ValidationError
 
-from fakes.scenario_file.scenario import Scenario, load
+from fakes.scenario_file.scenario import Scenario
 from fakes.scenes import registry
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.scenes.load import load, open_world
 from fakes.scenes.plate.scenario import PlateScenario
 
 CONFIG = Path(__file__).parents[4] / "config"
@@ -90,7 +91,7 @@ def test_what_is_no_world_is_no_scene(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(registry, "entry_points", points)
     with pytest.raises(registry.UnknownScene, match="is not a World"):
-        registry.open_world(Scenario(scene="moon", hardware_seed=1, control_port=0), 1)
+        open_world(Scenario(scene="moon", hardware_seed=1, control_port=0), 1)
 
 
 def test_a_file_may_be_like_another(tmp_path: Path) -> None:
