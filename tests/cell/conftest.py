@@ -16,6 +16,14 @@ def own(tmp_path: Path) -> Iterator[OwnCell]:
     cell.kill_all()
 
 
+@pytest.fixture
+def antenna(tmp_path: Path) -> Iterator[OwnCell]:
+    """The same for the antenna's cell."""
+    cell = OwnCell.make(tmp_path, "antenna")
+    yield cell
+    cell.kill_all()
+
+
 @pytest.fixture(scope="session")
 def standing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OwnCell]:
     """A fake cell that stands for many tests, as a real one would; each brings its daemon."""

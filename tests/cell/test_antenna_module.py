@@ -2,7 +2,6 @@
 
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -19,13 +18,6 @@ from tests.unit.records.conftest import start
 
 pytestmark = [pytest.mark.timeout(400), pytest.mark.long]
 PROCESS = ("--process", "antenna-module")
-
-
-@pytest.fixture
-def antenna(tmp_path: Path) -> Iterator[OwnCell]:
-    cell = OwnCell.make(tmp_path, "antenna")
-    yield cell
-    cell.kill_all()
 
 
 def result_of(out: Path) -> dict[str, Any]:

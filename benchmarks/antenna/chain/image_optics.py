@@ -18,6 +18,7 @@ from benchmarks.antenna.chain.optics import (
     TILT_SIGMA_RAD,
     DrawnOptics,
     Intrinsics,
+    Sight,
 )
 from benchmarks.antenna.chain.trials import CONTACTS_M
 from cellctl.geometry.pose import Array
@@ -56,47 +57,36 @@ class ImageOptics:
     chance: np.random.Generator
     """Of noise and light of the images: the cell's own chance must not depend on them."""
 
-    def look(
-        self,
-        camera_T_object: RigidTransform,
-        points_m: Array,
-        believed_plane: RigidTransform,
-        noise_px: float,
-        rng: np.random.Generator,
-    ) -> UncertainPose:
+    def look(self, sight: Sight, rng: np.random.Generator) -> UncertainPose:
         """As ``DrawnOptics.look``; raises the faults of the measurement.
 
         Contacts and marks are rendered. Everything else is as drawn: the scheme that is compared
         does not use it.
         """
-        drawn = self.drawn.look(camera_T_object, points_m, believed_plane, noise_px, rng)
-        if points_m is MARKS_M:
-            return self._marks(camera_T_object, believed_plane)
-        return self._connector(camera_T_object, believed_plane) if points_m is CONTACTS_M else drawn
+        drawn = self.drawn.look(sight, rng)
+        if sight.points_m is MARKS_M:
+            return self._marks(sight)
+        return self._connector(sight) if sight.points_m is CONTACTS_M else drawn
 
-    def _connector(
-        self, camera_T_object: RigidTransform, believed_plane: RigidTransform
-    ) -> UncertainPose:
+    def _connector(self, sight: Sight) -> UncertainPose:
         flip = _flip(self.kind)
         body = api.connector_as_made(
             _NAME,
             self.kind,
             seed=self._seed(),
-            camera_T_connector=camera_T_object * flip,
+            camera_T_connector=sight.camera_T_object * flip,
             # The truth of the campaign is the drawing's frame; how well that is fitted to contacts
             # off their places is the affair of the benchmarks of the vision.
             true_position_m=0.0,
         )
-        look = self._shown(body, believed_plane, flip, _CONNECTOR_M)
+        look = self._shown(body, sight.believed_plane, flip, _CONNECTOR_M)
         found = measure_connector(look.image, look.model, look.plane, _connector(self.kind))
         return _turned(found.camera_T_connector, flip)
 
-    def _marks(
-        self, camera_T_object: RigidTransform, believed_plane: RigidTransform
-    ) -> UncertainPose:
+    def _marks(self, sight: Sight) -> UncertainPose:
         flip = _flip("pins")
-        body = api.gripper_marks(camera_T_object * flip)
-        look = self._shown(body, believed_plane, flip, _MARKS_FIELD_M)
+        body = api.gripper_marks(sight.camera_T_object * flip)
+        look = self._shown(body, sight.believed_plane, flip, _MARKS_FIELD_M)
         found = measure_marks(look.image, look.model, look.plane, _marks())
         return _turned(found.camera_T_marks, flip)
 

@@ -35,17 +35,23 @@ class Intrinsics:
         return np.array([[self.focal_px, 0.0, u], [0.0, self.focal_px, v], [0.0, 0.0, 1.0]])
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Sight:
+    """What stands before a camera, and what is believed of it."""
+
+    camera_T_object: RigidTransform
+    points_m: Array
+    """Of the object, shape (n, 3) with z = 0."""
+    believed_plane: RigidTransform
+    """camera_T_plane: the object is believed to lie in its x-y plane."""
+    noise_px: float
+    """Standard deviation with which a point is found, per axis."""
+
+
 class Optics(Protocol):
     """One camera of a drawn cell."""
 
-    def look(
-        self,
-        camera_T_object: RigidTransform,
-        points_m: Array,
-        believed_plane: RigidTransform,
-        noise_px: float,
-        rng: np.random.Generator,
-    ) -> UncertainPose:
+    def look(self, sight: Sight, rng: np.random.Generator) -> UncertainPose:
         """camera_T_object from one image, see ``DrawnOptics``."""
         ...
 
@@ -83,28 +89,19 @@ class DrawnOptics:
         exact = self.true.focal_px * flat + self.true.centre_px
         return np.asarray(exact + rng.normal(0, noise_px, exact.shape))
 
-    def look(
-        self,
-        camera_T_object: RigidTransform,
-        points_m: Array,
-        believed_plane: RigidTransform,
-        noise_px: float,
-        rng: np.random.Generator,
-    ) -> UncertainPose:
-        """The object's pose from one image, in the plane where it is believed to lie.
-
-        ``believed_plane``: camera_T_plane; the object lies in its x-y plane, points have z = 0.
-        """
-        pixels = self.pixels(camera_T_object, points_m, noise_px, rng)
+    def look(self, sight: Sight, rng: np.random.Generator) -> UncertainPose:
+        """The object's pose from one image, in the plane where it is believed to lie."""
+        believed_plane = sight.believed_plane
+        pixels = self.pixels(sight.camera_T_object, sight.points_m, sight.noise_px, rng)
         pixels = pixels + self.bias_m / WORKING_DISTANCE_M * self.true.focal_px
         flat = (pixels - self.believed.centre_px) / self.believed.focal_px
         rays = np.column_stack([flat, np.ones(len(flat))])
         normal = believed_plane.rotation.as_matrix()[:, 2]
         scale = (normal @ believed_plane.translation) / (rays @ normal)
         found = believed_plane.inv().apply(rays * scale[:, None])[:, :2]
-        plane_T_object = _rigid_fit(points_m[:, :2], found)
-        sigma_m = noise_px / self.believed.focal_px * WORKING_DISTANCE_M
-        return UncertainPose(believed_plane * plane_T_object, _covariance(points_m, sigma_m))
+        plane_T_object = _rigid_fit(sight.points_m[:, :2], found)
+        sigma_m = sight.noise_px / self.believed.focal_px * WORKING_DISTANCE_M
+        return UncertainPose(believed_plane * plane_T_object, _covariance(sight.points_m, sigma_m))
 
 
 def _rigid_fit(drawing: Array, found: Array) -> RigidTransform:

@@ -16,6 +16,7 @@ from benchmarks.antenna.chain.drawn_cell import (
     DrawnCell,
     base_T_flange_over_socket,
 )
+from benchmarks.antenna.chain.optics import Sight
 from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.chain.cell_figures import ArmFigures
 from cellctl.processes.antenna_module.chain.reference.reference_check import (
@@ -106,20 +107,15 @@ def _marks_in_camera_2(cell: DrawnCell, angle_rad: float, rng: np.random.Generat
     """Marks less the flange axis, which stays where it is commanded while joint 6 turns."""
     commanded = PLUG_STATION * FLANGE_T_PLUG.inv()
     base_T_marks = cell.arm.turned(commanded, angle_rad, rng) * cell.mounting.flange_T_marks
-    seen = cell.optics2.look(
-        cell.mounting.base_T_cam2.inv() * base_T_marks,
-        MARKS_M,
-        cell.cam2_T_plane(2),
-        CONTACT_PX,
-        rng,
-    )
+    cam2_T_marks = cell.mounting.base_T_cam2.inv() * base_T_marks
+    seen = cell.optics2.look(Sight(cam2_T_marks, MARKS_M, cell.cam2_T_plane(2), CONTACT_PX), rng)
     place_m = (cell.base_T_cam2.pose * seen.pose).translation - commanded.translation
     return TurnStop(angle_rad, place_m[:2])
 
 
 def _plate_in_camera_2(cell: DrawnCell, rng: np.random.Generator) -> Array:
     plate = cell.mounting.base_T_cam2.inv() * cell.mounting.base_T_plate
-    seen = cell.optics2.look(plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX, rng)
+    seen = cell.optics2.look(Sight(plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX), rng)
     return np.asarray((cell.base_T_cam2.pose * seen.pose).translation[:2])
 
 
@@ -127,7 +123,7 @@ def _plate_in_camera_1(cell: DrawnCell, rng: np.random.Generator) -> Array:
     commanded = PLUG_STATION * SOCKET.inv() * base_T_flange_over_socket()
     base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
     plate = base_T_cam1.inv() * cell.mounting.base_T_plate
-    seen = cell.optics1.look(plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX, rng)
+    seen = cell.optics1.look(Sight(plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX), rng)
     return np.asarray((commanded * cell.flange_T_cam1.pose * seen.pose).translation[:2])
 
 

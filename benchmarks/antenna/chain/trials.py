@@ -20,6 +20,7 @@ from benchmarks.antenna.chain.drawn_cell import (
     base_T_flange_over_socket,
     small,
 )
+from benchmarks.antenna.chain.optics import Sight
 from cellctl.geometry.pose import Array, pose_error
 from cellctl.processes.antenna_module.chain.cell_figures import (
     ArmFigures,
@@ -181,7 +182,7 @@ def _see_plug(cell: DrawnCell, flange_T_plug: RigidTransform, rng: np.random.Gen
     cam2_T_flange = cell.mounting.base_T_cam2.inv() * cell.arm.place(commanded, rng)
     optics, plane = cell.optics2, cell.cam2_T_plane
     cam2_T_plug, cam2_T_marks = (
-        optics.look(cam2_T_flange * on_flange, points, plane(error), CONTACT_PX, rng)
+        optics.look(Sight(cam2_T_flange * on_flange, points, plane(error), CONTACT_PX), rng)
         for on_flange, points, error in (
             (flange_T_plug, CONTACTS_M, 0),
             (cell.mounting.flange_T_marks, MARKS_M, 2),
@@ -196,9 +197,8 @@ def _see_socket(
 ) -> SocketLook:
     commanded = shift * base_T_flange_over_socket()
     base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
-    seen = cell.optics1.look(
-        base_T_cam1.inv() * base_T_socket, CONTACTS_M, cell.cam1_T_plane, CONTACT_PX, rng
-    )
+    cam1_T_socket = base_T_cam1.inv() * base_T_socket
+    seen = cell.optics1.look(Sight(cam1_T_socket, CONTACTS_M, cell.cam1_T_plane, CONTACT_PX), rng)
     return SocketLook(*_common(cell.arm, commanded, "camera 1"), seen, "micro-d-15 holes")
 
 
@@ -208,11 +208,11 @@ def _see_plate(cell: DrawnCell, rng: np.random.Generator) -> PlateLook:
     commanded = PLUG_STATION * SOCKET.inv() * base_T_flange_over_socket()
     base_T_cam1 = cell.arm.place(commanded, rng) * cell.mounting.flange_T_cam1
     plate = cell.mounting.base_T_plate
-    by_1 = cell.optics1.look(base_T_cam1.inv() * plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX, rng)
-    base_T_cam2 = cell.mounting.base_T_cam2
-    by_2 = cell.optics2.look(
-        base_T_cam2.inv() * plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX, rng
+    cam1_T_plate, cam2_T_plate = (
+        base_T_camera.inv() * plate for base_T_camera in (base_T_cam1, cell.mounting.base_T_cam2)
     )
+    by_1 = cell.optics1.look(Sight(cam1_T_plate, PLATE_M, cell.cam1_T_plane, CONTACT_PX), rng)
+    by_2 = cell.optics2.look(Sight(cam2_T_plate, PLATE_M, cell.cam2_T_plane(), CONTACT_PX), rng)
     return PlateLook(Look(*_common(cell.arm, commanded, "camera 1")), by_1, by_2, "camera 2")
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -18,10 +19,13 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import Camera
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.faults.connector import PixelsNotMeasurable
 from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
 from cellctl.processes.antenna_module.recipe import Place
-from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
+from cellctl.processes.antenna_module.vision.measure import measure_connector, measure_marks
+from cellctl.processes.antenna_module.vision.measurement import ConnectorMeasurement, MeasuredMarks
 from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.camera.depth import eight_bits
@@ -140,6 +144,28 @@ def plane_by(
         expected=ExpectedPlace(
             camera_T_connector, place.within_mm * MM, float(np.radians(place.within_deg))
         ),
+    )
+
+
+def marks_by(
+    model: SingleCamera, marks: Marks, camera_T_marks: RigidTransform, place: Place
+) -> Callable[[Image], MeasuredMarks]:
+    """``measure_marks`` for an image where they are expected so, as certain as ``place`` says."""
+    calibration = plane_by(model, camera_T_marks, place)
+    return partial(measure_marks, camera=model, calibration=calibration, marks=marks)
+
+
+def connector_by(
+    model: SingleCamera,
+    connector: Connector,
+    camera_T_connector: RigidTransform,
+    place: Place,
+    marks: Marks | None = None,
+) -> Callable[[Image], ConnectorMeasurement]:
+    """``measure_connector`` in the same way; ``marks``: of the gripper in the same image."""
+    calibration = plane_by(model, camera_T_connector, place)
+    return partial(
+        measure_connector, camera=model, calibration=calibration, connector=connector, marks=marks
     )
 
 

@@ -85,3 +85,7 @@ class PlugCell:
     flange_T_marks: RigidTransform = field(default_factory=RigidTransform.identity)
     """Of the gripper's marks by its drawing; what it is wrong by is taught."""
     drawings: DrawingIdentities = DrawingIdentities()
+
+    def base_T_cam1(self, base_T_flange: RigidTransform) -> RigidTransform:
+        """Camera I with the flange there."""
+        return base_T_flange * self.cam1.pose.pose

@@ -68,16 +68,15 @@ class ReferenceDrive:
     async def _plate_from_above(self, name: str) -> tuple[Array, float]:
         """Its place in the axes of the base, and how far it is from the flange, m."""
         facts, cell, place = self.facts, self.facts.cell, self.plate.base_T_plate
-        flange_T_cam1 = facts.plug_cell.cam1.pose.pose
-        base_T_cam1 = cell.arm.robot.state().base_T_flange * flange_T_cam1
+        base_T_cam1 = facts.plug_cell.base_T_cam1(cell.arm.robot.state().base_T_flange)
         expected = base_T_cam1.inv() * nominal(place)
         eye = Eye(cell.camera_1, facts.camera_1)
         seen = await look_at_marks(
             self.eyes, name, eye, self.plate.above, expected=expected, place=place
         )
-        flange_T_plate = flange_T_cam1 * first_pose(seen)
-        place_m = (seen.base_T_flange * flange_T_plate).translation[:2]
-        return np.asarray(place_m), float(np.linalg.norm(flange_T_plate.translation))
+        plate_m = (facts.plug_cell.base_T_cam1(seen.base_T_flange) * first_pose(seen)).translation
+        away_m = float(np.linalg.norm(plate_m - seen.base_T_flange.translation))
+        return np.asarray(plate_m[:2]), away_m
 
     async def _plate_from_below(self, name: str) -> Array:
         place = self.plate.base_T_plate

@@ -1,25 +1,21 @@
 """Turns the gripper's marks over camera II, about the last joint alone."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.interfaces import Camera
-from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.faults.connector import MarksMissing
 from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
-from cellctl.processes.antenna_module.looking import Eyes, Seen, plane_by
+from cellctl.processes.antenna_module.looking import Eyes, Seen, marks_by
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.roles import INSPECT_PLUG
-from cellctl.processes.antenna_module.vision.measure import measure_marks
 from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
 from cellctl.vision.camera.single_camera import SingleCamera
 
@@ -89,12 +85,7 @@ async def look_at_marks(
 
     Raises ``LooksIncomplete`` where they are not seen.
     """
-    measure: Callable[[Image], MeasuredMarks] = partial(
-        measure_marks,
-        camera=eye.model,
-        calibration=plane_by(eye.model, expected, place),
-        marks=marks,
-    )
+    measure = marks_by(eye.model, marks, expected, place)
     try:
         return await eyes.look(name, eye.camera, measure)
     except MarksMissing as fault:

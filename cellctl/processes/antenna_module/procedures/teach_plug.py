@@ -113,8 +113,7 @@ async def _looked_at(run: PluggingRun) -> SocketLocated:
 async def _wait_above(located: SocketLocated) -> None:
     """Above the socket as far as it is known without a correction: the operator does the rest."""
     run, look = located.run, located.looks.sockets[-1]
-    base_T_socket = look.base_T_flange * run.facts.plug_cell.cam1.pose.pose
-    base_T_socket *= look.camera_T_socket.pose
+    base_T_socket = run.facts.plug_cell.base_T_cam1(look.base_T_flange) * look.camera_T_socket.pose
     socket = run.drawings.socket
     flange_T_plug = located.flange_T_connector * connector_T_plug(socket)
     up_m = socket.seat_depth_m + _WAITING_M

@@ -8,14 +8,13 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.connector import ConnectorError
 from cellctl.processes.antenna_module.faults.plugging import MovedOnRelease
-from cellctl.processes.antenna_module.looking import Seen, combined, height_by_size, plane_by
+from cellctl.processes.antenna_module.looking import Seen, combined, height_by_size, marks_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.moves.moving import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Inserted
 from cellctl.processes.antenna_module.steps.look_again import SecondLook
-from cellctl.processes.antenna_module.vision.measure import measure_marks
 from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
 from cellctl.records.figures import Limit
 
@@ -33,7 +32,7 @@ async def look_after_release(inserted: Inserted, seated_top_m: float) -> None:
         seen = await SecondLook(run).look("released", partial(_look, run, base_T_top))
     except ConnectorError as fault:
         raise MovedOnRelease(f"the module is not seen in its place: {fault}") from fault
-    base_T_cam1 = seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_cam1 = run.facts.plug_cell.base_T_cam1(seen.base_T_flange)
     top = combined(tuple(marks.camera_T_marks for marks in seen.frames)).pose
     found, height_m = base_T_cam1 * top, height_by_size(base_T_cam1, seen.frames)
     offset_m = float(np.linalg.norm((found.translation - base_T_top.translation)[:2]))
@@ -47,8 +46,7 @@ def _expected_top(inserted: Inserted) -> RigidTransform:
     the module now."""
     run, socket = inserted.run, inserted.run.drawings.socket
     look = inserted.looks.sockets[-1]
-    base_T_cam1 = look.base_T_flange * run.facts.plug_cell.cam1.pose.pose
-    base_T_socket = base_T_cam1 * look.camera_T_socket.pose
+    base_T_socket = run.facts.plug_cell.base_T_cam1(look.base_T_flange) * look.camera_T_socket.pose
     return base_T_socket * connector_T_plug(socket).inv() * pose_from_xyzabc(run.recipe.plug_T_top)
 
 
@@ -56,7 +54,7 @@ async def _bring_camera_over(inserted: Inserted, base_T_top: RigidTransform) -> 
     """To where the socket was seen from, and higher by as much as the top lies over the socket: the
     camera keeps its distance."""
     run, look = inserted.run, inserted.looks.sockets[-1]
-    base_T_cam1 = look.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_cam1 = run.facts.plug_cell.base_T_cam1(look.base_T_flange)
     socket_m = (base_T_cam1 * look.camera_T_socket.pose).translation
     target = raised(look.base_T_flange, float(base_T_top.translation[2] - socket_m[2]))
     here = run.cell.arm.robot.state().base_T_flange
@@ -66,14 +64,9 @@ async def _bring_camera_over(inserted: Inserted, base_T_top: RigidTransform) -> 
 
 
 async def _look(run: PluggingRun, base_T_top: RigidTransform, images: str) -> Seen[MeasuredMarks]:
-    base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_cam1 = run.facts.plug_cell.base_T_cam1(run.cell.arm.robot.state().base_T_flange)
     expected = base_T_cam1.inv() * base_T_top
-    measure = partial(
-        measure_marks,
-        camera=run.facts.camera_1,
-        calibration=plane_by(run.facts.camera_1, expected, run.recipe.base_T_socket),
-        marks=run.drawings.top,
-    )
+    measure = marks_by(run.facts.camera_1, run.drawings.top, expected, run.recipe.base_T_socket)
     return await run.eyes.look(images, run.cell.camera_1, measure)
 
 

@@ -1,7 +1,6 @@
 """Step 20: camera I finds the module on its tray by the marks on its top."""
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -15,13 +14,12 @@ from cellctl.processes.antenna_module.faults.connector import (
     MarksMissing,
 )
 from cellctl.processes.antenna_module.faults.plugging import ModuleMisplaced, ModuleMissing
-from cellctl.processes.antenna_module.looking import combined, height_by_size, nominal, plane_by
+from cellctl.processes.antenna_module.looking import combined, height_by_size, marks_by, nominal
 from cellctl.processes.antenna_module.moves.moving import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.roles import TRAY_LOOK
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import GripperEmpty, ModuleFound
-from cellctl.processes.antenna_module.vision.measure import measure_marks
 
 
 async def find_module(ready: GripperEmpty) -> ModuleFound:
@@ -56,14 +54,10 @@ class _OnTray:
 async def _look(run: PluggingRun, name: str) -> _OnTray:
     place = run.recipe.base_T_tray_plug
     connector_T_top = pose_from_xyzabc(run.recipe.plug_T_top)
-    base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    plug_cell = run.facts.plug_cell
+    base_T_cam1 = plug_cell.base_T_cam1(run.cell.arm.robot.state().base_T_flange)
     expected = base_T_cam1.inv() * nominal(place) * connector_T_top
-    measure = partial(
-        measure_marks,
-        camera=run.facts.camera_1,
-        calibration=plane_by(run.facts.camera_1, expected, place),
-        marks=run.drawings.top,
-    )
+    measure = marks_by(run.facts.camera_1, run.drawings.top, expected, place)
     try:
         seen = await run.eyes.look(name, run.cell.camera_1, measure)
     except MarksMissing as fault:
@@ -72,7 +66,7 @@ async def _look(run: PluggingRun, name: str) -> _OnTray:
         raise ModuleMisplaced(fault.detail) from fault
     top = combined(tuple(marks.camera_T_marks for marks in seen.frames)).pose
     # From the place where the images were taken, not from where the arm was told to go.
-    base_T_cam1 = seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_cam1 = plug_cell.base_T_cam1(seen.base_T_flange)
     found = base_T_cam1 * top * connector_T_top.inv()
     _require_near(nominal(place), found, place.within_mm * MM, np.radians(place.within_deg))
     return _OnTray(found, height_by_size(base_T_cam1, seen.frames))

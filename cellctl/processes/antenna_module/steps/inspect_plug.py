@@ -11,7 +11,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import PlugLook
 from cellctl.processes.antenna_module.faults.connector import ConnectorMisplaced
 from cellctl.processes.antenna_module.faults.plugging import GrippedOffTwice
-from cellctl.processes.antenna_module.looking import Seen, combined, plane_by
+from cellctl.processes.antenna_module.looking import Seen, combined, connector_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.record import keys
@@ -22,7 +22,6 @@ from cellctl.processes.antenna_module.state import Picked, PlugInspected
 from cellctl.processes.antenna_module.steps.grip_again import grip_again
 from cellctl.processes.antenna_module.steps.look_again import SecondLook
 from cellctl.processes.antenna_module.steps.putting_back import put_back_bad
-from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
     BAD_CONTACTS,
     ConnectorMeasurement,
@@ -101,13 +100,8 @@ async def _look(run: PluggingRun, images: str) -> _PlugSight:
     )
     base_T_connector = base_T_flange * pose_from_xyzabc(run.recipe.flange_T_plug)
     expected = run.facts.plug_cell.cam2.pose.pose.inv() * base_T_connector
-    measure = partial(
-        measure_connector,
-        camera=run.facts.camera_2,
-        calibration=plane_by(run.facts.camera_2, expected, place),
-        connector=run.drawings.plug,
-        marks=run.drawings.gripper,
-    )
+    drawings = run.drawings
+    measure = connector_by(run.facts.camera_2, drawings.plug, expected, place, drawings.gripper)
     seen = await run.eyes.look(images, run.cell.camera_2, measure)
     # Before the judgement: a bad contact is what somebody wants to see.
     await record_picture(run, keys.PLUG_PICTURE, seen)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Looks, SocketLook
 from cellctl.processes.antenna_module.faults.plugging import SocketUnsound
-from cellctl.processes.antenna_module.looking import Seen, combined, nominal, plane_by
+from cellctl.processes.antenna_module.looking import Seen, combined, connector_by, nominal
 from cellctl.processes.antenna_module.moves.moving import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.record.pictures import record_picture
@@ -17,7 +17,6 @@ from cellctl.processes.antenna_module.roles import SOCKET_LOOK
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import PlugInspected, SocketLocated
 from cellctl.processes.antenna_module.steps.look_again import SecondLook
-from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
     BAD_CONTACTS,
     ConnectorMeasurement,
@@ -80,14 +79,10 @@ async def _look(run: PluggingRun, name: str) -> _SocketSight:
 
 
 async def _measured(run: PluggingRun, name: str) -> _SocketSight:
-    base_T_cam1 = run.cell.arm.robot.state().base_T_flange * run.facts.plug_cell.cam1.pose.pose
+    base_T_cam1 = run.facts.plug_cell.base_T_cam1(run.cell.arm.robot.state().base_T_flange)
     place = run.recipe.base_T_socket
-    measure = partial(
-        measure_connector,
-        camera=run.facts.camera_1,
-        calibration=plane_by(run.facts.camera_1, base_T_cam1.inv() * nominal(place), place),
-        connector=run.drawings.socket,
-    )
+    expected = base_T_cam1.inv() * nominal(place)
+    measure = connector_by(run.facts.camera_1, run.drawings.socket, expected, place)
     seen = await run.eyes.look(name, run.cell.camera_1, measure)
     try:
         for frame in seen.frames:
@@ -99,8 +94,7 @@ async def _measured(run: PluggingRun, name: str) -> _SocketSight:
 
 
 def _base_T_socket(run: PluggingRun, sight: _SocketSight) -> RigidTransform:
-    base_T_cam1 = sight.seen.base_T_flange * run.facts.plug_cell.cam1.pose.pose
-    return base_T_cam1 * sight.socket.pose
+    return run.facts.plug_cell.base_T_cam1(sight.seen.base_T_flange) * sight.socket.pose
 
 
 async def _socket_look(run: PluggingRun, number: int, sight: _SocketSight) -> SocketLook:

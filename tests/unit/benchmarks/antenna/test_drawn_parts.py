@@ -16,7 +16,7 @@ from benchmarks.antenna.chain.arms import (
 from benchmarks.antenna.chain.closing_look import close_by_steps
 from benchmarks.antenna.chain.drawn_cell import FLANGE_T_PLUG, MARKS_M, PLUG_STATION, SOCKET
 from benchmarks.antenna.chain.image_optics import ImageOptics
-from benchmarks.antenna.chain.optics import DrawnOptics
+from benchmarks.antenna.chain.optics import DrawnOptics, Sight
 from benchmarks.antenna.chain.trials import CONTACTS_M
 from benchmarks.antenna.insertion.trials import FAULTS, GOOD, KINDS, run_insertion
 from cellctl.geometry.pose import pose_error
@@ -58,7 +58,7 @@ def test_an_exact_camera_finds_the_contacts_in_their_plane() -> None:
     exact = DrawnOptics(drawn.true, drawn.true, np.zeros(2))
     plane = RigidTransform.from_translation([0.001, -0.002, 0.25])
     shift = RigidTransform.from_translation([3e-4, 2e-4, 0.0])
-    seen = exact.look(plane * shift, CONTACTS_M, plane, 0.0, rng)
+    seen = exact.look(Sight(plane * shift, CONTACTS_M, plane, 0.0), rng)
     np.testing.assert_allclose(seen.pose.as_matrix(), (plane * shift).as_matrix(), atol=1e-12)
 
 
@@ -72,8 +72,8 @@ def test_a_camera_with_images_finds_what_the_drawn_one_finds(kind: ContactKind) 
     place = plane * RigidTransform.from_translation([3e-4, 2e-4, 0.0])
     images = ImageOptics(exact, kind, np.random.default_rng(6))
     for points in (CONTACTS_M, MARKS_M) if kind == "pins" else (CONTACTS_M,):
-        by_hand = exact.look(place, points, plane, 0.0, np.random.default_rng(5))
-        seen = images.look(place, points, plane, 0.0, np.random.default_rng(5))
+        sight = Sight(place, points, plane, 0.0)
+        by_hand, seen = (optics.look(sight, np.random.default_rng(5)) for optics in (exact, images))
         moved, turned = pose_error(by_hand.pose, seen.pose)
         # Light moves what is seen of the rims of holes.
         assert np.linalg.norm(moved) < 5e-6

@@ -1,7 +1,7 @@
 """Where the drive goes, and that its reading is in the axes of the base."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from types import SimpleNamespace
 from typing import Any, cast
@@ -106,7 +106,7 @@ def world(monkeypatch: pytest.MonkeyPatch) -> World:
 def drive(world: World, told: list[tuple[int, int]]) -> ReferenceDrive:
     plug_cell: PlugCell = cell()
     camera = SimpleNamespace(id="camera")
-    base_T_cam2 = SimpleNamespace(pose=SimpleNamespace(pose=BASE_T_CAM2_UP))
+    cam2 = replace(plug_cell.cam2, pose=UncertainPose(BASE_T_CAM2_UP, SEEN))
     arm = SimpleNamespace(
         robot=world, config=SimpleNamespace(poses_deg={"inspect_plug": (0.0,) * 5 + (A6_DEG,)})
     )
@@ -114,7 +114,7 @@ def drive(world: World, told: list[tuple[int, int]]) -> ReferenceDrive:
         cell=SimpleNamespace(arm=arm, camera_1="camera 1", camera_2="camera 2"),
         camera_1=camera,
         camera_2=camera,
-        plug_cell=SimpleNamespace(cam1=plug_cell.cam1, cam2=base_T_cam2),
+        plug_cell=replace(plug_cell, cam2=cam2),
         recipe=SimpleNamespace(
             flange_T_plug=(0.0, 0.0, 200.0, 0.0, 0.0, 0.0), plug_height_sigma_mm=0.05
         ),
