@@ -6,7 +6,11 @@ import tomllib
 from collections import Counter
 from pathlib import Path
 
+import grimp
+import numpy as np
 import pytest
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
 
 from cellctl.cli.faults import catalogue_page
 from cellctl.errors import CellError
@@ -152,6 +156,23 @@ def importing(folder: str, unwanted: str, *, but: str = "-") -> list[str]:
             for name in imported(path)
         )
     ]
+
+
+def test_no_module_of_the_product_comes_back_to_itself() -> None:
+    """Imports within functions count as well: a circle is no better for being closed late."""
+    graph = grimp.build_graph("cellctl", "drivers")
+    modules = sorted(graph.modules)
+    place = {module: at for at, module in enumerate(modules)}
+    imports = [
+        (place[module], place[imported])
+        for module in modules
+        for imported in graph.find_modules_directly_imported_by(module)
+    ]
+    rows, columns = np.transpose(imports)
+    matrix = csr_array((np.ones(len(rows)), (rows, columns)), shape=(len(modules),) * 2)
+    _, circles = connected_components(matrix, connection="strong")
+    in_circles = np.bincount(circles)[circles] > 1
+    assert [module for module, closed in zip(modules, in_circles, strict=True) if closed] == []
 
 
 def test_tests_and_benchmarks_share_rigs_alone() -> None:

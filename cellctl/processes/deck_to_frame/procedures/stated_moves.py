@@ -14,9 +14,9 @@ from cellctl.procedures.base_frame import AxisTurns, turn_angles
 from cellctl.procedures.payload import identification_poses
 from cellctl.procedures.stereo_head import flange_poses
 from cellctl.procedures.stop_latency import TRAVEL_M
+from cellctl.processes.deck_to_frame.arms_in_roles import ArmsInRoles
 from cellctl.processes.deck_to_frame.roles import HOME, MEASURING, RETRACTED
 from cellctl.processes.deck_to_frame.settings import DeckSettings
-from cellctl.processes.deck_to_frame.stated_moves import ArmsInRoles
 
 
 def procedure_moves(arms: ArmsInRoles) -> Iterator[StatedMove]:
