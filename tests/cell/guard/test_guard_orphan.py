@@ -13,7 +13,7 @@ from tests.rigs.whole_cell.guard_rig import Robot, noisy, until
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.siasun_peer import Peer
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 async def connected(port: int) -> Peer:
