@@ -22,7 +22,7 @@ from fakes.wire.cameras.target_server import TargetServer
 from fakes.world.targets import SeenTarget
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
-from tests.contracts.suites.stereo_camera import CameraBench, StereoCameraContract
+from tests.contracts.suites.stereo_camera import StereoCameraBench, StereoCameraContract
 from tests.contracts.suites.target_tracker import TargetTrackerContract, TrackerBench
 from tests.wire.ramp import Ramp
 
@@ -33,7 +33,7 @@ TARGETS: dict[str, Array] = {
 }
 
 
-class InProcessCameraBench(CameraBench):
+class InProcessCameraBench(StereoCameraBench):
     def __init__(self) -> None:
         self.memory = InProcessHead("memory")
         self.camera: StereoCamera = self.memory
@@ -48,7 +48,7 @@ class InProcessCameraBench(CameraBench):
         self.memory.cut = True
 
 
-class FrameServerBench(CameraBench):
+class FrameServerBench(StereoCameraBench):
     def __init__(self) -> None:
         self.pool = Ramp()
         self.server = FrameServer("127.0.0.1", 0, self.pool.scene, self.pool)
@@ -70,7 +70,7 @@ class FrameServerBench(CameraBench):
         self.server.faults.inject("hang_up", replies=1)
 
 
-class GigeHeadBench(CameraBench):
+class GigeHeadBench(StereoCameraBench):
     def __init__(self, producer: Path, folder: Path) -> None:
         cameras = [FakeCamera(serial, width=64, height=48) for serial in ("GL", "GR")]
         self.fakes = FakeCameras(folder / "cameras", cameras)
@@ -143,7 +143,7 @@ class TargetServerBench(TrackerBench):
 
 class TestInProcessHead(StereoCameraContract):
     @pytest.fixture
-    async def bench(self) -> CameraBench:
+    async def bench(self) -> StereoCameraBench:
         return InProcessCameraBench()
 
 
@@ -151,7 +151,7 @@ class TestFrameServerHead(StereoCameraContract):
     driver = FrameServerHead
 
     @pytest.fixture
-    async def bench(self) -> AsyncIterator[CameraBench]:
+    async def bench(self) -> AsyncIterator[StereoCameraBench]:
         bench = FrameServerBench()
         await bench.start()
         yield bench
@@ -187,7 +187,7 @@ class TestGigeHead(StereoCameraContract):
     @pytest.fixture
     async def bench(
         self, producer: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-    ) -> AsyncIterator[CameraBench]:
+    ) -> AsyncIterator[StereoCameraBench]:
         bench = GigeHeadBench(producer, tmp_path)
         monkeypatch.setenv(ENVIRONMENT, str(bench.fakes.path))
         yield bench

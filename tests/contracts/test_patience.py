@@ -20,7 +20,7 @@ from tests.contracts.suites.camera import CameraContract, SingleCameraBench
 from tests.contracts.suites.digital_io import DigitalIoBench, DigitalIoContract
 from tests.contracts.suites.gripper import GripperBench, GripperContract
 from tests.contracts.suites.robot import RobotBench, RobotContract
-from tests.contracts.suites.stereo_camera import CameraBench, StereoCameraContract
+from tests.contracts.suites.stereo_camera import StereoCameraBench, StereoCameraContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.contracts.suites.target_tracker import TargetTrackerContract, TrackerBench
 
@@ -51,7 +51,7 @@ class TestPatientCamera(CameraContract):
 
 class TestPatientHead(StereoCameraContract):
     @pytest.fixture
-    async def bench(self) -> CameraBench:
+    async def bench(self) -> StereoCameraBench:
         bench = test_heads.InProcessCameraBench()
         bench.camera = PatientHead(bench.camera)
         return bench
