@@ -12,7 +12,7 @@ OVERRIDE_BAND_PERCENT = 0.5
 
 def require_ready(robots: Iterable[Robot]) -> None:
     """Raise ``RobotNotReady`` with the reasons of every robot that would refuse a motion."""
-    reasons = [f"{robot.name}: {why}" for robot in robots for why in _reasons(robot)]
+    reasons = [f"{robot.name}: {why}" for robot in robots for why in reasons_not_ready(robot)]
     if reasons:
         raise RobotNotReady("; ".join(reasons))
 
@@ -29,7 +29,8 @@ def require_full_speed(robot: Robot) -> None:
         raise SpeedOverridden(f"{robot.name}: {percent:.0f} %")
 
 
-def _reasons(robot: Robot) -> list[str]:
+def reasons_not_ready(robot: Robot) -> list[str]:
+    """Why a robot would refuse a motion now, in words; none where it would not."""
     try:
         state = robot.state()
     except CellError as error:

@@ -12,7 +12,7 @@ from cellctl.interfaces import PendantSelection, Robot, RobotState
 
 ANY_AGE_S = 1e9
 _LOOK_S = 0.005
-_NOT_TOLD = "not told by this controller"
+NOT_TOLD = "not told by this controller"
 
 
 @dataclass(slots=True)
@@ -71,16 +71,16 @@ def selection_as_json(selection: PendantSelection) -> dict[str, Any]:
         "base_T_work_xyzabc_mm_deg": selection.base_T_work,
     }
     written = {
-        name: _NOT_TOLD if frame is None else _numbers(pose_to_xyzabc(frame))
+        name: NOT_TOLD if frame is None else _numbers(pose_to_xyzabc(frame))
         for name, frame in frames.items()
     }
     load = selection.load
     if load is None:
-        return {"load_kg": _NOT_TOLD, **written}
+        return {"load_kg": NOT_TOLD, **written}
     com_m = load.flange_r_com_m
     return {
         "load_kg": round(load.mass_kg, 3),
-        "load_com_mm": _NOT_TOLD if com_m is None else _numbers(com_m / MM),
+        "load_com_mm": NOT_TOLD if com_m is None else _numbers(com_m / MM),
         **written,
     }
 

@@ -1,14 +1,17 @@
-"""`cellctl check`: everything that is wrong with a cell file, without touching hardware."""
+"""`cellctl check`: everything that is wrong with a cell file; with `--connect` its devices too."""
 
 import grp
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
 
 from cellctl.atomic_files import may_write
+from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig, load_cell, problems_before_commissioning
 from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.document.lines import FILL_IN, left_open
@@ -18,11 +21,63 @@ from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.roles import lacking_roles
 
+if TYPE_CHECKING:
+    from cellctl.cli.connecting.answer import Answer
 
-def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")]) -> None:
-    """Check a cell file; exit code 1, with every error and what is allowed, when it is not good."""
+
+def check(
+    cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")],
+    *,
+    connect: Annotated[
+        bool, typer.Option("--connect", help="Ask every device too; moves and switches nothing.")
+    ] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    socket: SocketOption = None,
+) -> None:
+    """Check a cell file; exit code 1, with every error and what is allowed, when it is not good.
+
+    With --connect every device of a good file is asked, and the exit code is 1 also when one is
+    silent or another one than the file says. Nothing is asked while a daemon has the cell.
+    """
     found = [*problems_before_commissioning(cell_file), *_left_open(cell_file)]
     console = Console(soft_wrap=True, highlight=False)
+    if not as_json:
+        _show_file(console, cell_file, found)
+    answers = _asked(cell_file, socket) if connect and not found else []
+    if as_json:
+        typer.echo(as_plain(_as_json(cell_file, found, answers)))
+    elif answers:
+        from cellctl.cli.connecting.connect import show
+
+        show(console, answers)
+    if found or not all(answer.good for answer in answers):
+        raise typer.Exit(1)
+
+
+def _asked(cell_file: Path, socket: Path | None) -> "list[Answer]":
+    # Loaded when it is asked for: a file alone is checked in a fraction of the time that drivers,
+    # calibrations and processes take to load.
+    from cellctl.cli.connecting.connect import asked
+
+    try:
+        return asked(load_cell(cell_file), cell_file, socket)
+    except KeyboardInterrupt:
+        typer.echo("ended by Ctrl-C: the links are dropped, nothing was moved", err=True)
+        raise typer.Exit(130) from None
+
+
+def _as_json(
+    cell_file: Path, found: Sequence[ConfigIssue], answers: "Sequence[Answer]"
+) -> dict[str, Any]:
+    return {
+        "cell_file": str(cell_file),
+        "good": not found and all(answer.good for answer in answers),
+        "errors": [asdict(problem) for problem in found],
+        "devices": [answer.as_json() for answer in answers],
+    }
+
+
+def _show_file(console: Console, cell_file: Path, found: Sequence[ConfigIssue]) -> None:
     if found:
         errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
         console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
@@ -31,7 +86,7 @@ def check(cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file."
             text = f"F{problem.number} {place}{problem.key} = {problem.value}"
             console.print(text, markup=False)
             console.print(f"     {problem.allowed}", markup=False)
-        raise typer.Exit(1)
+        return
     # Read a second time, as the daemon would: what is printed below is what it will use.
     cell = load_cell(cell_file)
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")

@@ -15,7 +15,7 @@ CellError
 ├── StreamedContactError 57x errors.streamed_contact  contact under a stream of setpoints
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 ├── LineError         7xx   errors.line         line PLC and commands
-│   └── LocalError    71x   errors.local        operator commands on the cell's PC
+│   └── LocalError    71x   errors.local        operator commands on the cell's PC, 74x
 ├── RecordsError      8xx   errors.records      run store and artefacts
 └── InternalError     9xx   errors.internal     cellctl itself
 """

@@ -39,8 +39,10 @@ class VersionMismatch(LinkError):
 
     number = 204
     text = "Device protocol version or convention does not match"
-    cause = "Job program or firmware older or newer than this driver."
-    remedy = "Load the job program that belongs to this cellctl version."
+    cause = "Job program or firmware older or newer than this driver, or another robot or "
+    cause += "convention than the cell file says; see the detail."
+    remedy = "Correct name, port or convention in the cell file or on the device, or load the job "
+    remedy += "program that belongs to this cellctl version."
 
 
 class ReplyTimeout(LinkError):

@@ -1,4 +1,5 @@
-"""71x: the local API, by which operators at the cell's PC reach the daemon."""
+"""71x: the local API, by which operators at the cell's PC reach the daemon; 74x: devices that are
+asked without it."""
 
 from cellctl.errors.base import Reaction
 from cellctl.errors.line import LineError
@@ -95,3 +96,24 @@ class PageCannotServe(LocalError):
     text = "The operator page cannot be served"
     cause = "Its port is taken by another program, or the address is not of this PC."
     remedy = "Give another port or address in the settings of the page."
+
+
+class CellInUse(LocalError):
+    """Somebody has the connections of the cell already, and would lose them."""
+
+    number = 740
+    text = "The devices of this cell are not asked: they are in use"
+    cause = "The daemon of this cell runs, or another program has the ports of the cell file."
+    remedy = "Ask the daemon: `cellctl status`, `cellctl robot`. To ask the devices themselves, "
+    remedy += "end it while the arms stand (`systemctl stop cellctl`) and check again."
+
+
+class OtherDevice(LocalError):
+    """What answers is not what the cell file or a calibration says."""
+
+    number = 741
+    text = "A device is not the one that is meant"
+    cause = "Exchanged devices or cables, a value of another cell in the file, or a calibration "
+    cause += "that was made with another device."
+    remedy = "Correct the cell file, or connect the device that it means. A calibration of another "
+    remedy += "device is made anew."

@@ -21,6 +21,14 @@ class Device(ABC):
     async def disconnect(self) -> None:
         """Drop the link. Idempotent, in any state."""
 
+    async def let_go(self) -> None:
+        """Drop the link and write nothing: what the device drives stays as it was found.
+
+        Called by `cellctl check --connect`, which has only asked. A driver whose ``disconnect``
+        writes has one of its own. Idempotent, in any state.
+        """
+        await self.disconnect()
+
     def incidents(self) -> tuple[CellError, ...]:
         """What its driver has noticed beside its work since the last call, such as a stranger.
 

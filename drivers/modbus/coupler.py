@@ -91,6 +91,13 @@ class Coupler:
                     )
             self._client.close()
 
+    async def let_go(self) -> None:
+        """Drop the link and leave the outputs as they are, or as the watchdog puts them."""
+        async with self._turn:
+            await self._stop_polling()
+            self._fault = LinkLost(f"{self._name} is not connected")
+            self._client.close()
+
     async def read(self) -> SignalReading:
         """Ask for all signals now; ``OutputsDropped`` when outputs are not as they were set."""
         async with self._turn:

@@ -8,11 +8,10 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from cellctl.api.local.socket_file import default_path
 from cellctl.cell.robot_reports import listen
+from cellctl.cli.cell_daemon import client_of
 from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.cli.nearest_cell import SocketOption
-from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.config import CellConfig
 from cellctl.config.devices import RobotConfig
 from cellctl.config.driver_settings import motion_bounds
@@ -56,11 +55,8 @@ def robot(
 
 def _from_daemon(cell: CellConfig, name: str, seconds: float, socket: Path | None) -> Heard | None:
     """What the daemon of this cell hears; None where none runs, or it is not connected."""
-    stated = Path(cell.local_api.socket) if cell.local_api.socket else None
-    beside = default_path(Path(cell.data_dir))
-    path = socket or stated or (beside if beside.exists() else None)
     try:
-        answer = DaemonClient(path).robot(name, seconds)
+        answer = client_of(cell, socket).robot(name, seconds)
     except (DaemonNotReached, MessageMalformed):
         return None
     # A service of another cell may run on this PC.

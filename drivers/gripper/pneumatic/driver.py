@@ -28,6 +28,10 @@ class PneumaticGripper(Gripper):
         """Switch both coils off, which leaves the jaws as they are, and drop the link."""
         await self._coupler.disconnect()
 
+    async def let_go(self) -> None:
+        """Drop the link and switch nothing."""
+        await self._coupler.let_go()
+
     async def state(self) -> GripperState:
         """Read the sensors now."""
         state = protocol.to_state(await self._coupler.read())

@@ -34,6 +34,10 @@ class ModbusCouplerIo(DigitalIo):
         """Switch every output off and drop the link."""
         await self._coupler.disconnect()
 
+    async def let_go(self) -> None:
+        """Drop the link and switch nothing."""
+        await self._coupler.let_go()
+
     async def read(self) -> DigitalIoState:
         """Functions 2 and 1, now."""
         return protocol.to_state(await self._coupler.read())

@@ -27,6 +27,9 @@ class InProcessIo(DigitalIo):
     async def disconnect(self) -> None:
         self.end(LinkLost(self.name))
 
+    async def let_go(self) -> None:
+        self._fault = LinkLost(self.name)
+
     def end(self, fault: CellError) -> None:
         self._fault = fault
         self.driven = dict.fromkeys(self.driven, False)

@@ -94,6 +94,19 @@ class DigitalIoContract(ABC):
         with pytest.raises(LinkError):
             await bench.io.write({"lamp": True})
 
+    async def test_letting_go_writes_nothing(self, bench: DigitalIoBench) -> None:
+        await bench.io.let_go()
+        await bench.io.connect()
+        await bench.io.write({"lamp": True, "clamp": True})
+        before = bench.writes()
+        await bench.io.let_go()
+        await bench.io.let_go()
+        assert bench.writes() == before
+        with pytest.raises(LinkError):
+            await bench.io.read()
+        await bench.io.connect()
+        await bench.io.read()
+
     async def test_connect_again(self, bench: DigitalIoBench) -> None:
         for _ in range(2):
             async with bench.io as io:

@@ -1,0 +1,95 @@
+"""Asks all devices of a cell at once, those first that tell whether somebody has the cell."""
+
+import asyncio
+from collections.abc import Callable, Coroutine, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from cellctl.cli.connecting.answer import Answer, answered
+from cellctl.cli.connecting.cameras import ask_camera, ask_tracker
+from cellctl.cli.connecting.guards import ask_sensor, ask_stop_channel
+from cellctl.cli.connecting.instruments import with_instruments
+from cellctl.cli.connecting.line import line_port_held
+from cellctl.cli.connecting.outputs import ask_gripper, ask_io
+from cellctl.cli.connecting.robots import ask_robot
+from cellctl.config import CellConfig
+from cellctl.errors.link import PortInUse
+from cellctl.errors.local import CellInUse
+
+Questions = Mapping[str, Coroutine[Any, Any, Answer]]
+
+
+async def ask_devices(
+    cell: CellConfig, folder: Path, tell: Callable[[str, bool], None]
+) -> list[Answer]:
+    """The answers in the order of the cell file, that of the line last.
+
+    ``folder`` holds the cell file; ``tell`` is called with the path of each device when it is being
+    asked (True) and when it has answered or failed (False). Raises ``CellInUse`` when a daemon
+    serves the line. When a robot's port is taken, no device is asked any more: the program that has
+    it may have the outputs, cameras and sensors too, and would lose them.
+    """
+    with line_port_held(cell.plc) as line:
+        found = await _asked(cell, _robots(cell), tell)
+        taken = [one.path for one in found if isinstance(one.fault, PortInUse)]
+        others = _others(cell)
+        if taken:
+            for question in others.values():
+                question.close()
+            why = f"another program has the ports of {', '.join(taken)}"
+            drivers = _drivers(cell)
+            found += [Answer(path, drivers[path], fault=CellInUse(why)) for path in others]
+        else:
+            found += await _asked(cell, others, tell)
+    compared = with_instruments(cell, folder / cell.calibration_dir, found)
+    return [*_in_order(cell, compared), line]
+
+
+async def _asked(
+    cell: CellConfig, questions: Questions, tell: Callable[[str, bool], None]
+) -> list[Answer]:
+    drivers = _drivers(cell)
+
+    async def one(path: str, question: Coroutine[Any, Any, Answer]) -> Answer:
+        tell(path, True)  # noqa: FBT003 - begun
+        answer = await answered(path, drivers[path], question)
+        tell(path, False)  # noqa: FBT003
+        return answer
+
+    async with asyncio.TaskGroup() as tasks:
+        asked = [tasks.create_task(one(*item)) for item in questions.items()]
+    return [task.result() for task in asked]
+
+
+def _robots(cell: CellConfig) -> Questions:
+    """Robots and the guards' stop channels, which a controller may open together only."""
+    return {f"robots.{name}": ask_robot(cell, name) for name in cell.robots} | {
+        f"force_sensors.{name}.stop_channel": ask_stop_channel(name, sensor)
+        for name, sensor in cell.force_sensors.items()
+    }
+
+
+def _others(cell: CellConfig) -> Questions:
+    questions: dict[str, Coroutine[Any, Any, Answer]] = {}
+    for name, head in cell.stereo_cameras.items():
+        questions[f"stereo_cameras.{name}"] = ask_camera("stereo_cameras", name, head)
+    for name, camera in cell.cameras.items():
+        questions[f"cameras.{name}"] = ask_camera("cameras", name, camera)
+    for name, tracker in cell.trackers.items():
+        questions[f"trackers.{name}"] = ask_tracker(name, tracker)
+    for name, sensor in cell.force_sensors.items():
+        questions[f"force_sensors.{name}"] = ask_sensor(name, sensor)
+    for name, gripper in cell.grippers.items():
+        questions[f"grippers.{name}"] = ask_gripper(name, gripper)
+    for name, io in cell.digital_ios.items():
+        questions[f"digital_ios.{name}"] = ask_io(name, io)
+    return questions
+
+
+def _drivers(cell: CellConfig) -> dict[str, str]:
+    return {path: device.driver for path, (_, device) in cell.devices().items()}
+
+
+def _in_order(cell: CellConfig, answers: Iterable[Answer]) -> list[Answer]:
+    order = list(cell.devices())
+    return sorted(answers, key=lambda answer: order.index(answer.path))

@@ -1,0 +1,83 @@
+"""Asks the devices of a checked cell file and shows what each has answered."""
+
+import asyncio
+from pathlib import Path
+
+from rich.console import Console
+from rich.status import Status
+
+from cellctl.cli.cell_daemon import running_daemon
+from cellctl.cli.connecting.answer import Answer
+from cellctl.cli.connecting.asking import ask_devices
+from cellctl.config import CellConfig
+from cellctl.errors import CellError
+from cellctl.errors.local import CellInUse
+
+LEFT_AS_FOUND = (
+    "Nothing was moved, switched, re-armed or acknowledged. The links have ended with this "
+    "command: a controller that stops when it loses them is latched until the daemon has re-armed "
+    "it."
+)
+
+
+def asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> list[Answer]:
+    """The answers of all devices; on a terminal it says on stderr whom it waits for.
+
+    Raises ``CellInUse`` while a daemon of this cell runs, before anything is asked.
+    """
+    report = running_daemon(cell, socket)
+    if report is not None:
+        raise CellInUse(f"the daemon of {cell.name} runs and is {report.state}")
+    waiting: list[str] = []
+    with Console(stderr=True).status("connecting") as status:
+        return asyncio.run(ask_devices(cell, cell_file.parent, _Waiting(status, waiting)))
+
+
+class _Waiting:
+    """Shows the devices that have not answered yet."""
+
+    def __init__(self, status: Status, paths: list[str]) -> None:
+        self._status = status
+        self._paths = paths
+
+    def __call__(self, path: str, begun: bool) -> None:  # noqa: FBT001 - as the questions tell it
+        if begun:
+            self._paths.append(path)
+        else:
+            self._paths.remove(path)
+        self._status.update(f"asking {', '.join(self._paths)}")
+
+
+def show(console: Console, answers: list[Answer]) -> None:
+    """Every device with its answer, then what is to be done."""
+    for answer in answers:
+        _show_one(console, answer)
+    devices = [answer for answer in answers if answer.asked]
+    there = sum(answer.fault is None for answer in devices)
+    other = sum(bool(answer.differs) for answer in devices)
+    console.print(
+        f"{there} of {len(devices)} devices answer, {other} of them differ from what is meant",
+        style="bold green" if all(answer.good for answer in answers) else "bold red",
+    )
+    console.print(LEFT_AS_FOUND)
+
+
+def _show_one(console: Console, answer: Answer) -> None:
+    serial = f", serial number {answer.serial_number}" if answer.serial_number else ""
+    says = "no answer" if answer.fault is not None else f"answers{serial}"
+    if not answer.asked:
+        says = "not asked, the PLC calls the daemon"
+    style = None if answer.good else "bold red"
+    console.print(f"{answer.path} by {answer.driver}: {says}", style=style, markup=False)
+    for name, text in answer.facts.items():
+        console.print(f"  {name:24} {text}", markup=False)
+    for note in answer.notes:
+        console.print(f"  note: {note}", style="yellow", markup=False)
+    for fault in answer.faults:
+        _show_fault(console, fault)
+
+
+def _show_fault(console: Console, fault: CellError) -> None:
+    console.print(f"  {fault}", style="bold red", markup=False)
+    console.print(f"    cause:  {fault.cause}", markup=False)
+    console.print(f"    remedy: {fault.remedy}", markup=False)
