@@ -21,7 +21,7 @@ class ProcedureContext:
     board: ProgressBoard
     safe_point: SafePoint
     record: "JobRecord"
-    """To be opened by a procedure with contact, before it moves."""
+    """To be opened by a procedure that ``opens_record``, before it moves."""
 
     async def progress(self, done: int, total: int, message: str) -> None:
         """Tell how far it is, and obey a pending Hold.
@@ -64,3 +64,11 @@ class Procedure:
     """How long a result that passes stays valid."""
     contact: bool = False
     """Touches the part, so that it deals with trips of the guard itself."""
+    handles_parts: bool = False
+    """Works on the parts of a recipe without touching one against the other."""
+
+    @property
+    def opens_record(self) -> bool:
+        """Opens the record of its run itself, with the recipe whose parts it works on and the
+        calibrations that count; of any other procedure it is opened before, without both."""
+        return self.contact or self.handles_parts

@@ -46,10 +46,10 @@ class MaintenanceJob(Job):
     async def start(self) -> None:
         """Open the run record, before anything moves; each procedure begins where it needs to.
 
-        A procedure with contact opens its own, with the recipe whose parts it touches.
+        A procedure that works on parts opens its own, with their recipe.
         """
         procedure = self._procedure
-        if not procedure.contact:
+        if not procedure.opens_record:
             await self._record.open_procedure(procedure.number, procedure.label)
         self._board.update(
             step=procedure.step, step_label=procedure.label, contact=procedure.contact

@@ -120,3 +120,19 @@ async def test_progress_is_told_and_a_hold_is_obeyed(rig: ProcedureRig) -> None:
     rig.pauses._held_at = (2,)
     with pytest.raises(HeldMeanwhile):
         await rig.context.progress(4, 24, "view")
+
+
+async def test_a_procedure_that_works_on_parts_opens_its_record_itself(rig: ProcedureRig) -> None:
+    async def run(context: ProcedureContext) -> ProcedureOutcome | None:
+        await context.record.open(rig.bench.recipe, "teaching", ())
+        return None
+
+    rig.procedures[101] = replace(rig.procedures[101], run=run, handles_parts=True)
+    job = rig.job(101)
+    await job.start()
+    assert job.run_number == 0
+    await job.execute()
+    await job.close(RunResult.GOOD, None)
+    (head,) = await rig.archive.do(RunStore.runs)
+    assert (head.process, head.mode) == ("deck-to-frame", "teaching")
+    assert head.recipe_id == rig.bench.recipe.id

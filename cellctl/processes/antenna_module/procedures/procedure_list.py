@@ -70,6 +70,7 @@ def antenna_procedures(
             "teach plug",
             partial(teach_plug_on_cell, cell, recipe, services),
             valid_for,
+            handles_parts=True,
         )
         for number, recipe in by_number.items()
     ]
