@@ -27,6 +27,17 @@ class LineLostInContact(LineLost):
     reaction = Reaction.ABORT
 
 
+class SerialMadeBefore(LineError):
+    """A part with the serial number of this run was finished before; the run goes on."""
+
+    number = 742
+    text = "A part with this serial number was finished before"
+    cause = "The number was mistyped or read from another part, or the part is reworked."
+    remedy = "Compare the number with the part. If it is wrong, stop the run and start it with the "
+    remedy += "right one; acknowledge the alarm for a part that is reworked."
+    reaction = Reaction.WARN
+
+
 class CannotListen(LineError):
     """The Modbus server cannot be opened."""
 

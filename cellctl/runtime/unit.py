@@ -203,7 +203,7 @@ class UnitController:
 
     async def _starting(self) -> None:
         self.board.reset()
-        await self._jobs.start(self.factory.job(self._safe_point))
+        await self._jobs.start(self.factory.job(self._safe_point, self.machine.fail))
 
     async def _execute(self) -> None:
         await self._jobs.execute()

@@ -14,6 +14,7 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.store import RunStore
+from cellctl.runtime.jobs.earlier_part import Warn
 from cellctl.runtime.jobs.job import Job
 from cellctl.runtime.jobs.maintenance import MaintenanceJob
 from cellctl.runtime.jobs.production import ProductionJob
@@ -66,7 +67,7 @@ class JobFactory:
         """Remember a Start that was found good, right before the unit starts."""
         self._accepted = mode, command
 
-    def job(self, safe_point: SafePoint) -> Job:
+    def job(self, safe_point: SafePoint, warn: Warn) -> Job:
         """A new job for the Start that was last accepted."""
         if self._accepted is None:
             raise Unexpected("the unit starts without an accepted Start")
@@ -75,7 +76,8 @@ class JobFactory:
             recipe = self._recipe(command.recipe_id)
             if recipe is None:
                 raise Unexpected(f"recipe {command.recipe_id} vanished")
-            return ProductionJob(self._processes[recipe.process], recipe, command, safe_point)
+            process = self._processes[recipe.process]
+            return ProductionJob(process, recipe, command, safe_point, warn)
         procedure = self._procedures.get(command.recipe_id)
         if procedure is None:
             raise Unexpected(f"procedure {command.recipe_id} vanished")

@@ -11,6 +11,7 @@ from cellctl.records.entries import PRODUCTION, RunResult
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.interruption import Interruption
+from cellctl.runtime.jobs.earlier_part import Warn, warn_of_earlier_part
 from cellctl.runtime.jobs.job import Job
 from cellctl.runtime.jobs.record import JobRecord
 from cellctl.runtime.process import Process, RunContext
@@ -33,6 +34,7 @@ class ProductionJob(Job):
         recipe: Recipe,
         command: UnitCommand,
         safe_point: SafePoint,
+        warn: Warn,
     ) -> None:
         self.number = recipe.id
         self.serial = command.serial
@@ -43,6 +45,7 @@ class ProductionJob(Job):
         self._command = command
         self._board = process.services.board
         self._safe_point = safe_point
+        self._warn = warn
         self._record = JobRecord(process.services.cell, process.services.store, command)
         self._begun: tuple[Any, Any] | None = None
         """The run of the process, and what its first step takes."""
@@ -75,10 +78,13 @@ class ProductionJob(Job):
         prepared = await self._process.prepare(self._recipe)
         mode = DRY_RUN if self._command.dry_run else PRODUCTION
         # Before ``begin``, the first call that moves a robot: no motion without a record.
-        await self._record.open(self._recipe, mode, prepared.stored)
+        run = await self._record.open(self._recipe, mode, prepared.stored)
+        if mode == PRODUCTION:
+            store = self._process.services.store
+            await warn_of_earlier_part(store, self._recipe, self.serial, run, self._warn)
         context = RunContext(self._recorder, self._safe_point, self._interruption)
-        run = self._process.open(prepared, context)
-        self._begun = run, await self._process.begin(run)
+        opened = self._process.open(prepared, context)
+        self._begun = opened, await self._process.begin(opened)
 
     async def execute(self) -> None:
         """All steps in their order; from the beginning again when the cell was held on the way.
