@@ -10,12 +10,14 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.cli.records.plain_json import as_plain
+from cellctl.cli.records.run_note import note
 from cellctl.cli.records.run_report import report
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.cli.records.trend import trend
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
+from cellctl.records.notes import note_words, notes_of
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.seals import LedgerHead
 
@@ -63,8 +65,9 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
     """One run in figures."""
     with opened_store(data_dir) as store:
         record = store.run(run)
+        notes = notes_of(run, store.audit_log())
     if as_json:
-        typer.echo(as_plain(asdict(record)))
+        typer.echo(as_plain(asdict(record) | {"notes": [asdict(note) for note in notes]}))
         return
     console = Console()
     console.print(_table([record.head]))
@@ -81,6 +84,8 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
         console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
     for alarm in record.alarms:
         console.print(f"alarm {alarm.text}", markup=False)
+    for entry in notes:
+        console.print(f"note of {entry.actor}: {note_words(entry)}", markup=False)
 
 
 @app.command()
@@ -106,6 +111,7 @@ def export(
 
 
 app.command("report")(report)
+app.command("note")(note)
 
 
 @app.command()

@@ -12,6 +12,7 @@ from cellctl.errors.records import RecordNotWritten, ValueRefused
 from cellctl.records.entries import RunRecord
 from cellctl.records.files.artefacts import CELL_FILE
 from cellctl.records.gauges import part_verdict
+from cellctl.records.notes import notes_of
 from cellctl.records.report.pdf import to_pdf
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages
@@ -49,8 +50,9 @@ def export_run(
         addresses = _inside(store, record)
     view = _view(store, record, pages, addresses)
     _write(folder / REPORT, render(view).encode())
-    plain = {**document(record), "ledger_head": str(view.ledger_head)}
-    _write(folder / RECORD, (json.dumps(plain, indent=1) + "\n").encode())
+    notes = [asdict(note) for note in notes_of(number, store.audit_log())]
+    plain = {**document(record), "notes": notes, "ledger_head": str(view.ledger_head)}
+    _write(folder / RECORD, (json.dumps(plain, indent=1, default=_plain) + "\n").encode())
     return folder / REPORT
 
 

@@ -13,6 +13,7 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.gauges import part_verdict
+from cellctl.records.notes import notes_of
 from cellctl.records.report import run_sections
 from cellctl.records.report.acceptance.faults import (
     AlarmLine,
@@ -90,6 +91,7 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
     """What the process brings and what any run has, in the order of the report."""
     verdict, verdict_class = _verdict(record)
     stored, audit = sources.calibrations, during(record, sources.audit)
+    notes = notes_of(record.head.number, sources.audit)
     # A calibration that the run names but that this store does not hold is listed all the same, in
     # ``calibration_lines``.
     used = [stored[i] for i in record.head.calibration_ids.values() if i in stored]
@@ -100,10 +102,10 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
         fault=fault_box(record, audit),
         tiles=pages.tiles or _tiles(record),
         before_signatures=_filled(
-            identification(record.head, pages.parts, audit),
+            identification(record.head, pages.parts, audit, notes),
             acceptance(record, pages.acceptance),
         ),
-        after_signatures=_filled(timeline(record, audit)),
+        after_signatures=_filled(timeline(record, audit, notes)),
         calibrations=tuple(calibration_lines(record.head.calibration_ids, stored)),
         heads=tuple(head_lines(used)),
         poses=tuple(pose_lines(used)),

@@ -1,9 +1,10 @@
 """Of which parts, by whom, on which order, in which surroundings."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from cellctl.records.entries import AuditEntry, RunHead
+from cellctl.records.notes import SURROUNDINGS, surroundings
 from cellctl.records.report.sections import (
     FactList,
     Part,
@@ -12,7 +13,7 @@ from cellctl.records.report.sections import (
     TableCell,
     TableRow,
 )
-from cellctl.records.report.text import MISSING, duration, when
+from cellctl.records.report.text import MISSING, duration, number, when, with_unit
 from cellctl.records.units import words
 
 UNKNOWN = "not recorded"
@@ -23,9 +24,15 @@ _MEASURING = ("robots", "stereo_cameras", "cameras", "trackers", "force_sensors"
 
 
 def identification(
-    head: RunHead, parts: Sequence[Part], audit: Sequence[AuditEntry]
+    head: RunHead,
+    parts: Sequence[Part],
+    audit: Sequence[AuditEntry],
+    notes: Sequence[AuditEntry],
 ) -> ReportSection:
-    """Parts, order, people, recipe and surroundings; what nobody has recorded says so."""
+    """Parts, order, people, recipe and surroundings; what nobody has recorded says so.
+
+    ``audit`` is that of the run's time, ``notes`` are those on the run.
+    """
     named = parts or (Part("part", head.serial),)
     started = next((entry.actor for entry in audit if entry.action == "start"), UNKNOWN)
     facts = (
@@ -41,9 +48,21 @@ def identification(
         ("duration", duration(head.started, head.ended)),
         ("devices", "simulated" if head.simulated else "real"),
         ("software", head.software),
-        ("temperature, humidity, pressure", UNKNOWN),
+        *_surroundings(notes),
     )
     return ReportSection("Identification", (FactList(facts),))
+
+
+def _surroundings(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:
+    """Each known quantity with who read it and from what; the others in one line."""
+    known = surroundings(notes)
+    for found in known.values():
+        source = ", ".join(filter(None, (found.entry.actor, found.instrument)))
+        value = with_unit(number(found.value), found.surrounding.unit)
+        yield found.surrounding.label, f"{value} ({source})"
+    missing = [one.label for one in SURROUNDINGS if one.key not in known]
+    if missing:
+        yield ", ".join(missing), UNKNOWN
 
 
 def devices(cell: Mapping[str, Any]) -> ReportSection:

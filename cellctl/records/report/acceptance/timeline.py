@@ -5,6 +5,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from cellctl.records.entries import AuditEntry, RunRecord
+from cellctl.records.notes import NOTE, note_words
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
 from cellctl.records.report.text import MISSING, duration, facts, fixed, when
 
@@ -12,7 +13,7 @@ _BEFORE = timedelta(seconds=30)
 """The command that starts a run is written down before its record is opened, which may wait as long
 as this for the disk."""
 _CELL = "cell"
-_OWN_LINE = "gauge"
+_OWN_LINE = frozenset({"gauge", NOTE})
 """Entries of the audit log that have a line of their own, with more in it."""
 Event = tuple[datetime, str, str]
 """Time, what happened, who did it."""
@@ -30,9 +31,12 @@ def during(record: RunRecord, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, 
     return tuple(within[starts[-1] :] if starts else within)
 
 
-def timeline(record: RunRecord, audit: Sequence[AuditEntry]) -> ReportSection:
-    """Commands, steps, alarms and gauges as one table; ``audit`` is that of the run's time."""
-    events = sorted(_events(record, audit), key=lambda event: event[0])
+def timeline(
+    record: RunRecord, audit: Sequence[AuditEntry], notes: Sequence[AuditEntry] = ()
+) -> ReportSection:
+    """Commands, steps, alarms, gauges and notes as one table; ``audit`` is that of the run's time,
+    ``notes`` are those on the run, also later ones."""
+    events = sorted(_events(record, audit, notes), key=lambda event: event[0])
     rows = tuple(
         TableRow((TableCell(when(time)), TableCell(what), TableCell(who or MISSING)))
         for time, what, who in events
@@ -43,10 +47,12 @@ def timeline(record: RunRecord, audit: Sequence[AuditEntry]) -> ReportSection:
     return ReportSection("Timeline", (table, note))
 
 
-def _events(record: RunRecord, audit: Sequence[AuditEntry]) -> Iterator[Event]:
+def _events(
+    record: RunRecord, audit: Sequence[AuditEntry], notes: Sequence[AuditEntry]
+) -> Iterator[Event]:
     head = record.head
     for entry in audit:
-        if entry.action != _OWN_LINE:
+        if entry.action not in _OWN_LINE:
             yield entry.time, f"command {entry.action}{_details(entry.detail)}", entry.actor
     yield head.started, "record opened", _CELL
     for phase in record.phases:
@@ -59,6 +65,8 @@ def _events(record: RunRecord, audit: Sequence[AuditEntry]) -> Iterator[Event]:
             yield alarm.acknowledged, what, alarm.acknowledged_by or ""
     if head.ended is not None:
         yield head.ended, f"run closed: {head.result}", _CELL
+    for entry in notes:
+        yield entry.time, f"note: {note_words(entry)}", entry.actor
     for gauge in record.gauge_history:
         what = f"plug gauge {gauge.gauge_id or ''} through {gauge.hole}: "
         yield gauge.time, f"{what}{fixed(gauge.diameter_mm, 2)} mm", gauge.source

@@ -89,3 +89,15 @@ def test_without_a_store_there_is_a_fault_and_none_is_made(
     result = runner.invoke(app, ["list", "--data-dir", str(tmp_path / "nowhere")])
     assert isinstance(result.exception, StoreUnavailable)
     assert not (tmp_path / "nowhere").exists()
+
+
+def test_a_note_is_told_and_shown(runner: CliRunner, folder: str) -> None:
+    words = ["note", "1", "--by", "anna", "--temperature", "21.3", "--humidity", "45"]
+    words += ["--instrument", "TH-3", "--remark", "door was open", "--data-dir", folder]
+    told = runner.invoke(app, words)
+    assert told.exit_code == 0, told.output
+    said = "temperature 21.3 °C, relative humidity 45 %, instrument TH-3, door was open"
+    assert f"run 1: {said} (anna, 20" in told.stdout
+    assert f"note of anna: {said}" in runner.invoke(app, ["show", "1", "--data-dir", folder]).stdout
+    shown = json.loads(runner.invoke(app, ["show", "1", "--json", "--data-dir", folder]).stdout)
+    assert [note["detail"]["temperature_deg_c"] for note in shown["notes"]] == [21.3]

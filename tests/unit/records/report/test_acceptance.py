@@ -1,5 +1,6 @@
 """The first page: requirements, parts, people, faults; what is unknown says so."""
 
+import json
 import re
 from datetime import timedelta
 from pathlib import Path
@@ -10,6 +11,7 @@ from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import Document, RunRecord
 from cellctl.records.figures import NO_LIMIT, Limit, figure
 from cellctl.records.gauges import GAUGE_HOLES
+from cellctl.records.notes import add_note
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
@@ -28,6 +30,7 @@ from cellctl.records.report.sections import (
 )
 from tests.unit.records.conftest import start
 from tests.unit.records.page import text_of
+from tests.unit.records.sample import good_run
 
 
 def rows_of(record: RunRecord, *groups: RequirementGroup) -> list[tuple[str, ...]]:
@@ -165,6 +168,31 @@ def test_the_timeline_has_only_what_belongs_to_the_run(store: RunStore) -> None:
     assert during(record, late) == ()
 
 
+def test_what_somebody_noted_stands_on_the_first_page_and_in_the_timeline(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = good_run(store)
+    other = good_run(store)
+    values = {"temperature_deg_c": 12.0, "humidity_percent": 44.0}
+    add_note(store, run, "anna", values, instrument="TH-3")
+    add_note(store, run, "bo", {"temperature_deg_c": 21.3}, remark="door was open")
+    add_note(store, other, "cy", {"pressure_hpa": 990.0})
+    report = export_run(store, run, tmp_path)
+    page = " ".join(text_of(report).split())
+    for expected in (
+        "temperature 21.3 °C (bo)",
+        "relative humidity 44 % (anna, TH-3)",
+        "air pressure not recorded",
+        "note: temperature 12 °C, relative humidity 44 %, instrument TH-3 anna",
+        "note: temperature 21.3 °C, door was open bo",
+    ):
+        assert expected in page, expected
+    assert "990" not in page, "that is the note of another run"
+    plain = json.loads((tmp_path / "run.json").read_text())
+    assert [note["actor"] for note in plain["notes"]] == ["anna", "bo"]
+    assert store.verify() == []
+
+
 def test_parts_and_surroundings_that_nobody_recorded_say_so(
     store: RunStore, tmp_path: Path
 ) -> None:
@@ -175,7 +203,7 @@ def test_parts_and_surroundings_that_nobody_recorded_say_so(
     for expected in (
         "serial number, deck SAT-0001",
         "serial number, frame not recorded",
-        "temperature, humidity, pressure not recorded",
+        "temperature, relative humidity, air pressure not recorded",
         "order or operator, as the line names it OP-7",
         "started by not recorded",
         "performed by",

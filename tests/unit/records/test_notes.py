@@ -1,0 +1,54 @@
+"""Notes on a run: plausible values of an existing run, by somebody with a name."""
+
+import pytest
+
+from cellctl.errors.records import RunUnknown, ValueRefused
+from cellctl.records import RunStore
+from cellctl.records.notes import add_note, note_words, notes_of, surroundings
+from tests.unit.records.conftest import start
+
+
+def test_the_newest_value_counts_and_all_are_kept(store: RunStore) -> None:
+    run = start(store)
+    add_note(store, run, "anna", {"temperature_deg_c": 12.0, "pressure_hpa": 1013.2})
+    add_note(store, run, "bo", {"temperature_deg_c": 21.0}, instrument="TH-3", remark="again")
+    notes = notes_of(run, store.audit_log())
+    assert [note_words(note) for note in notes] == [
+        "temperature 12 °C, air pressure 1013.2 hPa",
+        "temperature 21 °C, instrument TH-3, again",
+    ]
+    found = surroundings(notes)
+    assert {key: (one.value, one.entry.actor) for key, one in found.items()} == {
+        "temperature_deg_c": (21.0, "bo"),
+        "pressure_hpa": (1013.2, "anna"),
+    }
+    assert found["temperature_deg_c"].instrument == "TH-3"
+
+
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [
+        ("temperature_deg_c", 293.0),
+        ("temperature_deg_c", float("nan")),
+        ("humidity_percent", -0.1),
+        ("humidity_percent", 100.1),
+        ("pressure_hpa", 101325.0),
+        ("pressure_hpa", 1.013),
+    ],
+)
+def test_what_cannot_be_so_is_refused(store: RunStore, key: str, value: float) -> None:
+    run = start(store)
+    with pytest.raises(ValueRefused, match="allowed"):
+        add_note(store, run, "anna", {key: value})
+    assert store.audit_log() == []
+
+
+def test_a_note_says_something_about_a_run_that_there_is(store: RunStore) -> None:
+    run = start(store)
+    with pytest.raises(ValueRefused, match="a value or a remark"):
+        add_note(store, run, "anna", {})
+    with pytest.raises(ValueRefused, match="who made it"):
+        add_note(store, run, "", {}, remark="door was open")
+    with pytest.raises(RunUnknown):
+        add_note(store, run + 1, "anna", {}, remark="door was open")
+    assert store.audit_log() == []
