@@ -6,12 +6,15 @@ from unittest.mock import AsyncMock, Mock
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.processes.antenna_module import looking
 from cellctl.processes.antenna_module.faults.connector import PixelsNotMeasurable
-from cellctl.processes.antenna_module.looking import Eyes, measured_channel
+from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
+from cellctl.processes.antenna_module.looking import Eyes, combined, measured_channel
 from cellctl.processes.antenna_module.vision.pixels import mosaic_plane
 from drivers.camera.gige.pixels import decoded
 
@@ -86,3 +89,15 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
     assert [call.args[0] for call in recorder.raw_image.call_args_list] == files
     told = [call.args[0] for call in recorder.exposures.call_args_list]
     assert told == [{file: one} for file, one in zip(files, exposures, strict=True)]
+
+
+def test_frames_of_a_scene_that_moved_meanwhile_are_not_combined() -> None:
+    def seen(x_m: float) -> UncertainPose:
+        return UncertainPose(RigidTransform.from_translation([x_m, 0.0, 0.25]), np.eye(6) * 1e-12)
+
+    still = combined((seen(0.0), seen(2e-6), seen(4e-6)))
+    assert still.pose.translation[0] == pytest.approx(2e-6)
+    # As uncertain as one of them: they have drawing, light and plane in common.
+    np.testing.assert_array_equal(still.covariance, seen(0.0).covariance)
+    with pytest.raises(LooksDisagree, match=r"20\.0 µm off"):
+        combined((seen(0.0), seen(0.0), seen(30e-6)))
