@@ -36,7 +36,7 @@ demo-antenna-calibration: venv
 	$(BIN)/cellctl demo --process antenna-module --calibrate --seed $(SEED) $(ARGS)
 
 demo-insertion: venv
-	$(BIN)/cellctl demo --process peg-in-hole --seed $(SEED) $(ARGS)
+	$(BIN)/cellctl demo --process peg-in-hole --cell connector --seed $(SEED) $(ARGS)
 
 demo-calibration: venv
 	$(BIN)/cellctl demo --calibrate --seed $(SEED)

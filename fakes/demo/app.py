@@ -66,7 +66,11 @@ def demo(
         typer.Option(help="Of the fake cell; default: NAME.scenario.toml beside --cell NAME.toml."),
     ] = None,
     cell: Annotated[
-        Path | None, typer.Option(help="The daemon's cell file; default: the process's own.")
+        str | None,
+        typer.Option(
+            help="The daemon's cell file, or the short name of a shipped one (peg-in-hole: "
+            "connector, pin, pin-rpc); default: the process's own."
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for record, report, logs.")] = None,
     calibrate: Annotated[bool, typer.Option(help="Run all calibrations instead.")] = False,
@@ -99,9 +103,10 @@ def demo(
     job = Job(seed=seed, calibrate=calibrate, stay=stay, faults=tuple(fault or ()))
     try:
         shown = registry.find(process)
+        file = None if cell is None else shown.cells.get(cell, Path(cell))
         files = Files(
-            scenario=scenario or _beside(cell) or shown.scenario,
-            cell=cell or shown.cell,
+            scenario=scenario or _beside(file) or shown.scenario,
+            cell=file or shown.cell,
             out=out or Path("runs") / f"{datetime.now(UTC):%Y%m%d-%H%M%S}-seed-{seed}",
             imperfections=dict(parsed_scale(item) for item in imperfection or ()),
             robots=robots,

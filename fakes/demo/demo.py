@@ -77,6 +77,8 @@ class Demo(ABC):
     """The daemon's cell file."""
     scenario: ClassVar[Path]
     """The fake cell's scenario file."""
+    cells: ClassVar[Mapping[str, Path]] = {}
+    """Shipped cell files by the short names that ``--cell`` takes, too; scenarios lie beside."""
     recipe: ClassVar[int] = 1
     serial: ClassVar[str] = "SAT-{seed:04d}"
     """Serial number of the part."""

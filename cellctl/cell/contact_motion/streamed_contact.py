@@ -77,7 +77,10 @@ class StreamedContact(ContactMotions):
         # What stands in the way after all must not be met with more than the guard allows.
         met_m_s = met_speed_m_s(self._settings.figures, _MET_RATIO * self._settings.limit_n)
         speed = min(speed_m_s, met_m_s, max(path.remaining, _SHORTEST_M) / least_s)
-        return await self._run(path, lambda _sample: speed, _first(touched, _arrived(path)), speed)
+        moved = await self._run(path, lambda _sample: speed, _first(touched, _arrived(path)), speed)
+        if moved.ended is Ended.TRAVEL:
+            self._loop.trail.begin()
+        return moved
 
     async def touch(
         self, direction: Vector, travel_m: float, force_n: float, speed_m_s: float | None = None
@@ -129,7 +132,9 @@ class StreamedContact(ContactMotions):
 
         end = _first(_when(until), held, _arrived(path))
         press = self._press_along(press_n)
-        return await self._run(path, lambda _sample: speed, end, speed, press)
+        slid = await self._run(path, lambda _sample: speed, end, speed, press)
+        self._loop.trail.begin()
+        return slid
 
     async def turn(
         self,

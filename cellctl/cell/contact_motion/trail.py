@@ -13,6 +13,10 @@ class Trail:
     def __init__(self) -> None:
         self._poses: list[Array] = []
 
+    def begin(self) -> None:
+        """Up from here is the way out: the tip came sideways, through the air or over a face."""
+        self._poses.clear()
+
     def note(self, tip: Array) -> None:
         """The tip is here now; what was deeper is no longer on its way out."""
         while self._poses and self._poses[-1][2] >= tip[2] - _STEP_M:

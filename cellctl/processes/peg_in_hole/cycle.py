@@ -1,15 +1,19 @@
-"""One whole cycle by touch: face, search, insertion, pushes to the sides, verdict."""
+"""One cycle by touch on a face that was touched: search, insertion, pushes, verdict."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Self
+
+import numpy as np
 
 from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
+from cellctl.processes.peg_in_hole.plan.phases import Phase
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
+from cellctl.processes.peg_in_hole.search.face import CLEAR_M, FacePlan
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
+from cellctl.processes.peg_in_hole.search.first_contact import Contacts, meet_face, require_walls
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
@@ -21,6 +25,8 @@ from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSea
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
 
 _PRESS_S = 0.1
+_FREE_M_S = 10e-3
+_DOWN = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +45,6 @@ class CyclePlan:
 class CycleResult:
     """What one cycle has found."""
 
-    face: TouchedFace
     found_by: SearchName
     fed: Fed
     evidence: InsertionEvidence
@@ -49,7 +54,6 @@ class CycleResult:
         """Plain data, without path and curve."""
         return {
             "found_by": self.found_by.value,
-            "face_tilt_rad": self.face.tilt_rad,
             "recoveries": list(self.fed.recoveries),
             "evidence": self.evidence.to_record(),
             "judgement": self.judgement.to_record(),
@@ -64,6 +68,7 @@ class CycleLog:
     trace: SearchTrace = field(default_factory=SearchTrace)
     found_by: SearchName | None = None
     """None until the peg has entered."""
+    contacts: Contacts = field(default_factory=list)
 
     @classmethod
     def of(cls, plan: CyclePlan) -> Self:
@@ -71,32 +76,23 @@ class CycleLog:
         return cls(HoleMap(plan.task.cell.uncertainty_m, plan.task.fit.catch_radius_m))
 
 
-def _silent(_words: str) -> None:
-    return
-
-
-async def run_cycle(motions: ContactMotions, plan: CyclePlan) -> CycleResult:
-    """From above the face to the verdict, held by the gripper still; see ``search_and_insert``."""
-    face = await touch_face(motions, plan.task, plan.face)
-    return await search_and_insert(motions, plan, face, CycleLog.of(plan))
+BeginPhase = Callable[[Phase, str], Awaitable[None]]
+"""Called before the first motion of a phase, with words for the operator."""
 
 
 async def search_and_insert(
-    motions: ContactMotions,
-    plan: CyclePlan,
-    face: TouchedFace,
-    log: CycleLog,
-    tell: Callable[[str], None] = _silent,
+    motions: ContactMotions, plan: CyclePlan, log: CycleLog, begin: BeginPhase
 ) -> CycleResult:
-    """From the touched face to the verdict; ``log`` takes what is felt on the way.
+    """From over the touched face, where frame A lies, to the verdict; ``log`` takes what is felt.
 
-    ``tell`` hears what is being done. Raises what search and insertion raise; then the caller
-    decides about the way out. Without a touch on the part's rear the verdict rests on the grip
-    force alone.
+    Raises what search and insertion raise; then the caller decides about the way out. Without a
+    touch on the part's rear the verdict rests on the grip force alone.
     """
     task = plan.task
     order = ", then ".join(name.value for name in plan.choice.order)
-    tell(f"search: {order}")
+    await begin(Phase.SEARCH, "touch the face over its middle")
+    await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
+    await motions.touch(_DOWN, 2 * CLEAR_M, task.limits.search_n)
     # For its time stamp: the deadline of the search counts on the clock of the samples.
     begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
     probe = TouchProbe(
@@ -107,16 +103,20 @@ async def search_and_insert(
         begun.time_s + task.search_limit_s,
         trace=log.trace,
     )
+    await meet_face(motions, task, plan.choice.parameters, log.contacts)
+    await begin(Phase.SEARCH, f"search: {order}; first contact: {log.contacts[-1].found.value}")
     found_by = log.found_by = await find_hole(probe, plan.choice.order)
-    tell(f"insert: the hole was found by {found_by.value}")
+    await require_walls(motions, task, plan.choice.parameters, log.contacts)
+    felt = log.contacts[-1].found.value
+    await begin(Phase.INSERTION, f"insert: the hole was found by {found_by.value}, {felt}")
     fed = await insert(motions, task)
-    tell("verify: pushed to four sides")
+    await begin(Phase.VERDICT, "verify: pushed to four sides")
     capture = await measure_capture(motions, task)
     keys, pull_n = task.fit.keys, plan.seat.pull_n
     keyed = None if keys is None else await directions_that_resist_a_turn(motions, keys)
     held_n = None if pull_n is None else await pull_that_holds_n(motions, task, pull_n)
     evidence = InsertionEvidence(
-        depth_m=fed.depth_m - face.depth_m,
+        depth_m=fed.depth_m,
         seat_force_n=fed.seat_force_n,
         seat_slope_n_m=fed.seat_slope_n_m,
         capture=capture,
@@ -128,4 +128,4 @@ async def search_and_insert(
         held_pull_n=held_n,
     )
     judgement = judge_peg(evidence, task, plan.seat)
-    return CycleResult(face, found_by, fed, evidence, judgement)
+    return CycleResult(found_by, fed, evidence, judgement)

@@ -3,6 +3,7 @@
 ByTouchError
 ├── SearchImpossible, HeightTooNoisy                545–546  refused before any contact
 ├── HoleAbsent, SearchGaveUp                        547–548  the search
+├── WrongFeature                                    598      what the peg stands in
 ├── FaceAbsent, FaceUneven, FaceTilted              549–551  the face
 ├── PanelOffReference                               337      the face against its reference
 ├── PegJammed, PegWedged, HoleBlocked               552–554  the insertion
@@ -62,6 +63,15 @@ class SearchGaveUp(ByTouchError):
     text = "The hole was not found in time"
     cause = "The place was more uncertain than stated, or touches were not recognised."
     remedy = "Look at the search path in the report; locate the part again."
+
+
+class WrongFeature(ByTouchError):
+    """What the peg stands in is no round hole of its size."""
+
+    number = 598
+    text = "The peg stands in something that is not its hole"
+    cause = "A slot, a gap between two parts, a much wider hole, or the place beside a plug."
+    remedy = "Look at the part at the place in the detail; locate the hole better."
 
 
 class FaceAbsent(ByTouchError):

@@ -5,29 +5,39 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from fakes.demo.control import Control
-from fakes.demo.demo import Demo, Evidence, Judgement, Message, Row
+from fakes.demo.demo import Demo, Evidence, Judgement, Message, Procedure, Row
 from fakes.demo.processes.force_row import force_row
 from fakes.demo.processes.limited import Limited, failed_figures
 
 CONFIG = Path(__file__).parents[3] / "config"
 
 
+def _next_part(control: Control) -> None:
+    control.request("load")
+
+
 class PegInHoleDemo(Demo):
-    """One arm with a force sensor and a gripped pin; the hole in a plate lies where nobody sees."""
+    """One arm with a force sensor and a gripped plug or pin; its hole lies where nobody sees."""
 
     process: ClassVar[str] = "peg-in-hole"
-    title: ClassVar[str] = "a pin finds its hole by touch"
-    cell: ClassVar[Path] = CONFIG / "insertion-pin.toml"
-    scenario: ClassVar[Path] = CONFIG / "insertion-pin.scenario.toml"
-    serial: ClassVar[str] = "PIN-{seed:04d}"
+    title: ClassVar[str] = "a part finds its hole by touch"
+    cell: ClassVar[Path] = CONFIG / "insertion-connector.toml"
+    scenario: ClassVar[Path] = CONFIG / "insertion-connector.scenario.toml"
+    cells: ClassVar[Mapping[str, Path]] = {
+        name: CONFIG / f"insertion-{name}.toml" for name in ("connector", "pin", "pin-rpc")
+    }
+    serial: ClassVar[str] = "PART-{seed:04d}"
+    procedures: ClassVar[Sequence[Procedure]] = (
+        Procedure(301, "contact loop: stiffness and dead time", _next_part),
+    )
     steps: ClassVar[Mapping[int, str]] = {10: "approach", 20: "touch face", 30: "search and insert"}
     forces: ClassVar[Mapping[str, float]] = {"insertion_n": 30.0, "fault_n": 50.0, "fault_nm": 1.0}
-    """Greatest 20 ms mean of the true force, 3 ms mean, and moment, where no run was opened; else
-    those of its recipe."""
+    """Greatest 20 ms mean of the true force, 3 ms mean, and moment, where no run was opened: the
+    tightest of the cells; else those of its recipe."""
 
     def prepare(self, control: Control) -> None:
         """The next part and the next face, with what was injected into them."""
-        control.request("load")
+        _next_part(control)
 
     def judge(self, evidence: Evidence) -> Judgement:
         """In its own hole and at its seat, not slipped, and never pressed too hard."""

@@ -101,11 +101,6 @@ class BenchOperator:
         next module and panel when the arm has left a plugged one."""
         self._standing_by.on = on
 
-    @property
-    def stands_by(self) -> bool:
-        """Whether the hands are ready to plug."""
-        return self._standing_by.on
-
     def _help(self) -> None:
         arm, place = self._arm, self._world.module.place
         resting = not (arm.by_hand or arm.moving(self._world.time_s))

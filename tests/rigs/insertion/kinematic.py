@@ -99,6 +99,8 @@ class KinematicMotions(ContactMotions):
             sunk_m = self.position_m[2] + self._sink_speed * TICK_S
             self.position_m[2] = min(rests_m, sunk_m)
             samples.append(self._sample(force_n if sunk_m >= rests_m else 0.0))
+            if self._between_walls:
+                self._centre()
             if until is not None and until(samples[-1]):
                 return ContactMotion(Ended.CONDITION, tuple(samples))
         return ContactMotion(Ended.TIME, tuple(samples))
@@ -112,6 +114,11 @@ class KinematicMotions(ContactMotions):
         side_force_n: float,
     ) -> ContactMotion:
         ticks = self._along(way_m, speed_m_s)
+        if self._between_walls:
+            # Between walls the peg stays in its hole, whatever of the way the arm has yielded by.
+            self.time_s += len(ticks) * TICK_S
+            self.position_m[:2] = ticks[-1]
+            return self._ended(Ended.TRAVEL, press_n)
         wander = self._wandering(len(ticks), speed_m_s * TICK_S)
         offsets = ticks + self._offset_m + wander - self.truth.hole_m
         depths = self._surface.depths_m(offsets, ticks, self.rotation_rad)
@@ -158,8 +165,7 @@ class KinematicMotions(ContactMotions):
     ) -> ContactMotion:
         rests_m = self._depth_m()
         if rests_m > self.task.fit.entry_depth_m:
-            # The peg gives way sideways until it stands free between the walls.
-            self.position_m[:2] -= self.true_offset_m
+            self._centre()
         # Against a stop the force rises with the way of the arm.
         yields_m = force_limit_n / self.task.cell.stiffness_n_m
         samples: list[ContactSample] = []
@@ -178,6 +184,17 @@ class KinematicMotions(ContactMotions):
     async def back_out(self, height_m: float) -> ContactMotion:
         self.position_m[2] = -height_m
         return self._ended(Ended.TRAVEL, 0.0)
+
+    @property
+    def _between_walls(self) -> bool:
+        """A tilted peg dips as deep without standing in anything."""
+        upright = not np.any(self.rotation_rad)
+        return bool(upright and self.position_m[2] > self.task.fit.entry_depth_m)
+
+    def _centre(self) -> None:
+        """The chamfers bring a peg that gives way to where it stands free between the walls."""
+        if np.hypot(*self.true_offset_m) > self.task.fit.clearance_m:
+            self.position_m[:2] -= self.true_offset_m
 
     def _turned(self, rotation_rad: Array, speed_rad_s: float = 0.0) -> None:
         """A large turn costs what the reference counts for it, a small one its own time."""

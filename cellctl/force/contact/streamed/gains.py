@@ -63,15 +63,10 @@ def virtual_mass(figures: LoopFigures, weights: Array) -> Array:
     return np.asarray(min(_MASS_KG, light_kg) * weights**2)
 
 
-def loop_load(figures: LoopFigures, weights: Array, damping_s: Array) -> float:
-    """Sum of ``k w_i² θ / S_i``: below π/2 for a stable loop."""
-    return float(np.sum(figures.loop_n_s_m * weights**2 / damping_s))
-
-
 def contact_load(
     figures: LoopFigures, lever_m: float, damping_s: Array, follows: NDArray[np.bool_]
 ) -> float:
-    """Greatest ``loop_load`` of any single contact at the rim; arrays of shape (6,).
+    """Greatest sum of ``k w_i² θ / S_i`` for a contact at the rim; arrays of shape (6,).
 
     The direction of a contact has length 1 and its moment at most that of the lever, so it loads
     the axes that follow no more than the weakest of each three.

@@ -17,6 +17,8 @@ _TOUCH_N = 8.0
 _FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
 _SIDE_N = 5.0
+STANDS_M = 0.05e-3
+"""A peg that is carried and goes no deeper than this stands."""
 _LONGER, _SETTLE_S = 1.5, 0.5
 """A motion that only a force drives may take so much longer than its way at full speed."""
 
@@ -38,6 +40,7 @@ class SearchParameters:
     sink_speed: Derived
     entry_time: Derived
     give_way_time: Derived
+    stand_time: Derived
 
     def to_record(self) -> list[dict[str, Any]]:
         """Formula and inputs of all of them."""
@@ -121,5 +124,12 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "s",
             "1.5 C / min(F / (4.5 k θ), v_t) + 0.5 s",
             {"C": catch_m, **pressed},
+        ),
+        Derived(
+            "stand time",
+            2 * STANDS_M / sink_m_s + _SETTLE_S,
+            "s",
+            "2 · 0.05 mm / v_s + 0.5 s",
+            {"v_s": sink_m_s},
         ),
     )

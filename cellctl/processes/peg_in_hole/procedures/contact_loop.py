@@ -11,10 +11,10 @@ from cellctl.processes.peg_in_hole.procedures.contact_loop_picture import loop_p
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.loop_record import loop_checks, loop_record
+from cellctl.processes.peg_in_hole.search.face import CLEAR_M
 from cellctl.processes.peg_in_hole.state import FaceTouched
 from cellctl.processes.peg_in_hole.stations import PegCell
 from cellctl.processes.peg_in_hole.steps.contact import recorded_loop
-from cellctl.processes.peg_in_hole.steps.touch_face import CLEAR_M
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 from cellctl.runtime.steps import StepSpec
@@ -53,8 +53,9 @@ async def _measure(touched: FaceTouched) -> CommissionedLoop:
     run.say("press on the face beside the hole")
     async with recorded_loop(run, touched.frames, keys.LOOP) as loop:
         motions = StreamedContact(loop)
-        # Where the face was touched: the peg stands beside the hole there, wherever that is.
-        place = np.array([plan.face.radius_m, 0.0, -_HIGH_M])
+        # Where the face was touched last, over which the tip stands: it is beside the hole there,
+        # wherever that is, and a way to another place would count against the stream's travel.
+        place = np.array([*loop.sample.task_position_tip_m[:2], -_HIGH_M])
         await motions.move_free(place, np.zeros(3), _FREE_M_S)
         place[2] += plan.face.datum_depth_m
         await motions.move_free(place, np.zeros(3), _FREE_M_S)

@@ -1,14 +1,17 @@
 """Search, insertion and verdict in the record: figures with limits, path and map as documents."""
 
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
 from cellctl.calibration.checks import LimitCheck
 from cellctl.errors.base import CellError
-from cellctl.processes.peg_in_hole.cycle import CycleLog, CycleResult
+from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, CycleResult
+from cellctl.processes.peg_in_hole.plan.phases import Phase, guard_force
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
+from cellctl.processes.peg_in_hole.search.first_contact import Contacts
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace
 from cellctl.records.entries import Figure
@@ -20,9 +23,15 @@ _MAP_CELLS = 61
 """A drawing needs no more along one side."""
 
 
+def choice_record(plan: CyclePlan) -> dict[str, Any]:
+    """Order, estimates and parameters of the search, and the guard's limits in each phase."""
+    guard = [guard_force(plan.task, phase).to_record() for phase in Phase]
+    return {**plan.choice.to_record(), "guard": guard}
+
+
 async def record_search(recorder: RunRecorder, log: CycleLog) -> None:
     """Path and map of the search, whatever has become of it."""
-    await recorder.document(keys.TRACE, trace_record(log.trace))
+    await recorder.document(keys.TRACE, trace_record(log.trace, log.contacts))
     await recorder.document(keys.MAP, map_record(log.hole_map))
     points = log.trace.points
     searched_s = points[-1].time_s - points[0].time_s if points else 0.0
@@ -58,9 +67,23 @@ def _figure(check: LimitCheck) -> Figure:
     return figure(keys.check(check.name), value, check.unit, limit=limit)
 
 
-def trace_record(trace: SearchTrace) -> dict[str, object]:
+def trace_record(trace: SearchTrace, contacts: Contacts) -> dict[str, object]:
     """Path of the search: place on the face and depth in mm, and what was felt there."""
     return {
+        "contacts": [
+            {
+                "time_s": contact.sample.time_s,
+                **dict(
+                    zip(
+                        ("x_mm", "y_mm", "depth_mm"),
+                        (contact.sample.task_position_tip_m * _M_TO_MM).tolist(),
+                        strict=True,
+                    )
+                ),
+                "class": contact.found.value,
+            }
+            for contact in contacts
+        ],
         "points": [
             {
                 "time_s": point.time_s,
@@ -70,7 +93,7 @@ def trace_record(trace: SearchTrace) -> dict[str, object]:
                 "felt": point.felt.value,
             }
             for point in trace.points
-        ]
+        ],
     }
 
 

@@ -38,6 +38,9 @@ def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
             if chosen.any():
                 face.plot(x[chosen], y[chosen], ".", color=colour, label=felt)
                 path.plot(time_s[chosen] - time_s[0], depth[chosen], ".", color=colour)
+        # Runs of earlier versions have classified nothing.
+        for contact in trace.get("contacts", []):
+            face.plot(contact["x_mm"], contact["y_mm"], "x", color=ACCENT, label=contact["class"])
         face.set_xlabel("x on the face, mm")
         face.set_ylabel("y, mm")
         face.legend(loc="upper right", fontsize=7)

@@ -58,14 +58,17 @@ def _search(record: RunRecord) -> Iterator[ReportBlock]:
         yield FactList(
             (
                 ("strategies, in their order", ", ".join(choice["order"])),
-                *((one["name"], _computed(one)) for one in choice["parameters"]),
+                *(
+                    (one["name"], _computed(one))
+                    for one in choice["parameters"] + choice.get("guard", [])
+                ),
             )
         )
     if trace and trace["points"]:
         yield Drawing(
             search_picture(trace, record.document(keys.MAP)),
-            "Left: where the peg touched the face, by what was felt; dark is where the hole is "
-            "still believed. Right: depth of each touch.",
+            "Left: where the peg touched the face, by what was felt; crosses are classified "
+            "contacts; dark is where the hole is still believed. Right: depth of each touch.",
         )
 
 

@@ -5,6 +5,7 @@ a peg is aligned: pressed hard enough, friction resists every light touch. Sourc
 the study of insertion by touch, which corrects the printed test of the patent.
 """
 
+from dataclasses import dataclass
 from enum import StrEnum
 from math import atan, radians, tan
 
@@ -16,7 +17,8 @@ from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 
 Array = NDArray[np.float64]
 
-_PRESS_N = 2.5
+LIGHT_N = 2.5
+"""Pressed with while touching to the sides: friction resists with less than a touch is met at."""
 _LEAST_THRESHOLD_N = 1.0
 _FACE_MARGIN_RAD = radians(8)
 _SIDE_RATIO = 1.5
@@ -36,6 +38,15 @@ class ContactClass(StrEnum):
     """Resists all round without being deep: friction."""
     WRONG_FEATURE = "wrong feature"
     """Walls at two opposite sides only: a slot, or a gap between parts."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ClassifiedContact:
+    """A contact, and what it is."""
+
+    sample: ContactSample
+    """Under the light press, before any touch to the side."""
+    found: ContactClass
 
 
 def light_threshold_n(cell: CellFigures, press_n: float) -> float:
@@ -67,23 +78,33 @@ def class_by_touches(
     return ContactClass.SIDE if felt is ContactClass.END_FACE else felt
 
 
-async def classify_contact(motions: ContactMotions, task: SearchTask) -> ContactClass:
-    """Press lightly and touch to all four sides; each touch begins where the first did."""
-    begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
-    threshold_n = light_threshold_n(task.cell, _PRESS_N)
+async def classify_contact(
+    motions: ContactMotions, task: SearchTask, speed_m_s: float, press_n: float = LIGHT_N
+) -> ClassifiedContact:
+    """Press lightly; where the direction of the force leaves it open, touch to all four sides.
+
+    Each touch, with ``speed_m_s``, begins where the first did.
+    """
+    begun = (await motions.press(press_n, _SETTLE_S)).last
+    depth_m = float(begun.task_position_tip_m[2])
+    felt = class_by_force(begun.force_n, task.cell)
+    if felt is ContactClass.END_FACE and depth_m <= task.fit.entry_depth_m:
+        return ClassifiedContact(begun, felt)
+    threshold_n = light_threshold_n(task.cell, press_n)
+    travel_m = threshold_n / task.cell.stiffness_n_m + 2 * task.fit.clearance_m + _TRAVEL_M
     resisted = []
     for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
-        travel_m = threshold_n / task.cell.stiffness_n_m + _TRAVEL_M
-        touched = await motions.touch(np.array([x, y, 0.0]), travel_m, threshold_n)
+        touched = await motions.touch(np.array([x, y, 0.0]), travel_m, threshold_n, speed_m_s)
         resisted.append(touched.ended is Ended.FORCE)
-        await _return(motions, begun, task)
-    depth_m = float(begun.task_position_tip_m[2])
+        await _return(motions, begun, task, press_n)
     first, second, third, fourth = resisted
-    felt = class_by_force(begun.force_n, task.cell)
-    return class_by_touches((first, second, third, fourth), depth_m, task.fit.entry_depth_m, felt)
+    found = class_by_touches((first, second, third, fourth), depth_m, task.fit.entry_depth_m, felt)
+    return ClassifiedContact(begun, found)
 
 
-async def _return(motions: ContactMotions, begun: ContactSample, task: SearchTask) -> None:
+async def _return(
+    motions: ContactMotions, begun: ContactSample, task: SearchTask, press_n: float
+) -> None:
     back = begun.task_position_tip_m[None, :2]
     speed_m_s = _TRAVEL_M / _SETTLE_S
-    await motions.slide(back, _PRESS_N, speed_m_s, lambda _sample: False, task.limits.search_n)
+    await motions.slide(back, press_n, speed_m_s, lambda _sample: False, task.limits.search_n)

@@ -22,6 +22,8 @@ _BEYOND_M = 2e-3
 _MOST_RESIDUAL_M = 0.1e-3
 _MOST_TILT_RAD = radians(3)
 _FREE_M_S = 20e-3
+CLEAR_M = 1e-3
+"""The tip is left so high over the face when it was touched."""
 _CLEAR_M = 3e-3
 """Over a plug that stands proud of the touched panel."""
 _UPRIGHT = np.zeros(3)
@@ -50,10 +52,6 @@ class TouchedFace:
     def tilt_rad(self) -> float:
         """Between the normal of the face and z of frame A."""
         return float(np.arctan(np.hypot(*self.slope)))
-
-    def depth_at_m(self, xy_m: Array) -> float:
-        """Depth of the plane at a point (2,)."""
-        return self.depth_m + float(self.slope @ xy_m)
 
 
 @dataclass(frozen=True, slots=True)

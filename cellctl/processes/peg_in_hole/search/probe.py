@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
-from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, SearchParameters
+from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, STANDS_M, SearchParameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.spirals import expanding_turns
@@ -20,9 +20,6 @@ UPRIGHT = np.zeros(3)
 _LIFT_M = 0.3e-3
 _FREE_M_S = 20e-3
 _ENTERED_S = 0.1
-_STANDS_S = 1.0
-_SINKS_M = 0.05e-3
-"""A peg that is carried and goes no deeper than this stands."""
 _DIP_M = 0.1e-3
 """Lower than this beneath the face an upright peg stands on no face."""
 _LOST_RATIO = 0.3
@@ -139,7 +136,8 @@ class TouchProbe:
 
     async def _sinks(self) -> tuple[ContactSample, bool]:
         """Press until the peg is in, or something carries it; the end, and whether it is in."""
-        entered, stands = held(self.task.fit.entry_depth_m), Stands(self.press_n)
+        entered = held(self.task.fit.entry_depth_m)
+        stands = Stands(self.press_n, self.parameters.stand_time.value)
         found = False
 
         def condition(sample: ContactSample) -> bool:
@@ -233,8 +231,8 @@ def held(depth_m: float) -> Stop:
 class Stands:
     """Holds once something has carried the peg for a while, and it has gone no deeper."""
 
-    def __init__(self, press_n: float) -> None:
-        self._least_n = _LOST_RATIO * press_n
+    def __init__(self, press_n: float, stand_s: float) -> None:
+        self._least_n, self._stand_s = _LOST_RATIO * press_n, stand_s
         self._begin: ContactSample | None = None
 
     def __call__(self, sample: ContactSample) -> bool:
@@ -242,9 +240,9 @@ class Stands:
         if abs(sample.force_n[2]) < self._least_n:
             self._begin = None
             return False
-        if self._begin is None or _depth_m(sample) - _depth_m(self._begin) > _SINKS_M:
+        if self._begin is None or _depth_m(sample) - _depth_m(self._begin) > STANDS_M:
             self._begin = sample
-        return sample.time_s - self._begin.time_s >= _STANDS_S
+        return sample.time_s - self._begin.time_s >= self._stand_s
 
 
 class LostSupport:

@@ -5,8 +5,10 @@ from contextlib import asynccontextmanager
 
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
 from cellctl.cell.contact_motion.frames import ContactFrames
-from cellctl.cell.contact_motion.opening import open_contact_loop
+from cellctl.cell.contact_motion.opening import open_contact_loop, watch_closer
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
+from cellctl.processes.peg_in_hole.plan.phases import Phase, guard_force
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import PegRun
@@ -38,3 +40,10 @@ async def recorded_loop(
     finally:
         run.board.update(force_peaks=tuple(log.peaks.tolist()))
         await run.recorder.artefact(keys.ticks(name), log.text().encode(), "text/csv")
+
+
+async def watch_phase(run: PegRun, motions: StreamedContact, phase: Phase) -> None:
+    """Have the guard watch the limits of a phase; the arm stands in its stream meanwhile."""
+    task = run.facts.plan.task
+    tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+    await watch_closer(motions, run.facts.cell.arm, tolerance)

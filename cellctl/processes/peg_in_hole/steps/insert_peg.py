@@ -1,7 +1,5 @@
 """Step 30: search, insertion and verdict within one stream."""
 
-import numpy as np
-
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.cycle import (
@@ -9,29 +7,24 @@ from cellctl.processes.peg_in_hole.cycle import (
     CycleResult,
     search_and_insert,
 )
+from cellctl.processes.peg_in_hole.plan.phases import Phase
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.cycle import (
+    choice_record,
     record_cycle,
     record_failure,
     record_search,
 )
 from cellctl.processes.peg_in_hole.run import PegRun
-from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.state import FaceTouched, PegInserted
 from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
-from cellctl.processes.peg_in_hole.steps.contact import contact
-from cellctl.processes.peg_in_hole.steps.touch_face import CLEAR_M
-
-_FREE_M_S = 10e-3
-_DOWN = np.array([0.0, 0.0, 1.0])
-_ON_FACE = TouchedFace(0.0, np.zeros(2), 0.0, 0.0)
-"""Frame A lies on the face."""
+from cellctl.processes.peg_in_hole.steps.contact import contact, watch_phase
 
 
 async def find_and_insert(touched: FaceTouched) -> PegInserted:
     """Raises the faults of search, insertion and verdict; after most the peg is drawn out."""
     run, plan = touched.run, touched.run.facts.plan
-    await run.recorder.document(keys.CHOICE, plan.choice.to_record())
+    await run.recorder.document(keys.CHOICE, choice_record(plan))
     log = CycleLog.of(plan)
     try:
         async with contact(run, touched.frames, keys.INSERTION) as motions:
@@ -47,11 +40,13 @@ async def find_and_insert(touched: FaceTouched) -> PegInserted:
 
 async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleResult:
     plan = run.facts.plan
-    # Upright on the face now, over its middle.
-    await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
-    await motions.touch(_DOWN, 2 * CLEAR_M, plan.task.limits.search_n)
+
+    async def begin(phase: Phase, words: str) -> None:
+        run.say(words)
+        await watch_phase(run, motions, phase)
+
     try:
-        result = await search_and_insert(motions, plan, _ON_FACE, log, run.say)
+        result = await search_and_insert(motions, plan, log, begin)
         # Before the arm leaves the part: what was found is on the disk then, also when the way out
         # fails.
         await motions.hold_while(record_cycle(run, result))

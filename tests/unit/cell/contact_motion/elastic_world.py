@@ -93,6 +93,8 @@ class ElasticWorld:
     late_ticks: dict[int, float] = field(default_factory=dict)
     """By number of the tick: periods that it takes instead of one."""
     trip_above_n: float = np.inf
+    watches: bool = False
+    """Whether the guard trips at the limits that it was armed with, too; it filters nothing."""
     tip: Array = field(default_factory=lambda: np.array([0.0, 0.0, -1e-3, 0.0, 0.0, 0.0]))
 
     def __post_init__(self) -> None:
@@ -144,8 +146,13 @@ class WorldGuard(TinyGuard):
         sigma = np.repeat([self._world.sigma_n, self._world.sigma_nm], 3)
         self._times.append(time_s)
         self._wrenches.append(felt + self._rng.normal(0.0, 1.0, 6) * sigma)
-        if np.abs(wrench[:3]).max() > self._world.trip_above_n and self.trip is None:
+        if np.abs(wrench[:3]).max() > self._greatest_n and self.trip is None:
             self.trip = GuardTrip(TripReason.FILTERED_LIMIT, time_s, "force above its limit")
+
+    @property
+    def _greatest_n(self) -> float:
+        watching = self._world.watches and self.armed
+        return min(self._world.trip_above_n, self.limits[-1].filtered[0] if watching else np.inf)
 
     def samples(self, since_s: float) -> GuardSamples:
         first = bisect_right(self._times, since_s)

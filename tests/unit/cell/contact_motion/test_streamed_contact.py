@@ -130,6 +130,36 @@ def test_it_comes_out_by_the_way_it_went_in() -> None:
     assert max(float(np.linalg.norm(s.force_n)) for s in out.samples[50:]) < 6.0
 
 
+def test_the_way_out_after_a_free_way_is_straight_up_and_not_back_over_it() -> None:
+    # Between two touches of a panel beside a plug that stands proud of it: back over the first
+    # place would lead through the plug.
+    world = ElasticWorld(lambda tip: wall(1e6)(tip - [0, 0, 2e-3, 0, 0, 0]))
+    motions = contact(world)
+
+    async def out_at_the_second_place() -> ContactMotion:
+        await motions.touch(DOWN, 5e-3, 5.0, 10e-3)
+        await motions.back_out(-1e-3)
+        await motions.move_free(np.array([4e-3, 0.0, 1.5e-3]), np.zeros(3), 10e-3)
+        await motions.touch(DOWN, 3e-3, 5.0)
+        return await motions.back_out(2e-3)
+
+    out = run(out_at_the_second_place())
+    assert {round(1e3 * s.task_position_tip_m[0], 2) for s in out.samples} == {4.0}
+
+
+def test_the_way_out_after_a_slide_is_not_back_over_the_face() -> None:
+    motions = contact(ElasticWorld(wall(1e5)), LoopFigures(1e5, 20e-3))
+
+    async def out_after_the_slide() -> ContactMotion:
+        await motions.touch(DOWN, 3e-3, 8.0)
+        way = np.array([[2e-3, 0.0]])
+        await motions.slide(way, 8.0, 5e-3, lambda _sample: False, 8.0)
+        return await motions.back_out(2e-3)
+
+    out = run(out_after_the_slide())
+    assert {round(1e3 * s.task_position_tip_m[0], 1) for s in out.samples} == {2.0}
+
+
 def test_a_turn_of_two_degrees_against_a_spring_converges_at_any_attitude() -> None:
     def felt(tip: np.ndarray) -> np.ndarray:
         """The hole is askew by two degrees and turns the peg into its axis."""

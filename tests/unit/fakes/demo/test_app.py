@@ -39,6 +39,28 @@ def test_an_unknown_process_names_those_that_there_are() -> None:
     )
 
 
+def test_a_shipped_cell_is_known_by_its_short_name(tmp_path: Path, taken: int) -> None:
+    demo = registry.find("peg-in-hole")
+    assert sorted(demo.cells) == ["connector", "pin", "pin-rpc"]
+    for cell in demo.cells.values():
+        assert cell.is_file()
+        assert cell.with_suffix(".scenario.toml").is_file()
+    asked = ("--process", "peg-in-hole", "--cell", "pin", "--out", str(tmp_path / "out"))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(type(demo), "cells", {"pin": _on_a_taken_port(tmp_path, taken)})
+        assert f"port {taken}" in refused(*asked)
+
+
+def _on_a_taken_port(folder: Path, taken: int) -> Path:
+    """Refused for its port: so it is this file that was read."""
+    text = (CONFIG / "insertion-pin.toml").read_text(encoding="utf-8")
+    scenario = (CONFIG / "insertion-pin.scenario.toml").read_text(encoding="utf-8")
+    (folder / "mine.scenario.toml").write_text(scenario.replace("7950", str(taken)))
+    cell = folder / "mine.toml"
+    cell.write_text(text)
+    return cell
+
+
 def test_a_real_cell_is_refused(tmp_path: Path) -> None:
     said = refused("--cell", str(CONFIG / "cell.toml"), "--out", str(tmp_path / "out"))
     assert "is the cell file of a real cell" in said

@@ -4,11 +4,12 @@ import json
 import numpy as np
 import pytest
 
-from cellctl.processes.peg_in_hole.cycle import CyclePlan, run_cycle
+from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, CycleResult, search_and_insert
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegSlipped, SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.choice import choose_search
+from cellctl.processes.peg_in_hole.plan.phases import Phase
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.search.face import FacePlan
+from cellctl.processes.peg_in_hole.search.face import FacePlan, touch_face
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 from tests.rigs.insertion.kinematic import KinematicMotions
@@ -30,6 +31,20 @@ def over(task: SearchTask, seed: int, *, absent: bool = False) -> KinematicMotio
     return KinematicMotions(task, Truth(drawn.hole_m, drawn.slope, absent), rng)
 
 
+async def run_cycle(
+    motions: KinematicMotions, plan: CyclePlan, phases: list[Phase] | None = None
+) -> CycleResult:
+    """From above the face; the map of heights has its face where frame A has it."""
+
+    async def begin(phase: Phase, words: str) -> None:
+        assert words
+        if phases is not None:
+            phases.append(phase)
+
+    await touch_face(motions, plan.task, plan.face)
+    return await search_and_insert(motions, plan, CycleLog.of(plan), begin)
+
+
 @pytest.mark.parametrize("task", [plug(), pin(chamfer_mm=0.5), SOFT_PIN])
 def test_a_peg_is_brought_to_its_seat_and_judged(task: SearchTask) -> None:
     # About one search in fifty of the tight pin comes to its time limit: none of these does.
@@ -45,6 +60,12 @@ def test_a_peg_is_brought_to_its_seat_and_judged(task: SearchTask) -> None:
         assert off_m <= task.fit.clearance_m + yields_m + noise_m
         assert motions.position_m[2] > task.fit.depth_m - 0.3e-3
         json.dumps(result.to_record())
+
+
+def test_the_phases_are_told_before_they_begin() -> None:
+    phases: list[Phase] = []
+    asyncio.run(run_cycle(over(SOFT_PIN, 1), planned(SOFT_PIN, 200.0), phases))
+    assert phases == [Phase.SEARCH, Phase.SEARCH, Phase.INSERTION, Phase.VERDICT]
 
 
 def test_without_a_known_grip_force_nothing_is_called_inserted() -> None:

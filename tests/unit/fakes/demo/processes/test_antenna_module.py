@@ -113,9 +113,12 @@ class Bench(Control):
     def __init__(self, world: AntennaBench) -> None:
         self.world = world
         self.asked: list[str] = []
+        self.last: dict[str, dict[str, Any]] = {}
+        """Arguments of the last request of each command."""
 
     def request(self, cmd: str, **arguments: Any) -> dict[str, Any]:
         self.asked.append(cmd)
+        self.last[cmd] = arguments
         return dict(self.world.commands()[cmd](**arguments) or {})
 
 
@@ -140,4 +143,4 @@ def test_nobody_stands_by_in_production(bench_scenario: BenchScenario) -> None:
     bench.request("place_board", where="table")
     AntennaModuleDemo().prepare(bench)
     assert bench.world.operator.board_at is None
-    assert not bench.world.operator.stands_by
+    assert bench.last["stand_by"] == {"on": False}

@@ -1,10 +1,16 @@
 """The demonstration holds an inserted part against the truth by every limit of its cell."""
 
 from copy import deepcopy
+from datetime import UTC, datetime
 from typing import Any
 
 import pytest
 
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.config.load import load_cell
+from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.stations import peg_recipes
 from fakes.demo import registry
 from fakes.demo.control import Control
 from fakes.demo.demo import Evidence
@@ -97,3 +103,21 @@ def test_every_job_begins_with_the_next_part() -> None:
 
     PegInHoleDemo().prepare(Hands())
     assert asked == ["load"]
+    (loop,) = PegInHoleDemo.procedures
+    loop.prepare(Hands())
+    assert (loop.number, asked) == (301, ["load", "load"])
+
+
+@pytest.mark.parametrize("name", ["connector", "pin"])
+def test_a_shipped_cell_comes_with_the_measured_loop(name: str) -> None:
+    cell = PegInHoleDemo.cells[name]
+    config = load_cell(cell)
+    (recipe,) = peg_recipes(config)
+    kind = CONTACT_LOOP.for_recipe(recipe.id)
+    store = CalibrationStore(cell.parent / str(config.calibration_dir), CALIBRATIONS)
+    figures = store.read_all([kind], datetime.now(UTC)).find(kind)
+    assert figures is not None
+    settings = config.processes["peg-in-hole"]
+    assert isinstance(settings, PegSettings)
+    # Better than the bounds, or nothing would be gained by measuring.
+    assert figures.loop_n_s_m < 0.7 * settings.stiffness_n_mm * settings.dead_time_ms

@@ -40,7 +40,7 @@ def test_the_shipped_recipe_is_good() -> None:
     plan = cycle_plan(RECIPE, SETTINGS)
     assert plan.choice.order[0] is SearchName.SPIRAL, "its chamfers are wide"
     assert plan.task.fit.depth_m == pytest.approx(12e-3)
-    assert plan.task.cell.stiffness_n_m == pytest.approx(1e5)
+    assert plan.task.cell.stiffness_n_m == pytest.approx(1.2e5)
     # The loop is refused before anything moves when it cannot be held.
     cell = PegCell(None, None, SETTINGS)  # type: ignore[arg-type]  # figures alone
     assert PegFacts.of(cell, RECIPE, plan).contact.limit_n == 50.0
@@ -87,7 +87,7 @@ def test_frame_a_lies_on_the_touched_face_and_the_peg_stands_upright_on_it() -> 
     np.testing.assert_allclose(frames.base_T_flange(tip).as_matrix(), above.as_matrix(), atol=1e-9)
     # Points of the touched plane have no depth in the new frame.
     for x, y in ((5e-3, 0.0), (0.0, 5e-3), (-3e-3, 4e-3)):
-        point = np.array([x, y, face.depth_at_m(np.array([x, y]))])
+        point = np.array([x, y, face.depth_m + face.slope @ [x, y]])
         in_base = frames.base_T_task.apply(point)
         assert moved.base_T_task.inv().apply(in_base)[2] == pytest.approx(0.0, abs=2e-6)
     upright = moved.base_T_flange(np.zeros(6)) * moved.flange_T_tip

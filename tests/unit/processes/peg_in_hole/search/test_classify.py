@@ -55,9 +55,9 @@ def test_friction_alone_is_below_the_threshold() -> None:
 def test_a_peg_on_the_face_is_on_the_face() -> None:
     far = Truth(np.array([50e-3, 0.0]), np.zeros(2))
     motions = KinematicMotions(pin(), far, np.random.default_rng(1))
-    assert asyncio.run(classify_contact(motions, pin())) is ContactClass.END_FACE
+    assert asyncio.run(classify_contact(motions, pin(), 1e-3)).found is ContactClass.END_FACE
 
 
 def test_a_peg_between_its_walls_is_aligned() -> None:
     motions = StandingPeg(pin(), PegState.INSERTED, np.random.default_rng(1))
-    assert asyncio.run(classify_contact(motions, pin())) is ContactClass.ALIGNED
+    assert asyncio.run(classify_contact(motions, pin(), 1e-3)).found is ContactClass.ALIGNED

@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.config.load import load_cell
 from cellctl.errors.base import CellError
+from cellctl.errors.force import ForceLimitExceeded
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegWedged
@@ -29,6 +31,7 @@ from cellctl.records.entries import RunRecord
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
+from tests.unit.cell.bench import CELL_FILE
 from tests.unit.cell.contact_motion.elastic_world import (
     FRAMES,
     ElasticWorld,
@@ -60,7 +63,7 @@ class Bench:
         recorder = RunRecorder(self.store, await self.store.do(start))
         facts = cast(
             PegFacts,
-            SimpleNamespace(plan=planned(self.task)),
+            SimpleNamespace(plan=planned(self.task), cell=SimpleNamespace(arm=self._arm())),
         )
         self.patch.setattr(insert_peg, "contact", self._contact)
         touched = FaceTouched(PegRun(facts, self.board, recorder), FRAMES)
@@ -70,6 +73,10 @@ class Bench:
         except CellError as fault:
             self.fault = fault
         return await self.store.do(RunStore.run, recorder.run)
+
+    def _arm(self) -> SimpleNamespace:
+        sensor = load_cell(CELL_FILE).force_sensors["force"]
+        return SimpleNamespace(guard=self.world.guard, sensor=sensor)
 
     @asynccontextmanager
     async def _contact(self, *_arguments: Any) -> AsyncIterator[StreamedContact]:
@@ -130,3 +137,28 @@ async def test_a_peg_in_its_hole_is_recorded_with_its_search(
     assert record.document(keys.CYCLE)["found_by"] == "spiral"
     assert record.document(keys.TRACE)["points"][-1]["felt"] == "entry"
     assert keys.SEARCH_TIME in record.newest_figures
+
+
+async def test_the_guard_watches_closer_while_the_peg_searches_than_while_it_is_fed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    hole = Hole(STIFFNESS_N_M, clearance_m=0.05e-3, chamfer_m=0.5e-3, depth_m=12e-3)
+    bench = Bench(tmp_path, hole, monkeypatch)
+    record = await bench.run()
+    watched = [limits.filtered[0] for limits in bench.world.guard.limits]
+    assert watched == [20.0, 20.0, 37.5, 37.5]
+    written = {one["name"]: one["value"] for one in record.document(keys.CHOICE)["guard"]}
+    assert written["guard, search"] == 20.0
+    assert written["guard, insert"] == 37.5
+
+
+async def test_a_search_that_presses_too_hard_is_stopped_at_the_limit_of_the_search(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Ten times as stiff as the bounds of the cell say: a touch grows beyond what it may.
+    bench = Bench(tmp_path, wall(10 * STIFFNESS_N_M), monkeypatch)
+    bench.world.watches = True
+    await bench.run()
+    assert isinstance(bench.fault, ForceLimitExceeded)
+    peak_n = float(np.abs(np.array(bench.world.forces)[:, :3]).max())
+    assert 20.0 < peak_n < bench.task.limits.fault_n
