@@ -7,13 +7,13 @@ from typing import Any, Self
 import numpy as np
 
 from cellctl.cell.contact_motion.motions import ContactMotions
+from cellctl.processes.peg_in_hole.first_contact.reactions import Contacts, meet_face, require_walls
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
-from cellctl.processes.peg_in_hole.plan.phases import Phase
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, FacePlan
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
-from cellctl.processes.peg_in_hole.search.first_contact import Contacts, meet_face, require_walls
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
@@ -76,7 +76,7 @@ class CycleLog:
         return cls(HoleMap(plan.task.cell.uncertainty_m, plan.task.fit.catch_radius_m))
 
 
-BeginPhase = Callable[[Phase, str], Awaitable[None]]
+BeginPhase = Callable[[CyclePhase, str], Awaitable[None]]
 """Called before the first motion of a phase, with words for the operator."""
 
 
@@ -90,7 +90,7 @@ async def search_and_insert(
     """
     task = plan.task
     order = ", then ".join(name.value for name in plan.choice.order)
-    await begin(Phase.SEARCH, "touch the face over its middle")
+    await begin(CyclePhase.SEARCH, "touch the face over its middle")
     await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
     await motions.touch(_DOWN, 2 * CLEAR_M, task.limits.search_n)
     # For its time stamp: the deadline of the search counts on the clock of the samples.
@@ -104,13 +104,15 @@ async def search_and_insert(
         trace=log.trace,
     )
     await meet_face(motions, task, plan.choice.parameters, log.contacts)
-    await begin(Phase.SEARCH, f"search: {order}; first contact: {log.contacts[-1].found.value}")
+    await begin(
+        CyclePhase.SEARCH, f"search: {order}; first contact: {log.contacts[-1].found.value}"
+    )
     found_by = log.found_by = await find_hole(probe, plan.choice.order)
     await require_walls(motions, task, plan.choice.parameters, log.contacts)
     felt = log.contacts[-1].found.value
-    await begin(Phase.INSERTION, f"insert: the hole was found by {found_by.value}, {felt}")
+    await begin(CyclePhase.INSERTION, f"insert: the hole was found by {found_by.value}, {felt}")
     fed = await insert(motions, task)
-    await begin(Phase.VERDICT, "verify: pushed to four sides")
+    await begin(CyclePhase.VERDICT, "verify: pushed to four sides")
     capture = await measure_capture(motions, task)
     keys, pull_n = task.fit.keys, plan.seat.pull_n
     keyed = None if keys is None else await directions_that_resist_a_turn(motions, keys)

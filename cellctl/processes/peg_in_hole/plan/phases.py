@@ -14,7 +14,7 @@ _NOISE = 1.25
 """Above what a motion may reach: noise of the sensor, inertia of the tool, friction."""
 
 
-class Phase(StrEnum):
+class CyclePhase(StrEnum):
     """What a cycle is doing."""
 
     FACE = "touch face"
@@ -23,7 +23,7 @@ class Phase(StrEnum):
     VERDICT = "verify"
 
 
-def guard_force(task: SearchTask, phase: Phase) -> Derived:
+def guard_force(task: SearchTask, phase: CyclePhase) -> Derived:
     """At which force (N) about the tip the guard stops the arm in a phase."""
     limits = task.limits
     value, formula = _FORCES[phase](limits)
@@ -51,9 +51,9 @@ def _feed(limits: ForceLimits) -> tuple[float, str]:
 
 
 _FORCES = {
-    Phase.FACE: _first_touch,
-    Phase.SEARCH: _touch,
-    Phase.INSERTION: _feed,
+    CyclePhase.FACE: _first_touch,
+    CyclePhase.SEARCH: _touch,
+    CyclePhase.INSERTION: _feed,
     # The pushes are light, but they begin at a seat that the feed has loaded.
-    Phase.VERDICT: _feed,
+    CyclePhase.VERDICT: _feed,
 }

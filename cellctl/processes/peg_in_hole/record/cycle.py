@@ -8,10 +8,10 @@ import numpy as np
 from cellctl.calibration.checks import LimitCheck
 from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, CycleResult
-from cellctl.processes.peg_in_hole.plan.phases import Phase, guard_force
+from cellctl.processes.peg_in_hole.first_contact.reactions import Contacts
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
-from cellctl.processes.peg_in_hole.search.first_contact import Contacts
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace
 from cellctl.records.entries import Figure
@@ -25,7 +25,7 @@ _MAP_CELLS = 61
 
 def choice_record(plan: CyclePlan) -> dict[str, Any]:
     """Order, estimates and parameters of the search, and the guard's limits in each phase."""
-    guard = [guard_force(plan.task, phase).to_record() for phase in Phase]
+    guard = [guard_force(plan.task, phase).to_record() for phase in CyclePhase]
     return {**plan.choice.to_record(), "guard": guard}
 
 

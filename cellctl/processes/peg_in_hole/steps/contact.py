@@ -8,7 +8,7 @@ from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.cell.contact_motion.opening import open_contact_loop, watch_closer
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
-from cellctl.processes.peg_in_hole.plan.phases import Phase, guard_force
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import PegRun
@@ -42,7 +42,7 @@ async def recorded_loop(
         await run.recorder.artefact(keys.ticks(name), log.text().encode(), "text/csv")
 
 
-async def watch_phase(run: PegRun, motions: StreamedContact, phase: Phase) -> None:
+async def watch_phase(run: PegRun, motions: StreamedContact, phase: CyclePhase) -> None:
     """Have the guard watch the limits of a phase; the arm stands in its stream meanwhile."""
     task = run.facts.plan.task
     tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)

@@ -7,7 +7,7 @@ from cellctl.processes.peg_in_hole.cycle import (
     CycleResult,
     search_and_insert,
 )
-from cellctl.processes.peg_in_hole.plan.phases import Phase
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.cycle import (
     choice_record,
@@ -41,7 +41,7 @@ async def find_and_insert(touched: FaceTouched) -> PegInserted:
 async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleResult:
     plan = run.facts.plan
 
-    async def begin(phase: Phase, words: str) -> None:
+    async def begin(phase: CyclePhase, words: str) -> None:
         run.say(words)
         await watch_phase(run, motions, phase)
 

@@ -3,7 +3,7 @@
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.panel_reference import PanelReference, require_panel_at_reference
-from cellctl.processes.peg_in_hole.plan.phases import Phase
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, touch_face
@@ -18,7 +18,7 @@ async def find_face(above: AboveHole) -> FaceTouched:
     stream."""
     run, plan = above.run, above.run.facts.plan
     async with contact(run, above.frames, keys.FACE) as motions:
-        await watch_phase(run, motions, Phase.FACE)
+        await watch_phase(run, motions, CyclePhase.FACE)
         face = await touch_face(motions, plan.task, plan.face)
         await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
     await run.recorder.figure(keys.FACE_HEIGHT, -face.depth_m / MM, "mm")

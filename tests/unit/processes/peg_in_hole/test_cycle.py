@@ -7,7 +7,7 @@ import pytest
 from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, CycleResult, search_and_insert
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegSlipped, SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.choice import choose_search
-from cellctl.processes.peg_in_hole.plan.phases import Phase
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.face import FacePlan, touch_face
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
@@ -32,11 +32,11 @@ def over(task: SearchTask, seed: int, *, absent: bool = False) -> KinematicMotio
 
 
 async def run_cycle(
-    motions: KinematicMotions, plan: CyclePlan, phases: list[Phase] | None = None
+    motions: KinematicMotions, plan: CyclePlan, phases: list[CyclePhase] | None = None
 ) -> CycleResult:
     """From above the face; the map of heights has its face where frame A has it."""
 
-    async def begin(phase: Phase, words: str) -> None:
+    async def begin(phase: CyclePhase, words: str) -> None:
         assert words
         if phases is not None:
             phases.append(phase)
@@ -63,9 +63,14 @@ def test_a_peg_is_brought_to_its_seat_and_judged(task: SearchTask) -> None:
 
 
 def test_the_phases_are_told_before_they_begin() -> None:
-    phases: list[Phase] = []
+    phases: list[CyclePhase] = []
     asyncio.run(run_cycle(over(SOFT_PIN, 1), planned(SOFT_PIN, 200.0), phases))
-    assert phases == [Phase.SEARCH, Phase.SEARCH, Phase.INSERTION, Phase.VERDICT]
+    assert phases == [
+        CyclePhase.SEARCH,
+        CyclePhase.SEARCH,
+        CyclePhase.INSERTION,
+        CyclePhase.VERDICT,
+    ]
 
 
 def test_without_a_known_grip_force_nothing_is_called_inserted() -> None:

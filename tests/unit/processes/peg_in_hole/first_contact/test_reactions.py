@@ -7,9 +7,9 @@ import pytest
 
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.faults import WrongFeature
+from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass
+from cellctl.processes.peg_in_hole.first_contact.reactions import Contacts, meet_face, require_walls
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
-from cellctl.processes.peg_in_hole.search.classify import ContactClass
-from cellctl.processes.peg_in_hole.search.first_contact import Contacts, meet_face, require_walls
 from tests.unit.cell.contact_motion.elastic_world import (
     Array,
     ElasticWorld,

@@ -5,14 +5,14 @@ Source: section 2 (S3) of the study of insertion by touch.
 
 from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.processes.peg_in_hole.faults import WrongFeature
-from cellctl.processes.peg_in_hole.plan.parameters import SearchParameters
-from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.search.classify import (
+from cellctl.processes.peg_in_hole.first_contact.classify import (
     LIGHT_N,
     ClassifiedContact,
     ContactClass,
     classify_contact,
 )
+from cellctl.processes.peg_in_hole.plan.parameters import SearchParameters
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.probe import LostSupport
 
 _TRIES = 3

@@ -3,7 +3,7 @@ import asyncio
 import numpy as np
 import pytest
 
-from cellctl.processes.peg_in_hole.search.classify import (
+from cellctl.processes.peg_in_hole.first_contact.classify import (
     ContactClass,
     class_by_force,
     class_by_touches,
