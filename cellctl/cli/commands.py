@@ -85,6 +85,12 @@ def _check(app: typer.Typer) -> None:
     app.command("check", rich_help_panel=_CELL)(check)
 
 
+def _doctor(app: typer.Typer) -> None:
+    from cellctl.cli.commissioning.doctor import doctor
+
+    app.command("doctor", rich_help_panel=_CELL)(doctor)
+
+
 def _run(app: typer.Typer) -> None:
     from cellctl.cli.run import run
 
@@ -188,6 +194,7 @@ def _plan(app: typer.Typer) -> None:
 
 _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "check": _check,
+    "doctor": _doctor,
     "run": _run,
     "demo": _demo,
     "robot": _robot,
