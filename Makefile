@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean
+	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean install rollback
 
 venv: $(VENV)/.installed
 
@@ -122,6 +122,11 @@ soak-cameras: venv
 
 bench-antenna-vision: venv
 	$(BIN)/python -m benchmarks.antenna.vision
+
+# As a service of this PC, by root; see systemd/install.sh for PREFIX, PYTHON and INTO.
+install rollback: export PYTHON := $(PYTHON)
+install rollback:
+	@systemd/install.sh $@
 
 format: venv
 	$(BIN)/ruff check --fix .

@@ -16,7 +16,7 @@ SHIPPED_UNIT = ROOT / "systemd" / "cellctl.service"
 NOW_S = 1_800_000_000.0
 PYTHON = "/usr/bin/python3.11"
 FILES = {
-    "/opt/cellctl/.venv/bin/cellctl": "#!/opt/cellctl/.venv/bin/python\n",
+    "/opt/cellctl/current/.venv/bin/cellctl": "#!/opt/cellctl/.venv/bin/python\n",
     PYTHON: "the interpreter",
     "/proc/sys/kernel/sched_rt_runtime_us": "950000\n",
     "/sys/devices/system/cpu/online": "0-3\n",
@@ -53,8 +53,8 @@ class HealthyPc:
         self.write(UNIT, SHIPPED_UNIT.read_text())
         self.write(LIMITS_DROP_IN, drop_in(cell.name, service_limits(cell)))
         self.write("/etc/systemd/system/multi-user.target.wants/cellctl.service", "")
-        self.link("/opt/cellctl/.venv/bin/python", PYTHON)
-        for path in ("/opt/cellctl/.venv/bin/cellctl", PYTHON):
+        self.link("/opt/cellctl/current/.venv/bin/python", PYTHON)
+        for path in ("/opt/cellctl/current/.venv/bin/cellctl", PYTHON):
             self.at(path).chmod(0o755)
         self.at("/var/lib").mkdir(parents=True)
         # Folders of a test are closed to others, and its umask may be anything.

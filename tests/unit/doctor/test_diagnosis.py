@@ -15,6 +15,11 @@ from tests.unit.doctor.healthy_pc import CELL_FILE, PYTHON, HealthyPc
 
 Spoil = Callable[[HealthyPc], object]
 
+COMMAND = (
+    "ExecStart=/opt/cellctl/current/.venv/bin/cellctl run /etc/cellctl/cell.toml "
+    "--data-dir /var/lib/cellctl"
+)
+
 
 def findings(healthy: HealthyPc, cell_file: Path = CELL_FILE) -> list[Finding]:
     subjects = diagnose(cell_file, healthy.pc())
@@ -35,7 +40,7 @@ def test_a_healthy_pc(healthy: HealthyPc) -> None:
 
 def interpreter_below_home(healthy: HealthyPc) -> None:
     healthy.write("/home/eve/.pyenv/bin/python3.11", "another interpreter")
-    healthy.link("/opt/cellctl/.venv/bin/python", "/home/eve/.pyenv/bin/python3.11")
+    healthy.link("/opt/cellctl/current/.venv/bin/python", "/home/eve/.pyenv/bin/python3.11")
 
 
 def closed_folder(healthy: HealthyPc) -> None:
@@ -66,7 +71,7 @@ CASES: dict[str, tuple[Spoil, str, Health, str]] = {
         "systemctl enable",
     ),
     "no program": (
-        lambda pc: pc.at("/opt/cellctl/.venv/bin/cellctl").unlink(),
+        lambda pc: pc.at("/opt/cellctl/current/.venv/bin/cellctl").unlink(),
         "program",
         Health.BAD,
         "make install",
@@ -166,11 +171,7 @@ CASES: dict[str, tuple[Spoil, str, Health, str]] = {
         "larger disk",
     ),
     "records where the unit lets write nothing": (
-        lambda pc: pc.in_unit(
-            "ExecStart=/opt/cellctl/.venv/bin/cellctl run /etc/cellctl/cell.toml "
-            "--data-dir /var/lib/cellctl",
-            "ExecStart=/opt/cellctl/.venv/bin/cellctl run /etc/cellctl/cell.toml --data-dir /data",
-        ),
+        lambda pc: pc.in_unit(COMMAND, COMMAND.replace("/var/lib/cellctl", "/data")),
         "records",
         Health.BAD,
         "ReadWritePaths=/data",
