@@ -125,8 +125,11 @@ bench-antenna-vision: venv
 
 # As a service of this PC, by root; see systemd/install.sh for PREFIX, PYTHON and INTO.
 install rollback: export PYTHON := $(PYTHON)
-install rollback:
-	@systemd/install.sh $@
+install:
+	@systemd/install.sh install
+
+rollback:
+	@systemd/install.sh rollback
 
 format: venv
 	$(BIN)/ruff check --fix .
