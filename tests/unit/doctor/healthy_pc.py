@@ -16,7 +16,7 @@ SHIPPED_UNIT = ROOT / "systemd" / "cellctl.service"
 NOW_S = 1_800_000_000.0
 PYTHON = "/usr/bin/python3.11"
 FILES = {
-    "/opt/cellctl/current/.venv/bin/cellctl": "#!/opt/cellctl/.venv/bin/python\n",
+    "/opt/cellctl/current/.venv/bin/cellctl": "#!/opt/cellctl/current/.venv/bin/python\n",
     PYTHON: "the interpreter",
     "/proc/sys/kernel/sched_rt_runtime_us": "950000\n",
     "/sys/devices/system/cpu/online": "0-3\n",
