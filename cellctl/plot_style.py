@@ -1,5 +1,8 @@
 """One look for all figures: ink, one accent, limits in red, targets in green.
 
+Reports are printed in grey too: each colour has a line of its own (``DASHES``), and points that
+mean something else have another marker.
+
 Reports take SVG, calibrations PNG; both are drawn inside ``style()``, which also serves as a
 decorator of the function that draws.
 """
@@ -7,7 +10,7 @@ decorator of the function that draws.
 import io
 import itertools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -25,6 +28,19 @@ INK, MUTED, GRID = "#1c2733", "#6b7785", "#dfe4ea"
 ACCENT, SECOND, THIRD = "#1f5fa8", "#c77d0a", "#7a8795"
 GOOD, GOOD_FILL, LIMIT = "#2b8a57", "#e3f3ea", "#c0342b"
 
+Dashes = str | tuple[float, tuple[float, ...]]
+DASHES: Mapping[str, Dashes] = {
+    ACCENT: "-",
+    SECOND: (0.0, (2.5, 1.0)),
+    GOOD: (0.0, (5.0, 3.0)),
+    THIRD: (0.0, (1.0, 1.5)),
+    LIMIT: (0.0, (9.0, 2.0, 1.5, 2.0)),
+    INK: (0.0, (5.0, 1.5, 1.0, 1.5, 1.0, 1.5)),
+}
+"""Line style by colour."""
+WITHIN, BEYOND = "o", "X"
+"""Markers of points that are within their limit, and of those that are not."""
+
 _SETTINGS: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
@@ -35,7 +51,7 @@ _SETTINGS: dict[Any, Any] = {
     "axes.labelcolor": MUTED,
     "axes.edgecolor": GRID,
     "axes.grid": True,
-    "axes.prop_cycle": cycler(color=[ACCENT, SECOND, GOOD, THIRD, LIMIT, INK]),
+    "axes.prop_cycle": cycler(color=list(DASHES)) + cycler(linestyle=list(DASHES.values())),
     "axes.axisbelow": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -72,9 +88,14 @@ def to_svg(figure: Figure) -> str:
     return size.sub('width="100%"', svg[svg.index("<svg") :], count=1)
 
 
-def label_line(axes: Axes, y: float, text: str, colour: str, *, dashed: bool = False) -> None:
+def line(colour: str) -> dict[str, Any]:
+    """Colour and line style of a line, for matplotlib."""
+    return {"color": colour, "linestyle": DASHES[colour]}
+
+
+def label_line(axes: Axes, y: float, text: str, colour: str) -> None:
     """A horizontal line with its meaning written on it, at its left end."""
-    axes.axhline(y, color=colour, linewidth=1.0, linestyle=(0, (5, 3)) if dashed else "-", zorder=1)
+    axes.axhline(y, **line(colour), linewidth=1.0, zorder=1)
     axes.annotate(
         text,
         (0.0, y),

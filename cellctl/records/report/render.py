@@ -7,7 +7,15 @@ from markupsafe import Markup
 
 from cellctl.records.report import text
 from cellctl.records.report.acceptance.identification import SIGNATURES
-from cellctl.records.report.sections import Drawing, FactList, Heading, Note, ReportBlock
+from cellctl.records.report.sections import (
+    Drawing,
+    FactList,
+    Heading,
+    Note,
+    ReportBlock,
+    RowMark,
+    TableRow,
+)
 from cellctl.records.report.view import ReportView
 
 
@@ -26,6 +34,7 @@ def render(view: ReportView) -> str:
         "short": text.short,
         "zip": zip,
         "block_kind": _block_kind,
+        "passed": _passed,
         "svg": Markup,  # drawings are made from numbers by plot_style, never from outside text
     }
     css = files("cellctl.records.report").joinpath("report.css").read_text(encoding="utf-8")
@@ -37,6 +46,14 @@ def render(view: ReportView) -> str:
         signatures=SIGNATURES,
         duration=text.duration(view.record.head.started, view.record.head.ended),
     )
+
+
+def _passed(row: TableRow) -> bool | None:
+    """What the mark of a row says; None where it says nothing, or a cell has words for it."""
+    # Colour alone is lost in grey print.
+    if any(cell.text.startswith(("✓", "✗")) for cell in row.cells):
+        return None
+    return {RowMark.GOOD: True, RowMark.BAD: False}.get(row.mark)
 
 
 def _block_kind(block: ReportBlock) -> str:

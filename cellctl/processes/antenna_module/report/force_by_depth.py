@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from cellctl.geometry.pose import MM
-from cellctl.plot_style import ACCENT, LIMIT, MUTED, SECOND, envelope, style, to_svg
+from cellctl.plot_style import ACCENT, LIMIT, MUTED, SECOND, envelope, line, style, to_svg
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 
 Bounds = Sequence[tuple[float, float, float]]
@@ -20,13 +20,15 @@ def force_by_depth(curve: InsertionCurve, bounds: Bounds, seat_mm: float | None)
         axes = figure.subplots()
         depth_mm = curve.depth_m / MM
         side_n = np.hypot(curve.force_n[:, 0], curve.force_n[:, 1])
-        axes.plot(*envelope(depth_mm, side_n), color=SECOND, linewidth=0.8, label="√(Fx² + Fy²)")
+        axes.plot(*envelope(depth_mm, side_n), **line(SECOND), linewidth=0.8, label="√(Fx² + Fy²)")
         axes.plot(*envelope(depth_mm, curve.force_n[:, 2]), color=ACCENT, linewidth=0.9, label="Fz")
-        for begin_mm, end_mm, force_n in bounds:
-            axes.plot([begin_mm, end_mm], [force_n, force_n], color=LIMIT, linewidth=1.0)
+        for number, (begin_mm, end_mm, force_n) in enumerate(bounds):
+            label = "" if number else "allowed Fz"
+            across = [begin_mm, end_mm], [force_n, force_n]
+            axes.plot(*across, **line(LIMIT), linewidth=1.0, label=label)
         if seat_mm is not None:
-            axes.axvline(seat_mm, color=MUTED, linewidth=0.8, linestyle=":")
+            axes.axvline(seat_mm, color=MUTED, linewidth=0.8, linestyle=":", label="seat")
         axes.set_xlabel("depth from the first touch, mm")
         axes.set_ylabel("force, N")
-        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2)
+        axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=4, borderaxespad=0.2)
         return to_svg(figure)

@@ -14,6 +14,7 @@ from cellctl.plot_style import (
     SECOND,
     envelope,
     label_line,
+    line,
     style,
     to_svg,
 )
@@ -56,7 +57,7 @@ def force_by_travel(curve: ForceCurve, target_n: float | None, limit_n: float | 
 def _draw(axes: Axes, x: Array, curve: ForceCurve) -> None:
     lateral = np.hypot(curve.wrench[:, 0], curve.wrench[:, 1])
     lateral_label = "√(Fx² + Fy²)"
-    axes.plot(*envelope(x, lateral), color=SECOND, linewidth=0.8, label=lateral_label)
+    axes.plot(*envelope(x, lateral), **line(SECOND), linewidth=0.8, label=lateral_label)
     axes.plot(*envelope(x, curve.wrench[:, 2]), color=ACCENT, linewidth=0.9, label="Fz")
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2)
 
@@ -87,6 +88,6 @@ def _bounds(
     axes: Axes, target_n: float | None, limit_n: float | None, *, written: bool = True
 ) -> None:
     if target_n is not None:
-        label_line(axes, target_n, f"target {target_n:g} N" if written else "", GOOD, dashed=True)
+        label_line(axes, target_n, f"target {target_n:g} N" if written else "", GOOD)
     if limit_n is not None:
         label_line(axes, limit_n, f"limit {limit_n:g} N" if written else "", LIMIT)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.figure import Figure
 
-from cellctl.plot_style import ACCENT, GOOD_FILL, INK, LIMIT, style, to_svg
+from cellctl.plot_style import ACCENT, BEYOND, GOOD_FILL, INK, LIMIT, WITHIN, line, style, to_svg
 from cellctl.records.entries import Gauge
 
 HOLE_MM = 6.0
@@ -21,12 +21,13 @@ def plug_gauges(gauges: Sequence[Gauge]) -> str:
         figure = Figure(figsize=(7.2, height), layout="constrained")
         axes = figure.subplots()
         axes.axvspan(LEAST_MM, HOLE_MM, color=GOOD_FILL, linewidth=0)
-        axes.axvline(LEAST_MM, color=LIMIT, linewidth=1.0)
+        axes.axvline(LEAST_MM, **line(LIMIT), linewidth=1.0)
         for row, gauge in enumerate(gauges):
             passed = gauge.diameter_mm >= LEAST_MM
             colour = ACCENT if passed else LIMIT
-            axes.plot([LEAST_MM, gauge.diameter_mm], [row, row], color=colour, linewidth=3)
-            axes.plot(gauge.diameter_mm, row, "o", markersize=7, color=colour)
+            marker = WITHIN if passed else BEYOND
+            axes.plot([LEAST_MM, gauge.diameter_mm], [row, row], **line(colour), linewidth=3)
+            axes.plot(gauge.diameter_mm, row, marker, markersize=7, color=colour)
             axes.annotate(
                 f"{gauge.diameter_mm:.2f} mm",
                 (gauge.diameter_mm, row),

@@ -6,7 +6,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from cellctl.plot_style import ACCENT, GOOD, GOOD_FILL, LIMIT, MUTED, style, to_svg
+from cellctl.plot_style import (
+    ACCENT,
+    BEYOND,
+    GOOD,
+    GOOD_FILL,
+    LIMIT,
+    MUTED,
+    WITHIN,
+    line,
+    style,
+    to_svg,
+)
 from cellctl.records.entries import LoopPass
 
 
@@ -33,7 +44,7 @@ def _panel(axes: Axes, passes: Sequence[LoopPass], index: int) -> None:
     axes.set_title(f"{last.name}, {last.unit}")
     axes.axhspan(-threshold, threshold, color=GOOD_FILL, linewidth=0, zorder=0)
     for edge in (-threshold, threshold):
-        axes.axhline(edge, color=GOOD, linewidth=0.8, linestyle=(0, (5, 3)))
+        axes.axhline(edge, **line(GOOD), linewidth=0.8)
     axes.axhline(0, color=MUTED, linewidth=0.5)
     axes.set_yscale("symlog", linthresh=threshold, linscale=1.0)
     extent = max([threshold * 2.0, *(abs(error or 0.0) * 1.8 for _, error, _ in points)])
@@ -47,8 +58,9 @@ def _panel(axes: Axes, passes: Sequence[LoopPass], index: int) -> None:
     bars = [2 * point[2] for point in points]
     axes.errorbar(numbers, errors, yerr=bars, color=ACCENT, linewidth=1.2, capsize=2, elinewidth=1)
     for number, error in zip(numbers, errors, strict=True):
-        colour = ACCENT if abs(error) <= threshold else LIMIT
-        axes.plot(number, error, "o", markersize=4, color=colour, zorder=3)
+        within = abs(error) <= threshold
+        colour, marker = (ACCENT, WITHIN) if within else (LIMIT, BEYOND)
+        axes.plot(number, error, marker, markersize=4, color=colour, zorder=3)
     axes.set_xlim(0.6, max([*numbers, 2]) + 0.4)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     if points:

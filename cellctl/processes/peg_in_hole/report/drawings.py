@@ -7,10 +7,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from cellctl.geometry.pose import Array
-from cellctl.plot_style import ACCENT, GOOD, LIMIT, MUTED, SECOND, envelope, style, to_svg
+from cellctl.plot_style import ACCENT, GOOD, LIMIT, MUTED, SECOND, envelope, line, style, to_svg
 
-_COLOURS = {"face": MUTED, "dip": SECOND, "edge": ACCENT, "wall": LIMIT, "entry": GOOD}
-"""By what was felt."""
+_POINTS = {
+    "face": (MUTED, "."),
+    "dip": (SECOND, "v"),
+    "edge": (ACCENT, "s"),
+    "wall": (LIMIT, "x"),
+    "entry": (GOOD, "*"),
+}
+"""Colour and marker by what was felt."""
 
 
 def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
@@ -33,14 +39,15 @@ def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
             vmax=2.0,
         )
         face.plot(x, y, color=MUTED, linewidth=0.5)
-        for felt, colour in _COLOURS.items():
+        for felt, (colour, marker) in _POINTS.items():
             chosen = np.array([point["felt"] == felt for point in points])
             if chosen.any():
-                face.plot(x[chosen], y[chosen], ".", color=colour, label=felt)
-                path.plot(time_s[chosen] - time_s[0], depth[chosen], ".", color=colour)
+                face.plot(x[chosen], y[chosen], marker, markersize=4, color=colour, label=felt)
+                when_s = time_s[chosen] - time_s[0]
+                path.plot(when_s, depth[chosen], marker, markersize=4, color=colour)
         # Runs of earlier versions have classified nothing.
         for contact in trace.get("contacts", []):
-            face.plot(contact["x_mm"], contact["y_mm"], "x", color=ACCENT, label=contact["class"])
+            face.plot(contact["x_mm"], contact["y_mm"], "P", color=ACCENT, label=contact["class"])
         face.set_xlabel("x on the face, mm")
         face.set_ylabel("y, mm")
         face.legend(loc="upper right", fontsize=7)
@@ -58,10 +65,10 @@ def insertion_picture(ticks: Mapping[str, Array]) -> str:
         force, moment = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
         depth = ticks["depth_mm"]
         across_n = np.hypot(ticks["fx_n"], ticks["fy_n"])
-        force.plot(*envelope(depth, across_n), color=SECOND, linewidth=0.8, label="√(Fx² + Fy²)")
+        force.plot(*envelope(depth, across_n), **line(SECOND), linewidth=0.8, label="√(Fx² + Fy²)")
         force.plot(*envelope(depth, -ticks["fz_n"]), color=ACCENT, linewidth=0.9, label="−Fz")
         across_nm = np.hypot(ticks["mx_nm"], ticks["my_nm"])
-        moment.plot(*envelope(depth, across_nm), color=SECOND, linewidth=0.8)
+        moment.plot(*envelope(depth, across_nm), **line(SECOND), linewidth=0.8)
         force.set_ylabel("force, N")
         moment.set_ylabel("√(Mx² + My²), N·m")
         moment.set_xlabel("depth below the face, mm")

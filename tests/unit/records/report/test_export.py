@@ -110,6 +110,27 @@ def test_a_process_brings_its_pages(store: RunStore, tmp_path: Path) -> None:
     assert "holes: P1" in text, "what the process does not show is shown for it"
 
 
+def test_verdicts_can_be_read_in_a_grey_print(store: RunStore, tmp_path: Path) -> None:
+    """Where a colour says good or bad, a sign says it too; where words do, there is no second."""
+
+    def judged(_record: RunRecord, _read: ReadArtefact) -> ProcessPages:
+        verdicts = {"Held": True, "Missed": False, "Noted": None}
+        tiles = tuple(Tile(title, "1 mm", "", passed) for title, passed in verdicts.items())
+        marks = {"kept": RowMark.GOOD, "broken": RowMark.BAD, "plain": RowMark.NONE}
+        rows = [TableRow((TableCell(name), TableCell("2")), mark) for name, mark in marks.items()]
+        rows.append(TableRow((TableCell("worded"), TableCell("✗ beyond")), RowMark.BAD))
+        table = ReportTable(("name", "amount"), tuple(rows))
+        return ProcessPages(tiles=tiles, sections=(ReportSection("Judged", (table,)),))
+
+    page = read(export_run(store, good_run(store), tmp_path, pages=judged))
+    text = " ".join(" ".join(page.shown).split())
+    for expected in ("✓ Held 1 mm", "✗ Missed 1 mm", "✓ kept 2", "✗ broken 2", "worded ✗ beyond"):
+        assert expected in text, expected
+    for unmarked in ("Noted", "plain", "worded"):
+        assert f"✓ {unmarked}" not in text
+        assert f"✗ {unmarked}" not in text
+
+
 def test_a_single_file_needs_no_neighbours(store: RunStore, tmp_path: Path) -> None:
     report = export_run(store, good_run(store), tmp_path / "out", single_file=True)
     page = read(report)

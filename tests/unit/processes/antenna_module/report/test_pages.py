@@ -7,14 +7,16 @@ import cv2
 import numpy as np
 import pytest
 
-from cellctl.processes.antenna_module.insertion.curve import curve_text
+from cellctl.processes.antenna_module.insertion.curve import curve_text, parse_curve
 from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.report.force_by_depth import force_by_depth
 from cellctl.processes.antenna_module.report.pages import pages
 from cellctl.records import RunStore
 from cellctl.records.entries import Document
 from cellctl.records.figures import Limit, figure
 from cellctl.records.report.export import export_run
 from tests.rigs.antenna.curves import curve
+from tests.rigs.grey import confusable
 from tests.unit.records.conftest import start
 from tests.unit.records.page import text_of
 
@@ -51,6 +53,11 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
 def png() -> bytes:
     _, data = cv2.imencode(".png", np.zeros((34, 90, 3), np.uint8))
     return data.tobytes()
+
+
+def test_the_force_can_be_read_in_a_grey_print() -> None:
+    drawing = force_by_depth(parse_curve(curve_text(curve())), [(-1.0, 0.5, 3.0)], 2.5)
+    assert confusable(drawing) == []
 
 
 def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:

@@ -27,6 +27,7 @@ from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.export import export_run
+from tests.rigs.grey import confusable
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read, text_of
 from tests.unit.records.sample import force_curve, good_run
@@ -52,6 +53,20 @@ def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
         drawing = draw()
         assert ET.fromstring(drawing).tag.endswith("svg")
         assert drawing == draw()
+
+
+def test_every_drawing_can_be_read_in_a_grey_print(store: RunStore) -> None:
+    record = store.run(good_run(store))
+    beyond = Gauge(datetime(2026, 1, 1, tzinfo=UTC), "P9", 5.70, "operator")
+    first, *later = record.passes
+    assert first.worst_ratio > 1.0, "a point beyond its threshold is drawn too"
+    for drawing in (
+        errors_by_pass([first, *later]),
+        plug_gauges([*record.gauges, beyond]),
+        force_by_time(force_curve(seconds=2.0), 35.0, 50.0),
+        force_by_travel(force_curve(seconds=2.0), 35.0, 50.0),
+    ):
+        assert confusable(drawing) == []
 
 
 def test_a_name_of_a_hole_is_no_formula() -> None:

@@ -1,4 +1,4 @@
-"""Ticks become a table that can be read again, and a report is drawn of it."""
+"""Ticks become a table that can be read again, and its peaks are known."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,6 @@ from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.cell.contact_motion.ticks import ContactTick
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.processes.peg_in_hole.record.tick_log import COLUMNS, TickLog, read_ticks
-from cellctl.processes.peg_in_hole.report.drawings import insertion_picture, search_picture
 
 
 def ticked(count: int) -> TickLog:
@@ -34,7 +33,6 @@ def test_what_was_felt_is_in_the_table() -> None:
     assert found["time_s"][-1] == pytest.approx(0.152)
     assert found["depth_mm"][-1] == pytest.approx(1.9)
     np.testing.assert_allclose(log.peaks, [1.0, 2.0, 19.0, 0.1, 0.0, 0.0])
-    assert "<svg" in insertion_picture(found)
 
 
 def test_a_stream_without_a_tick_has_no_peaks() -> None:
@@ -48,13 +46,3 @@ def test_a_stream_without_a_tick_has_no_peaks() -> None:
 def test_what_is_no_table_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"no table|rows|could not convert"):
         read_ticks(text)
-
-
-def test_the_search_is_drawn_by_what_was_felt() -> None:
-    felts = ("face", "dip", "edge", "wall", "entry")
-    points = [
-        {"time_s": 1.0 + n, "x_mm": n, "y_mm": -n, "depth_mm": 0.1 * n, "felt": felt}
-        for n, felt in enumerate(felts)
-    ]
-    belief = {"reach_mm": 2.3, "weights": [[0.1, 0.2], [1.0, 0.3]]}
-    assert "<svg" in search_picture({"points": points}, belief)
