@@ -7,7 +7,7 @@ fault, which is named with its number.
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, Protocol, TypeVar
 
 import typer
 
@@ -136,15 +136,14 @@ def calibrate_plug(
     for slot in correction.slots:
         x, y, z = slot.socket_T_plug.pose.translation * 1e3
         _say(f"slot {slot.name}: {x:.4f}, {y:.4f}, {z:.4f} mm from {slot.plugs} plugs")
-    _show_checks(correction.checks)
-    _write(out, correction.to_record())
-    if picture is not None:
+
+    def draw() -> bytes:
         # Here, because every command of `cellctl` loads this module and few of them draw.
         from cellctl.processes.antenna_module.chain.teaching.taught_picture import taught_picture
 
-        write_file(picture, taught_picture(correction))
-    if not correction.passed:
-        raise typer.Exit(NOT_GOOD)
+        return taught_picture(correction)
+
+    _keep(correction, out, picture, draw)
 
 
 def calibrate_turn(
@@ -156,12 +155,31 @@ def calibrate_turn(
     result = calibrate_tool_turn([entry.stop() for entry in read_input(file, TurnFile).turns])
     x, y = result.offset_m * 1e3
     _say(f"offset {x:.4f}, {y:.4f} mm, sigma {result.sigma_m * 1e6:.1f} µm")
+
+    def draw() -> bytes:
+        from cellctl.processes.antenna_module.chain.teaching.turn_picture import turn_picture
+
+        return turn_picture(result)
+
+    _keep(result, out, picture, draw)
+
+
+class _Calibrated(Protocol):
+    @property
+    def checks(self) -> Checks: ...
+    @property
+    def passed(self) -> bool: ...
+    def to_record(self) -> dict[str, Any]: ...
+
+
+def _keep(
+    result: _Calibrated, out: Path | None, picture: Path | None, draw: Callable[[], bytes]
+) -> None:
+    """Show and write a result with its picture; the exit code says whether it passed."""
     _show_checks(result.checks)
     _write(out, result.to_record())
     if picture is not None:
-        from cellctl.processes.antenna_module.chain.teaching.turn_picture import turn_picture
-
-        write_file(picture, turn_picture(result))
+        write_file(picture, draw())
     if not result.passed:
         raise typer.Exit(NOT_GOOD)
 
