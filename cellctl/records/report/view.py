@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cellctl.records.entries import (
+    PRODUCTION,
     AuditEntry,
     Calibration,
     Figure,
@@ -70,6 +71,8 @@ class ReportView:
     """Everything that the template needs."""
 
     record: RunRecord
+    title: str
+    """What kind of record it is."""
     verdict: str
     verdict_class: str
     fault: FaultBox | None
@@ -97,6 +100,7 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
     used = [stored[i] for i in record.head.calibration_ids.values() if i in stored]
     return ReportView(
         record=record,
+        title="Acceptance record" if _of_production(record) else f"Record · {record.head.mode}",
         verdict=verdict,
         verdict_class=verdict_class,
         fault=fault_box(record, audit),
@@ -132,7 +136,14 @@ def _verdict(record: RunRecord) -> tuple[str, str]:
     # The measuring room has the last word on a part that its run called good.
     if part_verdict(record) != result:
         return "Bad part: plug gauge beyond its limit", "bad"
+    if result == RunResult.GOOD and not _of_production(record):
+        return "Passed", "good"
     return _VERDICTS[RunResult(result)]
+
+
+def _of_production(record: RunRecord) -> bool:
+    """Whether a part was made, and not something taught or measured with it."""
+    return record.head.mode.lower() == PRODUCTION
 
 
 def _filled(*sections: ReportSection) -> tuple[ReportSection, ...]:

@@ -49,6 +49,7 @@ def test_a_module_is_plugged(antenna: OwnCell) -> None:
         ("world:empty_tray", "F580", "absent"),
         ("world:turned", "F581", "tray"),
         ("world:bent_pin", "F473", "tray"),
+        ("world:missing_pin", "F472", "tray"),
         ("world:grip_off", "F586", "gripper"),
     ],
 )

@@ -13,14 +13,19 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
     store.close()
 
 
-def start(store: RunStore, serial: str = "SAT-0001", process: str = "deck-to-frame") -> int:
+def start(
+    store: RunStore,
+    serial: str = "SAT-0001",
+    process: str = "deck-to-frame",
+    mode: str = "PRODUCTION",
+) -> int:
     return store.start_run(
         process=process,
         serial=serial,
         recipe_id=1,
         recipe_name="panel 500 x 1000",
         recipe_hash="ab" * 32,
-        mode="PRODUCTION",
+        mode=mode,
         software="cellctl 0.1.0",
         config_hash="cd" * 32,
         calibration_ids={"head_1": "ef" * 32},

@@ -182,3 +182,15 @@ def test_labels_and_columns() -> None:
     assert label("outcome") == ("outcome", "")
     assert fixed(-0.01234, 3, signed=True) == "−0.012"
     assert fixed(None, 3) == "–"
+
+
+def test_what_was_taught_or_measured_is_no_part_that_is_accepted(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store, mode="teaching")
+    store.close_run(run, RunResult.GOOD)
+    text = text_of(export_run(store, run, tmp_path))
+    assert "Record · teaching" in text
+    assert "Passed" in text
+    for word in ("Good part", "Acceptance record"):
+        assert word not in text
