@@ -17,7 +17,7 @@ from benchmarks.calibration.cases import (
     image_calibration,
     stereo_case,
 )
-from cellctl.calibration.boards.board import BoardShape
+from cellctl.calibration.boards.board_shape import BoardShape
 
 Array = NDArray[np.float64]
 

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.calibration.boards.board import BoardShape, CalibrationBoard
+from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.boards.projection import camera_vector
 from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye

@@ -4,6 +4,7 @@ CalibrationError
 ├── BoardNotFound, WrongBoard, TooFewViews, MixedImageSizes          601–604  what the images show
 ├── CalibrationCamerasSwapped, CalibrationCameraUpsideDown,
 │   PairsInconsistent, CameraSeenTwice                               605–608  how the pairs fit
+├── ImageMirrored                                                      670      one camera
 ├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
@@ -95,6 +96,15 @@ class CameraSeenTwice(CalibrationError):
     text = "Left and right images are the same"
     cause = "The same folder or files were given for both cameras."
     remedy = "Give the images of the left camera as left and those of the right camera as right."
+
+
+class ImageMirrored(CalibrationError):
+    """A board that has no mirror image of its own is seen as in a mirror."""
+
+    number = 670
+    text = "The camera mirrors its image"
+    cause = "Mirroring is switched on in the camera's settings, or it looks over a mirror."
+    remedy = "Switch it off for every camera of the head, and take the images again."
 
 
 class PoorCoverage(CalibrationError):

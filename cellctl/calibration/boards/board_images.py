@@ -4,28 +4,19 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
-import cv2
 import numpy as np
 
 from cellctl.calibration.boards.board import (
     BoardView,
     CalibrationBoard,
     CameraView,
-    Charuco,
-    Corners,
 )
-from cellctl.calibration.boards.board_search import find_chessboard, name_chessboard
+from cellctl.calibration.boards.board_search import name_chessboard
+from cellctl.calibration.boards.corner_detection import detect_corners
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
-from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
-_WINDOW_OF_SQUARE = 0.12
-_MIN_WINDOW_PX, _MAX_WINDOW_PX = 5, 15
-"""Half window of the corner refinement: long enough for many edge pixels, short enough to keep off
-the next corner and lens distortion. Measured on 140 px squares: 0.024 px with 5, 0.012 with 15."""
-_CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
-_MIN_CHARUCO = 12
 _SUSPICIOUS = (1, 4)
 """After so many pairs without the board, when they are the majority, see whether it is another."""
 _BLACK_LEVEL = 16
@@ -77,7 +68,7 @@ def detect_views(pairs: Sequence[BoardImages], board: CalibrationBoard) -> Detec
     """Find the board in all pairs.
 
     Raises ``MixedImageSizes``, ``ImageBlack``, ``ImageSaturated``, ``WrongBoard``,
-    ``BoardNotFound`` or ``TooFewViews``.
+    ``ImageMirrored``, ``BoardNotFound`` or ``TooFewViews``.
     """
     if not pairs:
         raise TooFewViews("no image pairs were given")
@@ -106,7 +97,10 @@ def detect_camera_views(
 
 
 def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
-    """The board in one pair, or None; raises ``ImageBlack`` or ``ImageSaturated``."""
+    """The board in one pair, or None.
+
+    Raises ``ImageBlack``, ``ImageSaturated`` or ``ImageMirrored``.
+    """
     corners = []
     for side, image in (("left", pair.left), ("right", pair.right)):
         found = detect_corners(image, board)
@@ -119,7 +113,7 @@ def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
 
 
 def detect_camera_view(one: BoardImage, board: CalibrationBoard) -> CameraView | None:
-    """The board in one image, or None; raises ``ImageBlack`` or ``ImageSaturated``."""
+    """The board in one image, or None; raises as ``detect_view`` does."""
     found = detect_corners(one.image, board)
     _check_exposure(one.name, one.image, board_found=found is not None)
     return None if found is None else CameraView(one.name, found)
@@ -145,52 +139,6 @@ def _search_all(
         if len(missing) in _SUSPICIOUS and len(views) < len(missing):
             _check_board(name, image, board)
     return views, missing
-
-
-def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
-    """Corners of the board in one image, or None."""
-    if board.charuco is not None:
-        return _detect_charuco(image, board, board.charuco)
-    found = find_chessboard(image, board)
-    if found is None:
-        return None
-    rough = Corners(np.arange(len(found)), found)
-    return Corners(rough.ids, _refine(image, found, _square_px(rough, board)))
-
-
-def _refine(image: Image, pixels: Array, square_px: float) -> Array:
-    half = int(np.clip(round(_WINDOW_OF_SQUARE * square_px), _MIN_WINDOW_PX, _MAX_WINDOW_PX))
-    # Smoothing keeps a corner's symmetry, so it costs noise only, not accuracy.
-    smooth = cv2.GaussianBlur(image, (0, 0), 1.0) if half > _MIN_WINDOW_PX else image
-    start = pixels.astype(np.float32).reshape(-1, 1, 2)
-    refined = cv2.cornerSubPix(smooth, start, (half, half), (-1, -1), _CRITERIA)
-    return np.asarray(refined, dtype=float).reshape(-1, 2)
-
-
-def _square_px(corners: Corners, board: CalibrationBoard) -> float:
-    """Typical side of a square in the image: the smaller of its median width and height."""
-    place = np.full((board.rows * board.columns, 2), np.nan)
-    place[corners.ids] = corners.pixels
-    grid = place.reshape(board.rows, board.columns, 2)
-    sides = [np.linalg.norm(np.diff(grid, axis=axis), axis=2) for axis in (0, 1)]
-    return float(min(np.nanmedian(side) for side in sides))
-
-
-def _detect_charuco(image: Image, board: CalibrationBoard, charuco: Charuco) -> Corners | None:
-    dictionary_id = getattr(cv2.aruco, f"DICT_{charuco.dictionary}", None)
-    if not isinstance(dictionary_id, int):
-        raise WrongBoard(f"there is no marker dictionary {charuco.dictionary!r}")
-    size = (board.columns + 1, board.rows + 1)
-    dictionary = cv2.aruco.getPredefinedDictionary(dictionary_id)
-    pattern = cv2.aruco.CharucoBoard(size, board.square_m, charuco.marker_m, dictionary)
-    found, ids, _, _ = cv2.aruco.CharucoDetector(pattern).detectBoard(image)
-    if ids is None or len(ids) < _MIN_CHARUCO:
-        return None
-    order = np.argsort(np.ravel(ids))
-    sorted_ids = np.ravel(ids)[order].astype(np.int64)
-    pixels = np.asarray(found, dtype=float).reshape(-1, 2)[order]
-    # Markers stand close to the corners, so the smallest window.
-    return Corners(sorted_ids, _refine(image, pixels, 0.0))
 
 
 def _common_size(images: Iterable[tuple[str, Image]]) -> tuple[int, int]:
@@ -222,5 +170,7 @@ def _check_board(name: str, image: Image, board: CalibrationBoard) -> None:
     # Markers would have been found: this board has none.
     if board.charuco is not None:
         raise WrongBoard(f"{name} shows a chessboard without a marker of the {board}")
+    if board.circles is not None:
+        raise WrongBoard(f"{name} shows a chessboard, not the {board}")
     if {columns, rows} != {board.columns, board.rows}:
         raise WrongBoard(f"{name} shows {columns} x {rows} inner corners, not the {board}")

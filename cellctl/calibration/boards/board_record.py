@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.calibration.boards.board import CalibrationBoard, Charuco
+from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Circles
 from cellctl.geometry.pose import MM, Array
 
 _WIDEST_MM = 10_000
@@ -15,12 +15,14 @@ _DIGITS_OF_A_NANOMETRE = 6
 
 def board_to_record(board: CalibrationBoard) -> dict[str, Any]:
     """Plain data."""
-    charuco = board.charuco
+    charuco, circles = board.charuco, board.circles
     return {
         "inner_corners": [board.columns, board.rows],
         "square_mm": board.square_m / MM,
         "charuco_dictionary": None if charuco is None else charuco.dictionary,
         "charuco_marker_mm": None if charuco is None else charuco.marker_m / MM,
+        "circle_mm": None if circles is None else circles.diameter_m / MM,
+        "circles_asymmetric": circles is not None and circles.asymmetric,
     }
 
 
@@ -33,7 +35,14 @@ def board_from_record(record: Mapping[str, Any]) -> CalibrationBoard:
     charuco = None
     if record["charuco_dictionary"] is not None:
         charuco = Charuco(str(record["charuco_dictionary"]), _side_m(record["charuco_marker_mm"]))
-    return CalibrationBoard(columns, rows, _side_m(record["square_mm"]), charuco)
+    circles = None
+    # Records of older versions have no circles.
+    if record.get("circle_mm") is not None:
+        asymmetric = record["circles_asymmetric"]
+        if not isinstance(asymmetric, bool):
+            raise TypeError("circles_asymmetric is true or false")
+        circles = Circles(_side_m(record["circle_mm"]), asymmetric)
+    return CalibrationBoard(columns, rows, _side_m(record["square_mm"]), charuco, circles)
 
 
 def corners_to_record(board_m: Array) -> dict[str, Any]:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import CalibrationBoard, Corners
+from cellctl.calibration.boards.board import CalibrationBoard, Circles, Corners
+from cellctl.calibration.boards.circle_centres import centre_offsets
 from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
 
@@ -16,6 +17,7 @@ _MISFIT = 5.0
 """An image does not fit when its rms is so many times the median image's, ..."""
 _MISFIT_PX = 1.0
 """... and more than this: what is less is left to the adjustment, which knows the board's shape."""
+_ROUNDS_OF_CIRCLES = 2
 _MIN_IMAGES = 4
 """Fewer images determine no camera with its lens."""
 
@@ -30,6 +32,9 @@ class CameraStart:
     """Of each image, 4 x 4, also of those that do not fit."""
     fits: NDArray[np.bool_]
     """False for an image that one camera cannot have taken together with the others."""
+    images: tuple[Corners, ...]
+    """What was seen; on a circle grid with the images of the centres in place of the centres of
+    the images."""
 
 
 def start_of_camera(
@@ -40,6 +45,20 @@ def start_of_camera(
     Each camera of a head starts by itself: the joint adjustment converges only from a start near
     the solution, and wrong files show themselves in the poses of single cameras.
     """
+    start = _start(images, board, image_size)
+    if board.circles is None:
+        return start
+    # Offsets of some hundredths of a pixel depend on camera and poses, and these a little on the
+    # offsets. After two rounds they change by less than a thousandth of a pixel, and a better lens
+    # or the bow of the board does not change them by more either.
+    for _ in range(_ROUNDS_OF_CIRCLES):
+        start = _start(_centred(images, board, board.circles, start), board, image_size)
+    return start
+
+
+def _start(
+    images: Sequence[Corners], board: CalibrationBoard, image_size: tuple[int, int]
+) -> CameraStart:
     points = [board.corners_m[corners.ids].astype(np.float32) for corners in images]
     pixels = [corners.pixels.astype(np.float32)[:, None, :] for corners in images]
     fits = np.ones(len(images), dtype=np.bool_)
@@ -59,7 +78,24 @@ def start_of_camera(
     except cv2.error as error:
         raise SolveFailed(f"start values of a camera: {error.err}") from error
     inner = [matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]]
-    return CameraStart(np.concatenate([inner, distortion]), tuple(poses), fits)
+    return CameraStart(np.concatenate([inner, distortion]), tuple(poses), fits, tuple(images))
+
+
+def _centred(
+    images: Sequence[Corners], board: CalibrationBoard, circles: Circles, start: CameraStart
+) -> list[Corners]:
+    """Where the centres of the circles are seen, from the centres of their ellipses."""
+    centred = []
+    for corners, pose in zip(images, start.camera_T_board, strict=True):
+        offsets = centre_offsets(
+            start.camera,
+            pose[:3, :3],
+            pose[:3, 3],
+            board.corners_m[corners.ids],
+            circles.diameter_m / 2,
+        )
+        centred.append(Corners(corners.ids, corners.pixels - offsets))
+    return centred
 
 
 def _calibrated(

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from cellctl.calibration.boards.board import BoardShape
+from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 

@@ -7,9 +7,20 @@ from typing import Generic, Self, TypeVar
 
 from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import ShapeModes
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.boards.board_shape import ShapeModes
 from cellctl.calibration.solvers.view_rejection import Mask
 from cellctl.geometry.pose import Array
+
+
+def turn_warnings(board: CalibrationBoard) -> tuple[str, ...]:
+    """What a board costs that looks the same after a turn."""
+    if len(board.quarter_turns) == 1:
+        return ()
+    return (
+        f"the {board} looks the same when it is turned: of its shape only what does so too "
+        "could be released",
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -9,13 +9,13 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, Charuco
 from cellctl.calibration.boards.board_images import (
     BoardImage,
     BoardImages,
     detect_camera_views,
     detect_views,
 )
+from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.solvers.shape_choice import with_chosen_shape
 from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
     calibrate_single_camera,
@@ -26,13 +26,20 @@ from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.cli.offline.board_options import (
+    Asymmetric,
+    BoardSize,
+    CharucoMarkers,
+    CircleDiameter,
+    MarkerSide,
+    SquareSide,
+    board_of,
+)
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
 from cellctl.cli.offline.measure import read_image
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM
 
-BoardSize = Annotated[str, typer.Option(help="Inner corners, columns x rows, such as 9x6.")]
-SquareSide = Annotated[float, typer.Option(help="Side of a square, mm.", min=1.0, max=500.0)]
 Shape = Annotated[
     BoardShape | None,
     typer.Option(help="What may deviate from the drawing of the board; else the data decide."),
@@ -56,22 +63,22 @@ def stereo(
     board: BoardSize,
     square_mm: SquareSide,
     out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
-    charuco: Annotated[
-        str | None, typer.Option(help="Markers of a ChArUco board, such as 5X5_100.")
-    ] = None,
-    marker_mm: Annotated[float | None, typer.Option(help="Side of a ChArUco marker.")] = None,
+    charuco: CharucoMarkers = None,
+    marker_mm: MarkerSide = None,
+    circle_mm: CircleDiameter = None,
+    asymmetric: Asymmetric = False,
     board_shape: Shape = None,
     baseline_mm: KnownBaseline = None,
     distance_mm: KnownDistance = None,
     focal_px: KnownFocal = None,
     picture: Picture = None,
 ) -> None:
-    """Calibrate a stereo head from pairs of images of a chessboard or ChArUco board.
+    """Calibrate a stereo head from pairs of images of a chessboard, ChArUco board or circle grid.
 
     What is known of the head is compared with the result: the images alone cannot tell the size of
     the squares.
     """
-    pattern = _board(board, square_mm, charuco, marker_mm)
+    pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
     found = detect_views(_pairs(left, right), pattern)
     console = console_of_figures()
     _say_left_out(console, found.not_found)
@@ -104,11 +111,15 @@ def camera(
     board: BoardSize,
     square_mm: SquareSide,
     out: Annotated[Path, typer.Option(help="Write the calibration to this JSON file.")],
+    charuco: CharucoMarkers = None,
+    marker_mm: MarkerSide = None,
+    circle_mm: CircleDiameter = None,
+    asymmetric: Asymmetric = False,
     board_shape: Shape = None,
     picture: Picture = None,
 ) -> None:
-    """Calibrate a single camera from images of a chessboard."""
-    pattern = _board(board, square_mm, None, None)
+    """Calibrate a single camera from images of a chessboard, ChArUco board or circle grid."""
+    pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
     named = [BoardImage(path.stem, read_image(path)) for path in _matching(images)]
     found = detect_camera_views(named, pattern)
     console = console_of_figures()
@@ -147,21 +158,6 @@ def _weight(shift_sigmas: float | None) -> str:
     if shift_sigmas is None:
         return "  LEFT OUT"
     return f", without it the result moves by {shift_sigmas:.2f} sigma"
-
-
-def _board(
-    corners: str, square_mm: float, charuco: str | None, marker_mm: float | None
-) -> CalibrationBoard:
-    try:
-        columns, rows = (int(part) for part in corners.lower().split("x"))
-        markers = None
-        if charuco is not None:
-            if marker_mm is None or not 0 < marker_mm < square_mm:
-                raise ValueError("--charuco needs --marker-mm below --square-mm")  # noqa: TRY301
-            markers = Charuco(charuco.upper().removeprefix("DICT_"), marker_mm * MM)
-        return CalibrationBoard(columns, rows, square_mm * MM, markers)
-    except ValueError as error:
-        raise typer.BadParameter(f"board {corners!r}: {error}") from error
 
 
 def _pairs(left: str, right: str) -> list[BoardImages]:

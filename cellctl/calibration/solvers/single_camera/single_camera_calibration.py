@@ -12,13 +12,9 @@ from itertools import compress
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.calibration.boards.board import (
-    BoardShape,
-    CalibrationBoard,
-    CameraView,
-    shape_modes,
-)
+from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_in_camera import board_in_camera
+from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
@@ -39,7 +35,8 @@ from cellctl.calibration.solvers.view_rejection import (
     repeated,
     why_left_out,
 )
-from cellctl.errors.calibration import PoorCoverage, TooFewViews, WrongBoard
+from cellctl.calibration.solvers.views_of_board import turn_warnings
+from cellctl.errors.calibration import PoorCoverage, TooFewViews
 from cellctl.vision.camera.single_camera import SingleCamera
 
 _MIN_HALF = 8
@@ -73,16 +70,17 @@ def calibrate_single_camera(
 ) -> SingleCameraResult:
     """Calibrate a camera; ``image_size`` is width, height in px.
 
-    Raises ``WrongBoard``, ``TooFewViews``, ``PoorCoverage`` or ``SolveFailed``; figures beyond
+    Raises ``TooFewViews``, ``PoorCoverage`` or ``SolveFailed``; figures beyond
     their limits are in ``checks``.
     """
     limits = limits or SingleCameraLimits()
-    if board.symmetric:
-        raise WrongBoard(f"{board} looks the same turned by 180°; one side must be odd, one even")
     covered, coverage_checks = _covered(views, board, image_size, limits.coverage)
     flat_m, modes = board.corners_m, shape_modes(board, shape)
-    problem = CameraProblem(views, flat_m, modes)
     start = start_of_camera([view.corners for view in views], board, image_size)
+    seen = [
+        CameraView(view.name, corners) for view, corners in zip(views, start.images, strict=True)
+    ]
+    problem = CameraProblem(seen, flat_m, modes)
     again = repeated([view.corners for view in views])
     excluded = np.array([index in again for index in range(len(views))])
     adjusted = adjust_good_views(problem, _start(start, len(modes.sigma)), start.fits, excluded)
@@ -99,7 +97,7 @@ def calibrate_single_camera(
     )
     if good.sum() < limits.coverage.views:
         raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")
-    kept = list(compress(views, good))
+    kept = list(compress(seen, good))
     norms = np.concatenate(residual_norms(result.residuals))
     rms_px = float(np.sqrt((norms**2).mean()))
     held_out_px = _held_out_px(kept, board, shape, state)
@@ -123,7 +121,7 @@ def calibrate_single_camera(
             LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
             *_held_out_check(held_out_px, limits),
         ),
-        warnings=_warnings(len(kept), rejected, held_out_px),
+        warnings=(*_warnings(len(kept), rejected, held_out_px), *turn_warnings(board)),
         residuals=_field(kept, result),
     )
 

@@ -10,7 +10,8 @@ from itertools import compress
 
 import numpy as np
 
-from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, shape_modes
+from cellctl.calibration.boards.board import BoardView, CalibrationBoard
+from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
 from cellctl.calibration.solvers.stereo.bundle import BundleState, StereoProblem
@@ -24,6 +25,7 @@ from cellctl.calibration.solvers.view_rejection import (
     adjust_good_views,
     why_left_out,
 )
+from cellctl.calibration.solvers.views_of_board import turn_warnings
 from cellctl.errors.calibration import TooFewViews
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
@@ -91,7 +93,7 @@ def calibrate_stereo(
                 None if validation is None else validation.held_out_m,
             ),
         ),
-        warnings=_warnings(len(kept), validation, rejected),
+        warnings=(*_warnings(len(kept), validation, rejected), *turn_warnings(board)),
         sigma_px=result.sigma_px,
         left_residuals=_field([view.left.pixels for view in kept], result, 0),
         right_residuals=_field([view.right.pixels for view in kept], result, 1),

@@ -51,7 +51,7 @@ def start_values(
     """
     if all(_same(view.left, view.right) for view in views):
         raise CameraSeenTwice(f"in all {len(views)} pairs the right image is the left one")
-    if board.symmetric:
+    if len(board.quarter_turns) > 1:
         views = [_same_direction(view, board) for view in views]
     left = start_of_camera([view.left for view in views], board, image_size)
     right = start_of_camera([view.right for view in views], board, image_size)
@@ -83,7 +83,11 @@ def start_values(
         view_rotations=np.stack([pose[:3, :3] for pose in left.camera_T_board]),
         view_translations_m=np.stack([pose[:3, 3] for pose in left.camera_T_board]),
     )
-    return StereoStart(list(views), state, plausible, excluded, doubts)
+    seen = [
+        BoardView(view.name, one, other)
+        for view, one, other in zip(views, left.images, right.images, strict=True)
+    ]
+    return StereoStart(seen, state, plausible, excluded, doubts)
 
 
 def _repeated_pairs(views: Sequence[BoardView]) -> dict[int, tuple[int, list[str]]]:
@@ -146,12 +150,18 @@ def _common_pose(
 
 def _same_direction(view: BoardView, board: CalibrationBoard) -> BoardView:
     """Give the right image of a symmetric board the corner order of the left one."""
-    left, right = (_row_direction(c, board) for c in (view.left, view.right))
-    if left @ right >= 0:
-        return view
-    last = board.columns * board.rows - 1
-    turned = Corners((last - view.right.ids)[::-1], view.right.pixels[::-1])
-    return replace(view, right=turned)
+    left = _row_direction(view.left, board)
+    left = left / np.linalg.norm(left)
+    orders = [_turned(view.right, board, quarters) for quarters in board.quarter_turns]
+    # The cameras of a head look the same way, so the nearest order is the right one.
+    right = max(orders, key=lambda one: float(_row_direction(one, board) @ left))
+    return replace(view, right=right)
+
+
+def _turned(corners: Corners, board: CalibrationBoard, quarters: int) -> Corners:
+    ids = board.turned_ids(quarters)[corners.ids]
+    order = np.argsort(ids)
+    return Corners(ids[order], corners.pixels[order])
 
 
 def _row_direction(corners: Corners, board: CalibrationBoard) -> Array:

@@ -10,7 +10,7 @@ from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_images import BoardImage, detect_camera_view
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
-from cellctl.errors.calibration import BoardNotFound
+from cellctl.errors.calibration import BoardNotFound, WrongBoard
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Camera
 from cellctl.interfaces.stereo_camera import Image
@@ -46,9 +46,13 @@ class BoardDrive:
 
 
 def board_of(cell: AntennaCell) -> CalibrationBoard:
-    """The board of the settings."""
+    """The board of the settings; raises ``WrongBoard``."""
     columns, rows = (int(number) for number in cell.settings.board.split("x"))
-    return CalibrationBoard(columns, rows, cell.settings.square_mm * MM)
+    board = CalibrationBoard(columns, rows, cell.settings.square_mm * MM)
+    # Intrinsics could do with such a board, but a hand-eye calibration needs to know how it lies.
+    if board.symmetric:
+        raise WrongBoard(f"{board} looks the same turned by 180°; one side must be odd, one even")
+    return board
 
 
 def camera_of(cell: AntennaCell, setup: Setup) -> Camera:
@@ -61,9 +65,11 @@ async def drive_round_board(
 ) -> BoardDrive:
     """Swing camera I about the board on the table, or the board on the flange over camera II.
 
-    Ends at home. Raises ``BoardNotFound``, ``WristConfigurationsDiffer``, the faults of images
-    that show no board, and what moves and cameras raise.
+    Ends at home. Raises ``WrongBoard`` before anything moves, ``BoardNotFound``,
+    ``WristConfigurationsDiffer``, the faults of images that show no board, and what moves and
+    cameras raise.
     """
+    board = board_of(cell)
     mover = Mover(cell)
     await leave_stations(cell)
     await mover.to_taught(BOARD_LOOK if setup is Setup.EYE_IN_HAND else BOARD_SHOW)
@@ -73,7 +79,7 @@ async def drive_round_board(
     await mover.to(here)
     await mover.to_taught(HOME)
     if not drive.stops:
-        raise BoardNotFound(f"no {board_of(cell)} in any of {len(poses)} views")
+        raise BoardNotFound(f"no {board} in any of {len(poses)} views")
     require_one_wrist(joints)
     return drive
 

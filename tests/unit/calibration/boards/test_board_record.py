@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.calibration.boards.board import CalibrationBoard, Charuco
+from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Circles
 from cellctl.calibration.boards.board_record import (
     board_from_record,
     board_to_record,
@@ -15,6 +15,7 @@ from cellctl.calibration.boards.board_record import (
 
 CHESSBOARD = CalibrationBoard(11, 8, 1.5e-3)
 CHARUCO = CalibrationBoard(9, 6, 0.025, Charuco("5X5_100", 0.018))
+CIRCLES = CalibrationBoard(4, 11, 0.012, circles=Circles(0.009, asymmetric=True))
 SIDES = st.integers(3, 30)
 VALUES = st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3)
 KEYS = sorted(board_to_record(CHARUCO))
@@ -46,6 +47,27 @@ def test_markers_come_back() -> None:
     assert again.charuco.marker_m == pytest.approx(0.018)
 
 
+def test_circles_come_back() -> None:
+    again = board_from_record(board_to_record(CIRCLES))
+    assert again.circles is not None
+    assert again.circles.asymmetric
+    assert again.circles.diameter_m == pytest.approx(0.009)
+
+
+def test_a_record_of_an_older_version_has_no_circles() -> None:
+    record = board_to_record(CHARUCO)
+    del record["circle_mm"], record["circles_asymmetric"]
+    assert board_from_record(record).circles is None
+
+
+@pytest.mark.parametrize(
+    "change", [{"circle_mm": 25.0}, {"circle_mm": "9"}, {"circles_asymmetric": 1}]
+)
+def test_what_are_no_circles_is_refused(change: dict[str, object]) -> None:
+    with pytest.raises((TypeError, ValueError)):
+        board_from_record({**board_to_record(CIRCLES), **change})
+
+
 @pytest.mark.parametrize(
     "change",
     [
@@ -64,15 +86,16 @@ def test_what_is_no_board_is_refused(change: dict[str, object]) -> None:
 
 
 @given(
+    whole=st.sampled_from([CHARUCO, CIRCLES]),
     key=st.sampled_from(KEYS),
     broken=VALUES | st.lists(VALUES, max_size=3),
 )
 def test_a_damaged_record_gives_a_board_or_one_of_the_errors_of_records(
-    key: str, broken: object
+    whole: CalibrationBoard, key: str, broken: object
 ) -> None:
     """What a stored kind turns into ``CalibrationRecordInvalid``."""
     try:
-        board = board_from_record({**board_to_record(CHARUCO), key: broken})
+        board = board_from_record({**board_to_record(whole), key: broken})
     except (KeyError, TypeError, ValueError):
         return
     assert min(board.columns, board.rows) >= 3

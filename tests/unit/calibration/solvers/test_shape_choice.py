@@ -5,7 +5,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cellctl.calibration.boards.board import BoardShape, CalibrationBoard, shape_modes
+from cellctl.calibration.boards.board import CalibrationBoard
+from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
 from cellctl.calibration.solvers.shape_choice import with_chosen_shape
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult

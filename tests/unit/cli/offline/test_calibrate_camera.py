@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 from typer.testing import CliRunner, Result
 
+from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import MixedImageSizes, PoorCoverage, TooFewViews, WrongBoard
 from cellctl.errors.config import FileInvalid
@@ -18,6 +19,7 @@ from cellctl.errors.vision import ImageFileInvalid
 from cellctl.vision.camera.single_camera import read_single_camera
 from fakes.render import api
 from fakes.world.scene import CameraScene, LensTruth, MonoTruth, SceneChessboard
+from tests.rigs.calibration import circle_boards
 
 SIZE, FOCAL_PX, DISTANCE_M = (640, 480), (1500.0, 1503.0), 0.25
 LENS = LensTruth(FOCAL_PX, (322.0, 238.0), (-0.08, 0.05, 2e-4, -1e-4, 0.0), 0.8, 1.0)
@@ -90,3 +92,41 @@ def test_wrong_inputs_are_named_and_nothing_is_written(images: Path, tmp_path: P
         assert isinstance(result.exception, fault), (pattern, result.exception)
         assert words in str(result.exception)
     assert not out.exists()
+
+
+def test_a_camera_from_a_circle_grid(tmp_path: Path) -> None:
+    stereo, rng = circle_boards.head(4.0), np.random.default_rng(8)
+    for number in range(COUNT + 4):
+        tilt_deg = (*rng.uniform(-35, 35, 2), rng.uniform(-180, 180))
+        seen = circle_boards.seen_grid(stereo, circle_boards.STAGGERED, tilt_deg, rng)
+        cv2.imwrite(str(tmp_path / f"g-{number}.png"), seen.images.left)
+    out, picture = tmp_path / "cam.json", tmp_path / "cam.png"
+    arguments = ("camera", "--images", tmp_path / "g-*.png", "--board", "4x11", "--square-mm",
+                 12, "--circle-mm", 10.5, "--asymmetric", "--out", out, "--picture",
+                 picture)  # fmt: skip
+    result = CliRunner().invoke(app, [str(one) for one in arguments])
+    assert result.exit_code == 0, result.output
+    truth = stereo.left.focal_px[0]
+    assert read_single_camera(out).model.camera_matrix[0, 0] == pytest.approx(truth, rel=2e-3)
+    board = SingleCameraResult.from_record(json.loads(out.read_text())).board
+    assert str(board) == "4 x 11 asymmetric circle grid, 12 mm pitch"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        (("--asymmetric",), "--asymmetric needs --circle-mm"),
+        (("--circle-mm", "9"), "smaller than their distance"),
+        (("--marker-mm", "5"), "--marker-mm needs --charuco"),
+        (("--charuco", "5X5_100"), "--charuco needs --marker-mm"),
+        (("--circle-mm", "3", "--charuco", "5X5_100", "--marker-mm", "5"), "not both"),
+    ],
+)
+def test_options_of_boards_that_do_not_go_together(
+    tmp_path: Path, options: tuple[str, ...], reason: str
+) -> None:
+    result = calibrate("x", tmp_path / "o.json", *options)
+    assert result.exit_code == 2
+    # The console breaks lines where they end.
+    assert reason in " ".join(result.output.replace("│", " ").split())

@@ -16,19 +16,24 @@ BOW_M = 4e-6
 _FACING = Rotation.from_euler("x", 180, degrees=True)
 
 
-def bent_board_m(rng: np.random.Generator) -> Array:
+def bent_board_m(rng: np.random.Generator, board: CalibrationBoard = BOARD) -> Array:
     """Corners, shape (n, 3): bowed along and across by up to ``BOW_M``."""
-    corners = BOARD.corners_m.copy()
+    corners = board.corners_m.copy()
     sides = corners[:, :2] / np.abs(corners[:, :2]).max(axis=0)
     corners[:, 2] = sides**2 @ rng.uniform(-BOW_M, BOW_M, 2)
     return corners
 
 
 def camera_views(
-    rng: np.random.Generator, count: int = 30, *, noise_px: float = 0.03, tilt_deg: float = 20.0
+    rng: np.random.Generator,
+    count: int = 30,
+    *,
+    noise_px: float = 0.03,
+    tilt_deg: float = 20.0,
+    board: CalibrationBoard = BOARD,
 ) -> list[CameraView]:
     """Views that have the whole board in the picture."""
-    board_m = bent_board_m(rng)
+    board_m = bent_board_m(rng, board)
     views: list[CameraView] = []
     while len(views) < count:
         angles = rng.uniform(-1, 1, 3) * (40.0, tilt_deg, tilt_deg)

@@ -12,7 +12,7 @@ from cellctl.calibration.solvers.single_camera.single_camera_calibration import 
 )
 from cellctl.calibration.solvers.single_camera.single_camera_picture import single_camera_picture
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
-from cellctl.errors.calibration import PoorCoverage, TooFewViews, WrongBoard
+from cellctl.errors.calibration import PoorCoverage, TooFewViews
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.lens import project, undistort
 from cellctl.vision.camera.stereo_head import CameraModel
@@ -133,9 +133,22 @@ def test_views_that_face_the_camera() -> None:
 
 
 def test_a_board_that_looks_the_same_upside_down() -> None:
-    views = camera_views(np.random.default_rng(0), 12)
-    with pytest.raises(WrongBoard, match="180"):
-        calibrate_single_camera(views, CalibrationBoard(10, 8, 1.5e-3), IMAGE_SIZE)
+    board, rng = CalibrationBoard(10, 8, 1.5e-3), np.random.default_rng(0)
+    views = camera_views(rng, board=board)
+    turned = [
+        CameraView(view.name, Corners(view.corners.ids, view.corners.pixels[::-1].copy()))
+        if number % 3 == 0
+        else view
+        for number, view in enumerate(views)
+    ]
+    results = [calibrate_single_camera(some, board, IMAGE_SIZE) for some in (views, turned)]
+    for result in results:
+        assert result.passed
+        assert result.sigma_px == pytest.approx(0.03, rel=0.1)
+        assert any("looks the same when it is turned" in text for text in result.warnings)
+    # Whoever counts the corners from the other end gets the same camera.
+    one, other = (camera_vector(result.camera.model) for result in results)
+    assert np.abs((one - other)[:4]).max() < 0.01
 
 
 def test_the_record_holds_everything_but_the_picture(results: list[SingleCameraResult]) -> None:

@@ -8,7 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from cellctl.calibration.boards.board import BoardShape, BoardView, CalibrationBoard, Corners
+from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Corners
+from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.boards.projection import camera_vector
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
