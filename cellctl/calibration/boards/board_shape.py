@@ -44,8 +44,14 @@ class ShapeModes:
     """Prior standard deviation of each parameter, shape (m,)."""
 
 
-def shape_modes(board: CalibrationBoard, shape: BoardShape) -> ShapeModes:
-    """The modes that ``shape`` releases; none of them is a motion or a scale of the board."""
+def shape_modes(
+    board: CalibrationBoard, shape: BoardShape, *, turns_known: bool = False
+) -> ShapeModes:
+    """The modes that ``shape`` releases; none of them is a motion or a scale of the board.
+
+    ``turns_known`` says that all views name the corners of a board that looks the same after a
+    turn from the same end of it.
+    """
     flat = board.corners_m
     columns: list[Array] = []
     sigma: list[float] = []
@@ -69,7 +75,8 @@ def shape_modes(board: CalibrationBoard, shape: BoardShape) -> ShapeModes:
         columns += list(_print_modes(flat))
         sigma += [CORNER_SIGMA_M] * (2 * len(flat) - 4)
     modes = np.stack(columns, axis=2) if columns else np.zeros((len(flat), 3, 0))
-    return _unchanged_by_turns(ShapeModes(modes, np.array(sigma)), board)
+    released = ShapeModes(modes, np.array(sigma))
+    return released if turns_known else _unchanged_by_turns(released, board)
 
 
 def _unchanged_by_turns(shape: ShapeModes, board: CalibrationBoard) -> ShapeModes:

@@ -52,7 +52,7 @@ def calibrate_stereo(
     """
     limits = limits or StereoLimits()
     left, right, coverage_checks = check_coverage(views, board, image_size, limits.coverage)
-    modes = shape_modes(board, shape)
+    modes = shape_modes(board, shape, turns_known=_turns_known(board))
     flat_m = board.corners_m
     start = start_values(views, board, image_size, len(modes.sigma))
     problem = StereoProblem(start.views, flat_m, modes)
@@ -93,11 +93,21 @@ def calibrate_stereo(
                 None if validation is None else validation.held_out_m,
             ),
         ),
-        warnings=(*_warnings(len(kept), validation, rejected), *turn_warnings(board)),
+        warnings=(
+            *_warnings(len(kept), validation, rejected),
+            *([] if _turns_known(board) else turn_warnings(board)),
+        ),
         sigma_px=result.sigma_px,
         left_residuals=_field([view.left.pixels for view in kept], result, 0),
         right_residuals=_field([view.right.pixels for view in kept], result, 1),
     )
+
+
+def _turns_known(board: CalibrationBoard) -> bool:
+    """Whether views of a board that looks the same after a turn are named alike."""
+    # The search of a chessboard begins at a corner by how the board lies in the image, and a head
+    # is hardly turned about its axis from view to view. That of circles begins anywhere.
+    return board.circles is None
 
 
 def _view_residuals(
@@ -131,7 +141,9 @@ def _validate(
     """Two half calibrations, every other view each; None when there are too few views."""
     if len(views) < 2 * _MIN_HALF:
         return None
-    problem = StereoProblem(views, board.corners_m, shape_modes(board, shape))
+    problem = StereoProblem(
+        views, board.corners_m, shape_modes(board, shape, turns_known=_turns_known(board))
+    )
     # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     parts = (list(views[0::2]), list(views[1::2]))
