@@ -59,12 +59,13 @@ def seen_grid(
     if board.circles is None:
         raise ValueError("not a grid of circles")
     shift_m = (*rng.uniform(-0.04, 0.04, 2), rng.uniform(-0.03, 0.06))
-    x, y, z = tilt_deg
-    pose = api.facing_pose(shift_m=shift_m, tilt_deg=(x, y, z))
+    about_x, about_y, about_z = tilt_deg
+    pose = api.facing_pose(shift_m=shift_m, tilt_deg=(about_x, about_y, about_z))
     camera_T_board = pose * _FLIPPED
     places = _FLIPPED.apply(board.corners_m)
-    discs = tuple(SceneDisc(f"{i}", (float(p[0]), float(p[1]))) for i, p in enumerate(places))
-    side_x, side_y = 2 * np.abs(places[:, :2]).max(axis=0) + 2.5 * board.circles.diameter_m
+    discs = tuple(SceneDisc(f"{i}", (x, y)) for i, (x, y, _) in enumerate(places.tolist()))
+    sides = 2 * np.abs(places[:, :2]).max(axis=0) + 2.5 * board.circles.diameter_m
+    side_x, side_y = sides.tolist()
     scene = SceneTargetBoard(pose, (side_x, side_y), board.circles.diameter_m, discs, 1)
     left, right = api.render_pair(stereo, [scene], rng=rng)
     truth = project(stereo.left, camera_T_board.apply(board.corners_m))

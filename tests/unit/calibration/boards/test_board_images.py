@@ -4,7 +4,8 @@ import pytest
 from numpy.typing import NDArray
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco
-from cellctl.calibration.boards.board_images import BoardImages, detect_corners, detect_views
+from cellctl.calibration.boards.board_images import BoardImages, detect_views
+from cellctl.calibration.boards.corner_detection import detect_corners
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
 

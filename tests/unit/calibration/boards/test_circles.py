@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cellctl.calibration.boards.board import CalibrationBoard, Circles, Corners
+from cellctl.calibration.boards.board import CalibrationBoard, Circles, Corners, Ids
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
 from cellctl.calibration.boards.circle_centres import centre_offsets
@@ -43,7 +43,7 @@ def offsets(board: CalibrationBoard, seen: SeenGrid) -> Array:
     )
 
 
-def errors_px(board: CalibrationBoard, corners: Corners, truth_px: Array) -> tuple[Array, Array]:
+def errors_px(board: CalibrationBoard, corners: Corners, truth_px: Array) -> tuple[Array, Ids]:
     """Off by how much, and the corners in the order of the truth: a board may look turned."""
     orders = [board.turned_ids(quarters) for quarters in board.quarter_turns]
     best = min(orders, key=lambda ids: float(np.abs(corners.pixels - truth_px[ids]).max()))
