@@ -62,8 +62,8 @@ def seen_grid(
     about_x, about_y, about_z = tilt_deg
     pose = api.facing_pose(shift_m=shift_m, tilt_deg=(about_x, about_y, about_z))
     camera_T_board = pose * _FLIPPED
-    places = _FLIPPED.apply(board.corners_m)
-    discs = tuple(SceneDisc(f"{i}", (x, y)) for i, (x, y, _) in enumerate(places.tolist()))
+    places = np.asarray(_FLIPPED.apply(board.corners_m), dtype=float).reshape(-1, 3)
+    discs = tuple(SceneDisc(f"{i}", (float(x), float(y))) for i, (x, y, _) in enumerate(places))
     sides = 2 * np.abs(places[:, :2]).max(axis=0) + 2.5 * board.circles.diameter_m
     side_x, side_y = sides.tolist()
     scene = SceneTargetBoard(pose, (side_x, side_y), board.circles.diameter_m, discs, 1)
