@@ -4,7 +4,7 @@ CalibrationError
 ├── BoardNotFound, WrongBoard, TooFewViews, MixedImageSizes          601–604  what the images show
 ├── CalibrationCamerasSwapped, CalibrationCameraUpsideDown,
 │   PairsInconsistent, CameraSeenTwice                               605–608  how the pairs fit
-├── ImageMirrored                                                      670      one camera
+├── BoardMirrored                                                      670      one camera
 ├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
@@ -98,7 +98,7 @@ class CameraSeenTwice(CalibrationError):
     remedy = "Give the images of the left camera as left and those of the right camera as right."
 
 
-class ImageMirrored(CalibrationError):
+class BoardMirrored(CalibrationError):
     """A board that has no mirror image of its own is seen as in a mirror."""
 
     number = 670

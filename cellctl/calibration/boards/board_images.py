@@ -68,7 +68,7 @@ def detect_views(pairs: Sequence[BoardImages], board: CalibrationBoard) -> Detec
     """Find the board in all pairs.
 
     Raises ``MixedImageSizes``, ``ImageBlack``, ``ImageSaturated``, ``WrongBoard``,
-    ``ImageMirrored``, ``BoardNotFound`` or ``TooFewViews``.
+    ``BoardMirrored``, ``BoardNotFound`` or ``TooFewViews``.
     """
     if not pairs:
         raise TooFewViews("no image pairs were given")
@@ -99,7 +99,7 @@ def detect_camera_views(
 def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
     """The board in one pair, or None.
 
-    Raises ``ImageBlack``, ``ImageSaturated`` or ``ImageMirrored``.
+    Raises ``ImageBlack``, ``ImageSaturated`` or ``BoardMirrored``.
     """
     corners = []
     for side, image in (("left", pair.left), ("right", pair.right)):

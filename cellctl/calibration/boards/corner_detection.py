@@ -7,7 +7,7 @@ from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Corners
 from cellctl.calibration.boards.board_search import find_chessboard
 from cellctl.calibration.boards.circle_centres import measured_rims
 from cellctl.calibration.boards.circle_search import find_circles
-from cellctl.errors.calibration import ImageMirrored, WrongBoard
+from cellctl.errors.calibration import BoardMirrored, WrongBoard
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 
@@ -24,7 +24,7 @@ def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
 
     Of a circle grid these are the centres of the ellipses in the image, which are not where the
     centres of the circles are seen; ``true_centres`` corrects that. Raises ``WrongBoard`` or
-    ``ImageMirrored``.
+    ``BoardMirrored``.
     """
     if board.charuco is not None:
         return _detect_charuco(image, board, board.charuco)
@@ -77,6 +77,6 @@ def _detect_circles(image: Image, board: CalibrationBoard) -> Corners | None:
     if found is None:
         return None
     if found.mirrored:
-        raise ImageMirrored(f"the {board} is seen as in a mirror")
+        raise BoardMirrored(f"the {board} is seen as in a mirror")
     rims = measured_rims(image, found.rims, bright=found.bright)
     return None if rims is None else Corners(np.arange(len(rims.centres)), rims.centres)

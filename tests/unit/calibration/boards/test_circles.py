@@ -8,7 +8,7 @@ from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
 from cellctl.calibration.boards.circle_centres import centre_offsets
 from cellctl.calibration.boards.corner_detection import detect_corners
-from cellctl.errors.calibration import ImageMirrored, WrongBoard
+from cellctl.errors.calibration import BoardMirrored, WrongBoard
 from cellctl.geometry.pose import Array
 from fakes.world.scene import LensTruth
 from tests.rigs.calibration.circle_boards import (
@@ -75,7 +75,7 @@ def test_a_mirrored_image_is_named_where_the_grid_has_no_mirror_image() -> None:
     image = seen_grid(HEAD, EVEN, TILTS[1], np.random.default_rng(3)).images.left
     assert detect_corners(image, EVEN) is not None
     mirrored = np.ascontiguousarray(image[:, ::-1])
-    with pytest.raises(ImageMirrored, match=r"670.*4 x 10 asymmetric circle grid"):
+    with pytest.raises(BoardMirrored, match=r"670.*4 x 10 asymmetric circle grid"):
         detect_corners(mirrored, EVEN)
 
 
