@@ -73,9 +73,10 @@ campaign-antenna: venv
 	$(BIN)/python -m benchmarks.antenna.chain.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.antenna.insertion.campaign $(if $(QUICK),--quick)
 
-# Takes twenty minutes; QUICK=1 draws few holes, in two minutes.
+# Searches take twenty minutes, whole cycles two to three hours; QUICK=1 draws few, in four minutes.
 campaign-insertion: venv
 	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.insertion.cycle_campaign $(if $(QUICK),--quick)
 
 # A hundred random cells take hours, for MuJoCo looks at every way each millimetre. N cells.
 campaign-planning: N = 100

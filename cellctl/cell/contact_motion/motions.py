@@ -117,9 +117,18 @@ class ContactMotions(ABC):
 
     @abstractmethod
     async def comply(
-        self, press_n: float, hold_s: float, until: Condition | None = None
+        self,
+        press_n: float,
+        hold_s: float,
+        until: Condition | None = None,
+        *,
+        turns: bool = True,
     ) -> ContactMotion:
-        """Null the forces in the plane and the moments while pressed; the tip moves freely."""
+        """Null the forces in the plane while pressed, and the moments; the tip moves freely.
+
+        Without ``turns`` the attitude stays: on a chamfer, whose force passes beside the tip, a peg
+        that may turn tips over instead of sliding down.
+        """
 
     @abstractmethod
     async def feed(

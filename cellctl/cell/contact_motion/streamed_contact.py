@@ -158,12 +158,17 @@ class StreamedContact(ContactMotions):
         return await self._run(path, lambda _sample: speed, end, speed, press)
 
     async def comply(
-        self, press_n: float, hold_s: float, until: Condition | None = None
+        self,
+        press_n: float,
+        hold_s: float,
+        until: Condition | None = None,
+        *,
+        turns: bool = True,
     ) -> ContactMotion:
         """See ``ContactMotions``; raises ``ContactLost`` unless a condition waits for that."""
         self._pressed_n = press_n
         push = np.array([0.0, 0.0, press_n, 0.0, 0.0, 0.0])
-        axes = (X, Y, Z, TILT_X, TILT_Y, YAW)
+        axes = (X, Y, Z, TILT_X, TILT_Y, YAW) if turns else (X, Y, Z)
         must_stay = press_n > 0 and until is None
         press = giving_way(self._loop, push, axes, contact_must_stay=must_stay)
         return await self._hold(press, hold_s, until)

@@ -15,7 +15,7 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, FacePlan
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
-from cellctl.processes.peg_in_hole.search.probe import SearchTrace, TouchProbe
+from cellctl.processes.peg_in_hole.search.probe import TOUCH_SHARE, SearchTrace, TouchProbe
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.holding import (
     directions_that_resist_a_turn,
@@ -92,7 +92,7 @@ async def search_and_insert(
     order = ", then ".join(name.value for name in plan.choice.order)
     await begin(CyclePhase.SEARCH, "touch the face over its middle")
     await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
-    await motions.touch(_DOWN, 2 * CLEAR_M, task.limits.search_n)
+    await motions.touch(_DOWN, 2 * CLEAR_M, TOUCH_SHARE * task.limits.search_n)
     # For its time stamp: the deadline of the search counts on the clock of the samples.
     begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
     probe = TouchProbe(

@@ -3,9 +3,9 @@
 import asyncio
 from dataclasses import replace
 
-from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
+from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.calibrations import (
     CALIBRATIONS,
@@ -15,6 +15,7 @@ from cellctl.processes.peg_in_hole.calibrations import (
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.run import PegFacts
+from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell
 from cellctl.runtime.jobs.factory import PLANNED
 from cellctl.runtime.process import Prepared
@@ -37,18 +38,19 @@ async def read_facts(
     kinds = [replace(kind, required=taken) if kind.name == panel.name else kind for kind in kinds]
     # Looked at ahead of time, so that no calibration expires in the middle of the run.
     snapshot = await asyncio.to_thread(store.read_all, kinds, utc_now() + PLANNED)
-    measured = _measured(cell, recipe, snapshot)
+    figures = snapshot.find(CONTACT_LOOP.for_recipe(recipe.id))
+    measured = replace(cell, settings=with_measured(cell.settings, figures))
     facts = PegFacts.of(measured, recipe, cycle_plan(recipe, measured.settings))
     facts = replace(facts, panel=snapshot.find(panel))
     return Prepared(facts, tuple(snapshot.records))
 
 
-def _measured(cell: PegCell, recipe: PegRecipe, snapshot: CalibrationSnapshot) -> PegCell:
-    figures = snapshot.find(CONTACT_LOOP.for_recipe(recipe.id))
+def with_measured(settings: PegSettings, figures: LoopFigures | None) -> PegSettings:
+    """The figures of procedure 301 in place of the bounds, where there are any."""
     if figures is None:
-        return cell
+        return settings
     better = {
         "stiffness_n_mm": figures.stiffness_n_m * MM,
         "dead_time_ms": figures.dead_time_s / _MS,
     }
-    return replace(cell, settings=cell.settings.model_copy(update=better))
+    return settings.model_copy(update=better)

@@ -9,6 +9,7 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
 from cellctl.processes.peg_in_hole.panel_reference import PanelReference
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.process import RunContext
@@ -32,20 +33,25 @@ class PegFacts:
     @classmethod
     def of(cls, cell: PegCell, recipe: PegRecipe, plan: CyclePlan) -> Self:
         """Raises ``LoopTooSlow`` or ``LoopUnstable``: the arm could not be let follow a force."""
-        task, lost_ms = plan.task, cell.settings.lost_tick_ms
-        settings = ContactSettings(
-            figures=LoopFigures(task.cell.stiffness_n_m, task.cell.dead_time_s),
-            lever_m=task.fit.peg_radius_m,
-            press_n=plan.choice.parameters.press_n.value,
-            limit_n=task.limits.fault_n,
-            limit_nm=task.limits.fault_nm,
-            follow_m=recipe.fit.depth_mm * MM + _FOLLOW_MARGIN_M,
-            lost_tick_s=None if lost_ms is None else lost_ms * _MS,
-            old_force_s=cell.settings.old_force_ms * _MS,
-            lost_force_s=cell.settings.lost_force_ms * _MS,
-        )
+        settings = contact_settings(recipe, plan, cell.settings)
         settings.check()
         return cls(cell, recipe, plan, settings)
+
+
+def contact_settings(recipe: PegRecipe, plan: CyclePlan, settings: PegSettings) -> ContactSettings:
+    """What the streamed contact of a cycle is given."""
+    task, lost_ms = plan.task, settings.lost_tick_ms
+    return ContactSettings(
+        figures=LoopFigures(task.cell.stiffness_n_m, task.cell.dead_time_s),
+        lever_m=task.fit.peg_radius_m,
+        press_n=plan.choice.parameters.press_n.value,
+        limit_n=task.limits.fault_n,
+        limit_nm=task.limits.fault_nm,
+        follow_m=recipe.fit.depth_mm * MM + _FOLLOW_MARGIN_M,
+        lost_tick_s=None if lost_ms is None else lost_ms * _MS,
+        old_force_s=settings.old_force_ms * _MS,
+        lost_force_s=settings.lost_force_ms * _MS,
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,6 +42,7 @@ def truth_of(world: "SocketScene") -> dict[str, Any]:
         "peak_force_n": _by_window(world.peaks.force_n),
         "peak_moment_nm": _by_window(world.peaks.moment_nm),
         "unsolved_steps": peg.failures,
+        "unsolved_percent": 100.0 * peg.unsolved_share,
     }
 
 

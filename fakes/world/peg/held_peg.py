@@ -37,6 +37,8 @@ class HeldPeg:
         """By how far the peg was pushed into the fingers."""
         self.failures = 0
         """Steps in which the peg crept because no equilibrium was found."""
+        self.steps = 0
+        """In contact, all of them."""
 
     @property
     def pose(self) -> Pose6:
@@ -47,6 +49,11 @@ class HeldPeg:
     def wrench(self) -> Array:
         """On the peg about its tip, in the axes of the hole (N, N·m), shape (6,)."""
         return self._now.wrench
+
+    @property
+    def unsolved_share(self) -> float:
+        """Of the steps in contact: how much of what it tells rests on no equilibrium."""
+        return self.failures / max(self.steps, 1)
 
     @property
     def touching(self) -> tuple[int, ...]:
@@ -94,6 +101,7 @@ class HeldPeg:
             self._now = free_at(wanted)
             return
         self._now = settle(self._slots, self.robot_n_m, wanted, self._now, dt_s)
+        self.steps += 1
         self.failures += not self._now.found
         self._slip()
 

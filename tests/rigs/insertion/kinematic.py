@@ -156,6 +156,8 @@ class KinematicMotions(ContactMotions):
         press_n: float,
         hold_s: float,
         until: Condition | None = None,
+        *,
+        turns: bool = True,
     ) -> ContactMotion:
         self.time_s += hold_s
         return self._ended(Ended.TIME, press_n)

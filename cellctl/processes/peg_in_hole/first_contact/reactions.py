@@ -41,7 +41,7 @@ async def meet_face(
             press_n /= 2
         else:
             lost = LostSupport(press_n)
-            await motions.comply(press_n, parameters.give_way_time.value, lost)
+            await motions.comply(press_n, parameters.give_way_time.value, lost, turns=False)
     await motions.back_out(_LIFT_M)
 
 

@@ -23,6 +23,9 @@ _ENTERED_S = 0.1
 _DIP_M = 0.1e-3
 """Lower than this beneath the face an upright peg stands on no face."""
 _LOST_RATIO = 0.3
+TOUCH_SHARE = 0.5
+"""Of the press, at which a touch ends. Until the arm has answered the force may grow by a whole
+press, and stays within the one and a half presses that a search may make."""
 _LOCAL_RADIUS_M = 0.25e-3
 
 
@@ -99,7 +102,7 @@ class TouchProbe:
         # nothing left to wait for.
         deeper_m = 1.2 * self.parameters.tilted_dip.value if np.any(rotation) else _LIFT_M
         down = np.array([0.0, 0.0, 1.0])
-        touched = await self.motions.touch(down, _LIFT_M + deeper_m, self.press_n)
+        touched = await self.motions.touch(down, _LIFT_M + deeper_m, TOUCH_SHARE * self.press_n)
         self.still_in_time(touched.last)
         return touched.last
 
@@ -127,6 +130,7 @@ class TouchProbe:
                 self.press_n,
                 self.parameters.give_way_time.value,
                 lambda sample: lost(sample) or self._late(sample),
+                turns=False,
             )
             last, entered = await self._sinks()
         stands = Felt.EDGE if _stands_lower(last) else Felt.FACE

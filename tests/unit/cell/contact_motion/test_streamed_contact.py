@@ -173,6 +173,19 @@ def test_a_turn_of_two_degrees_against_a_spring_converges_at_any_attitude() -> N
     assert np.degrees(world.sent[-1][3:]) == pytest.approx([2.0, 0.0, 0.0], abs=0.05)
 
 
+def test_a_peg_that_gives_way_without_turns_keeps_its_attitude() -> None:
+    def felt(tip: np.ndarray) -> np.ndarray:
+        """A chamfer pushes aside, beside the tip."""
+        aside_n = 1e5 * (0.3e-3 - tip[0])
+        return np.array([aside_n, 0.0, -1e6 * max(tip[2], 0.0), 0.0, 0.003 * aside_n, 0.0])
+
+    world = ElasticWorld(felt)
+    motions = contact(world)
+    run(motions.comply(5.0, 3.0, turns=False))
+    assert world.sent[-1][0] == pytest.approx(0.3e-3, abs=0.02e-3)
+    assert world.sent[-1][3:] == pytest.approx(np.zeros(3), abs=1e-9)
+
+
 def test_late_ticks_never_make_a_longer_step() -> None:
     late = {20: 2.0, 30: 4.0, 31: 1.0, 60: 2.5, 90: 6.0}
     world = ElasticWorld(wall(1e6), late_ticks=late)

@@ -73,7 +73,7 @@ def keep(folder: Path, *, hours: float = 24.0, **changes: Any) -> None:
 def test_without_a_measurement_the_bounds_count(tmp_path: Path) -> None:
     plain, used = facts(tmp_path)
     assert used == 0
-    assert plain.contact.figures.stiffness_n_m == pytest.approx(1e5)
+    assert plain.contact.figures.stiffness_n_m == pytest.approx(1.2e5)
     assert plain.contact.figures.dead_time_s == pytest.approx(0.06)
 
 

@@ -26,6 +26,7 @@ TRUTH: dict[str, Any] = {
     "slip_mm": 0.0,
     "peak_force_n": {"1_ms": 33.0, "3_ms": 31.0, "20_ms": 18.0},
     "peak_moment_nm": {"1_ms": 0.4, "3_ms": 0.3, "20_ms": 0.2},
+    "unsolved_percent": 0.4,
 }
 RECORD: dict[str, Any] = {"figures": [{"key": "capture", "value": 1.0, "verdict": "pass"}]}
 GOOD = {"result": "good", "run": 1}
@@ -70,6 +71,7 @@ def test_what_the_cell_calls_bad_is_not_good() -> None:
             {"peak_moment_nm": {"1_ms": 2.0, "3_ms": 1.1, "20_ms": 0.2}},
             ["true moment at the tip, 3 ms mean, N·m"],
         ),
+        ({"unsolved_percent": 2.5}, ["steps of the contact model without an equilibrium, %"]),
     ],
 )
 def test_every_figure_of_the_truth_has_its_limit(truth: dict[str, Any], names: list[str]) -> None:

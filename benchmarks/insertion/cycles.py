@@ -1,0 +1,170 @@
+"""One whole cycle over the contact model, from the face to the way out, held against the truth.
+
+Recipe, plan, searches, insertion and verdict are those of the daemon, with the loop that was
+measured; see ``contact_world`` for what is simpler than on the wire.
+"""
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from benchmarks.insertion.contact_world import ContactWorld, Imperfections
+from cellctl.calibration.store.store import CalibrationStore
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.ticks import NoObserver
+from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
+from cellctl.clock import utc_now
+from cellctl.config.load import load_cell
+from cellctl.errors.base import CellError
+from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
+from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, search_and_insert
+from cellctl.processes.peg_in_hole.facts import with_measured
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.run import contact_settings
+from cellctl.processes.peg_in_hole.search.face import CLEAR_M, touch_face
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.stations import believed_frames, on_face, peg_recipes
+from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
+from fakes.scenes.socket.part import draw_part
+from fakes.scenes.socket.peaks import ForcePeaks
+from fakes.scenes.socket.scenario import SocketScenario
+from fakes.world.frames import from_written
+
+CONFIG = Path(__file__).parents[2] / "config"
+SENSING = Sensing(1000.0, 0.01, 0.1)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CycleCell:
+    """A shipped cell of fakes, and the plan for it."""
+
+    scenario: SocketScenario
+    recipe: PegRecipe
+    settings: PegSettings
+    plan: CyclePlan
+
+    @classmethod
+    def shipped(cls, name: str) -> "CycleCell":
+        """``insertion-NAME.toml`` with its scenario and with the loop that was measured."""
+        file = CONFIG / f"insertion-{name}.toml"
+        config = load_cell(file)
+        (recipe,) = peg_recipes(config)
+        kind = CONTACT_LOOP.for_recipe(recipe.id)
+        store = CalibrationStore(CONFIG / str(config.calibration_dir), CALIBRATIONS)
+        figures = store.read_all([kind], utc_now()).find(kind)
+        settings = cast(PegSettings, config.processes[recipe.process])
+        # Allowances of the fake cell for a busy PC; here no PC is late.
+        prompt = {"lost_tick_ms": None, "old_force_ms": 5.0, "lost_force_ms": 20.0}
+        settings = with_measured(settings.model_copy(update=prompt), figures)
+        scenario = SocketScenario.read(file.with_suffix(".scenario.toml"))
+        return cls(scenario, recipe, settings, cycle_plan(recipe, settings))
+
+
+@dataclass(slots=True, eq=False)
+class CycleOutcome:
+    """What came of one cycle."""
+
+    seed: int
+    called_good: bool = False
+    seated: bool = False
+    """By the truth, when the cell gave its verdict or its fault."""
+    fault: str = ""
+    search_s: float = float("nan")
+    cycle_s: float = 0.0
+    peaks: dict[CyclePhase, ForcePeaks] = field(default_factory=dict)
+    """True forces of each phase."""
+    unsolved_share: float = 0.0
+    """Of the steps in contact: those in which the model found no equilibrium."""
+
+    def peak_n(self, phase: CyclePhase, window_ms: int) -> float:
+        """0 for a phase that was not reached."""
+        return self.peaks[phase].force_n[window_ms] if phase in self.peaks else 0.0
+
+
+def run_cycle(cell: CycleCell, seed: int) -> CycleOutcome:
+    """The same seed gives the same part, hole and noise."""
+    return asyncio.run(_Cycle(cell, seed).run())
+
+
+class _Cycle:
+    def __init__(self, cell: CycleCell, seed: int) -> None:
+        self._cell, self._outcome = cell, CycleOutcome(seed)
+        task, scenario = cell.plan.task, cell.scenario
+        sensor: Mapping[str, float] = scenario.force_sensors[scenario.peg.force_sensor].model_dump()
+        self._above = from_written(scenario.taught[scenario.peg.carried_by]["above_hole"])
+        self._world = ContactWorld(
+            scenario,
+            draw_part(scenario, seed, 1),
+            self._above,
+            Imperfections(
+                task.cell.repeatability_m,
+                task.cell.height_sigma_m,
+                sensor["noise_n"],
+                sensor["noise_nm"],
+            ),
+            np.random.default_rng([seed, 7]),
+        )
+
+    async def run(self) -> CycleOutcome:
+        world, outcome = self._world, self._outcome
+        begun_s = world.now_s
+        try:
+            await self._insert()
+        except CellError as fault:
+            outcome.fault = f"F{fault.number}"
+        outcome.cycle_s = world.now_s - begun_s
+        outcome.unsolved_share = world.peg.unsolved_share
+        return outcome
+
+    async def _insert(self) -> None:
+        plan, outcome = self._cell.plan, self._outcome
+        frames = believed_frames(self._cell.recipe, self._above)
+        motions = self._motions(frames)
+        await self._begin(CyclePhase.FACE, "")
+        face = await touch_face(motions, plan.task, plan.face)
+        await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
+        motions = self._motions(on_face(frames, face))
+        try:
+            result = await search_and_insert(motions, plan, CycleLog.of(plan), self._begin)
+            outcome.seated = self._world.seated
+            if result.judgement.fault is not None:
+                raise result.judgement.fault
+            outcome.called_good = True
+        except CellError as fault:
+            outcome.seated = self._world.seated
+            outcome.fault = f"F{fault.number}"
+            await back_out_after(fault, motions)
+
+    async def _begin(self, phase: CyclePhase, _words: str) -> None:
+        world, outcome, task = self._world, self._outcome, self._cell.plan.task
+        if phase is CyclePhase.SEARCH and phase not in outcome.peaks:
+            outcome.search_s = -world.now_s
+        if phase is CyclePhase.INSERTION:
+            outcome.search_s += world.now_s
+        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+        await world.guard.arm(guard_limits(tolerance.limits, SENSING))
+        world.peaks = outcome.peaks.setdefault(phase, ForcePeaks())
+
+    def _motions(self, frames: ContactFrames) -> StreamedContact:
+        world, cell = self._world, self._cell
+        tare = world.guard.give_in(frames)
+        loop = ContactLoop(
+            world.stream,
+            cast(GuardPort, world.guard),
+            tare,
+            frames,
+            settings=contact_settings(cell.recipe, cell.plan, cell.settings),
+            observer=NoObserver(),
+            clock=lambda: world.now_s,
+        )
+        return StreamedContact(loop)
