@@ -132,7 +132,7 @@ class ContactWorld:
         """Of a block of samples of the sensor, shape (n, 6)."""
         one = self._imperfections
         sigma = np.repeat([one.force_n, one.moment_nm], 3)
-        return self._rng.normal(0.0, 1.0, (_BLOCK, 6)) * sigma
+        return np.asarray(self._rng.normal(0.0, 1.0, (_BLOCK, 6)) * sigma)
 
 
 class InsertionStream(PoseStream):
