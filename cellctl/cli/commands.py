@@ -14,13 +14,12 @@ from typer.core import TyperGroup
 
 from cellctl import plugins
 from cellctl.cli.help_groups import OFFLINE, GroupedCommands
-from cellctl.cli.listing import CELL, FILES, installed
-from cellctl.cli.operator.commands import NAMES as OPERATOR_NAMES
-from cellctl.cli.operator.commands import app as operator_app
+from cellctl.cli.listing import CELL, FILES, OPERATOR, installed
 from cellctl.cli.root import new_app
 from cellctl.errors.config import UnknownDriver
 
 _CELL, _RECORDS = "The cell", "Records and faults"
+_OPERATOR_NAMES = frozenset(listed.name for listed in OPERATOR)
 
 
 class LoadedWhenAsked(GroupedCommands):
@@ -32,17 +31,15 @@ class LoadedWhenAsked(GroupedCommands):
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         """The command of this name, loaded now; None for a name that there is not."""
-        app = operator_app if cmd_name in OPERATOR_NAMES else app_with(cmd_name)
+        app = app_with(cmd_name)
         if app is None:
             return None
         return cast(TyperGroup, typer.main.get_command(app)).get_command(ctx, cmd_name)
 
-    def rows(self, ctx: Any) -> Iterator[tuple[str, str, str]]:
+    def rows(self, ctx: Any) -> Iterator[tuple[str, str, str]]:  # noqa: ARG002
         """Name, panel and summary of each command."""
-        yield from (astuple(listed) for listed in CELL)
-        operator = cast(GroupedCommands, typer.main.get_command(operator_app))
-        yield from operator.rows(ctx)
-        yield from (astuple(listed) for listed in (*FILES, *installed(_from_processes())))
+        listed = (*CELL, *OPERATOR, *FILES, *installed(_from_processes()))
+        yield from (astuple(one) for one in listed)
 
 
 def whole_app() -> typer.Typer:
@@ -55,6 +52,11 @@ def app_with(name: str) -> typer.Typer | None:
 
     Together the commands load OpenCV, scipy and matplotlib for seconds, and most need little of it.
     """
+    if name in _OPERATOR_NAMES:
+        # Their messages are models of pydantic, which take a while to build.
+        from cellctl.cli.operator.commands import app as operator_app
+
+        return operator_app
     app = new_app()
     if name in _ADD:
         _ADD[name](app)
@@ -67,7 +69,8 @@ def app_with(name: str) -> typer.Typer | None:
 
 def _from_processes() -> list[str]:
     """Commands that processes bring. One of ours keeps its name and its meaning."""
-    return [name for name in plugins.names(plugins.COMMAND) if name not in {*_ADD, *OPERATOR_NAMES}]
+    ours = {*_ADD, *_OPERATOR_NAMES}
+    return [name for name in plugins.names(plugins.COMMAND) if name not in ours]
 
 
 def _add_from_process(app: typer.Typer, group: str, name: str) -> None:

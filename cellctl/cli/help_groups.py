@@ -7,6 +7,8 @@ from typer.core import TyperGroup
 
 OFFLINE = "From files, without a cell"
 """Panel of the commands that need files alone; those of processes belong there, too."""
+OPERATE = "Operate the running cell"
+"""Panel of the commands to the daemon."""
 _OTHERS = "Commands"
 
 

@@ -7,7 +7,7 @@ of them. A test compares the names with the commands that there are.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cellctl.cli.help_groups import OFFLINE
+from cellctl.cli.help_groups import OFFLINE, OPERATE
 
 _CELL, _RECORDS, INSTALLED = "The cell", "Records and faults", "From installed packages"
 
@@ -31,6 +31,19 @@ CELL = (
     Listed("service-limits", _CELL, "Print a drop-in for cellctl.service: only this cell's peers."),
     Listed("grab", _CELL, "Save images as PNG, each exposure with a JSON file; moves nothing."),
     Listed("focus", _CELL, "Show sharpness, light, overlap and what is found, live."),
+)
+OPERATOR = (
+    Listed("status", OPERATE, "State, faults with their remedy, calibrations, links and last run."),
+    Listed("clear", OPERATE, "Aborted to Stopped: release the fault, once its cause is removed."),
+    Listed("reset", OPERATE, "Stopped or Completed to Idle: robots are released."),
+    Listed("start", OPERATE, "Assemble a part, in Production mode."),
+    Listed("procedure", OPERATE, "Calibrate, identify or verify, in Maintenance mode."),
+    Listed("hold", OPERATE, "Pause at the next safe point."),
+    Listed("unhold", OPERATE, "Go on after a Hold, beginning with new measurements."),
+    Listed("stop", OPERATE, "End motion and run; obeyed at any time, whoever is in control."),
+    Listed("abort", OPERATE, "Stop and latch all robots at once; obeyed at any time."),
+    Listed("mode", OPERATE, "Change the mode, in Stopped, Idle or Aborted."),
+    Listed("alarms", OPERATE, "List and acknowledge the alarms of the running daemon."),
 )
 FILES = (
     Listed("runs", _RECORDS, "Look into the run store."),

@@ -17,8 +17,18 @@ _NO_PART = frozenset({RunResult.STOPPED, RunResult.ABORTED, RunResult.INTERRUPTE
 
 def gauge_limits(record: RunRecord) -> Mapping[str, Limit]:
     """Limits of the gauge of each hole, mm; empty when the run does not say."""
-    holes = record.document(GAUGE_HOLES)
+    return hole_limits(record.document(GAUGE_HOLES))
+
+
+def hole_limits(holes: Mapping[str, Mapping[str, float]]) -> Mapping[str, Limit]:
+    """Limits of the gauge of each hole, mm, from the document ``GAUGE_HOLES``."""
     return {name: Limit(hole["least_mm"], hole["most_mm"]) for name, hole in holes.items()}
+
+
+def beyond_limit(limits: Mapping[str, Limit], newest_mm: Mapping[str, float]) -> bool:
+    """Whether the newest gauge of some hole fails; a hole without a limit has none to fail."""
+    verdicts = (limits.get(hole, NO_LIMIT).judge(mm) for hole, mm in newest_mm.items())
+    return Verdict.FAIL in verdicts
 
 
 def judge_gauge(record: RunRecord, gauge: Gauge) -> Verdict | None:
@@ -33,8 +43,9 @@ def part_verdict(record: RunRecord) -> str | None:
     """
     # Only the newest gauge of each hole: an earlier one may have been a mistake of whoever entered
     # it.
-    judged = {judge_gauge(record, gauge) for gauge in record.gauges}
-    if record.head.result == RunResult.GOOD and Verdict.FAIL in judged:
+    newest_mm = {gauge.hole: gauge.diameter_mm for gauge in record.gauges}
+    spoilt = beyond_limit(gauge_limits(record), newest_mm)
+    if record.head.result == RunResult.GOOD and spoilt:
         return RunResult.BAD
     return record.head.result
 

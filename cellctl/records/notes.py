@@ -6,12 +6,15 @@ They are entries of the audit log, which seals each of them, and may come after 
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cellctl.errors.records import ValueRefused
 from cellctl.records.entries import AuditEntry
 from cellctl.records.figures import Limit
-from cellctl.records.store import RunStore
+
+if TYPE_CHECKING:
+    # The list of runs, which loads this module too, does not wait for the database.
+    from cellctl.records.store import RunStore
 
 NOTE = "note"
 """Action of the audit log."""
@@ -51,7 +54,7 @@ class SurroundingReading:
 
 
 def add_note(
-    store: RunStore,
+    store: "RunStore",
     run: int,
     who: str,
     values: Mapping[str, float],

@@ -14,6 +14,7 @@ from sqlalchemy import select
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.records.database import ledger, reading, rows, schema, sealed
+from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import Database
 from cellctl.records.entries import (
     Alarm,
@@ -45,7 +46,7 @@ class RunStore:
         Raises ``StoreUnavailable``, ``StoreTooNew``.
         """
         self.path = path
-        self._database = Database(path / "store.sqlite", create=create)
+        self._database = Database(path / FILE, create=create)
         self.artefacts = ArtefactFolder(path / "files")
         self._unfinished = UnfinishedRecordings(path / "unfinished")
         self._ownership = Ownership(path / "owner.lock")
@@ -93,7 +94,7 @@ class RunStore:
         """Open a run, before anything moves; its number."""
         row = schema.RunRow(
             process=process,
-            record_schema=schema.SCHEMA_VERSION,
+            record_schema=SCHEMA_VERSION,
             serial=serial,
             recipe_id=recipe_id,
             recipe_name=recipe_name,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.records.database.schema import SCHEMA_VERSION
+from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 ROOT = Path(__file__).parents[2]
 STORE = "var/lib/cellctl/store.sqlite"

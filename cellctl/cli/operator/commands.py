@@ -2,10 +2,9 @@
 
 import typer
 
+from cellctl.cli.help_groups import OPERATE
 from cellctl.cli.operator import alarms, operate, status
 from cellctl.cli.root import new_app
-
-_PANEL = "Operate the running cell"
 
 
 def add_operator_commands(app: typer.Typer) -> None:
@@ -22,15 +21,9 @@ def add_operator_commands(app: typer.Typer) -> None:
         operate.abort,
         operate.mode,
     ):
-        app.command(command.__name__, rich_help_panel=_PANEL)(command)
-    app.add_typer(alarms.app, name="alarms", rich_help_panel=_PANEL)
+        app.command(command.__name__, rich_help_panel=OPERATE)(command)
+    app.add_typer(alarms.app, name="alarms", rich_help_panel=OPERATE)
 
 
 app = new_app()
 add_operator_commands(app)
-NAMES = frozenset(
-    [
-        *(str(command.name) for command in app.registered_commands),
-        *(str(group.name) for group in app.registered_groups),
-    ]
-)

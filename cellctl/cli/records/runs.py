@@ -12,13 +12,14 @@ from rich.table import Table
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_note import note
 from cellctl.cli.records.run_report import report
-from cellctl.cli.records.run_store import DataDir, opened_store
+from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
 from cellctl.cli.records.trend import trend
-from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, RunResult, Verdict
+from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.notes import note_words, notes_of
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+from cellctl.records.run_list import listed_runs
 from cellctl.records.seals import LedgerHead
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
@@ -42,22 +43,15 @@ def list_runs(
     as_json: AsJson = False,
 ) -> None:
     """The newest runs."""
-    with opened_store(data_dir) as store:
-        runs = store.runs(limit, serial)
-        # A plug gauge may have turned a good part into a bad one since the run was closed.
-        spoilt = {
-            head.number
-            for head in runs
-            if head.result == RunResult.GOOD
-            and part_verdict(store.run(head.number)) != RunResult.GOOD
-        }
+    found = listed_runs(store_folder(data_dir), limit, serial)
     if as_json:
-        typer.echo(as_plain([asdict(head) | {"spoilt": head.number in spoilt} for head in runs]))
+        typer.echo(as_plain([asdict(one.head) | {"spoilt": one.spoilt} for one in found]))
         return
-    if not runs:
+    if not found:
         typer.echo("no runs")
         return
-    Console().print(_table(runs, spoilt))
+    spoilt = {one.head.number for one in found if one.spoilt}
+    Console().print(_table([one.head for one in found], spoilt))
 
 
 @app.command()

@@ -18,8 +18,9 @@ from cellctl.atomic_files import sync_folder
 from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
 from cellctl.records.database.ledger import seal_all
-from cellctl.records.database.schema import SCHEMA_VERSION, Base
+from cellctl.records.database.schema import Base
 from cellctl.records.database.schema_1.tables import PROCESS
+from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 
 def bring_up_to_date(connection: Connection, file: Path) -> None:

@@ -15,9 +15,6 @@ from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
 from cellctl.records.entries import Matrix, PassComponent, PoseOrigin, Six, Verdict
 
-SCHEMA_VERSION = 3
-"""``PRAGMA user_version`` of the database; see ``migration.py`` for older ones."""
-
 
 def _by_value(kind: type[StrEnum]) -> Enum:
     """An enumeration kept as the text of its value, which is what other tools should read."""

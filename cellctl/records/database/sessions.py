@@ -18,7 +18,7 @@ from sqlalchemy.orm import Session
 from cellctl.atomic_files import make_folder_durably
 from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreUnavailable
 from cellctl.records.database import migration
-from cellctl.records.database.schema import SCHEMA_VERSION
+from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 _BUSY_TIMEOUT_S = 5
 _READS = "store_reads"

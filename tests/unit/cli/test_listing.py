@@ -1,7 +1,10 @@
 """The help lists every command, and what computes nothing loads nothing that computes."""
 
+import json
+import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,16 +12,22 @@ import pytest
 import typer
 
 from cellctl.cli import commands
-from cellctl.cli.listing import CELL, FILES, Listed
+from cellctl.cli.listing import CELL, FILES, OPERATOR, Listed
+from cellctl.cli.operator import commands as operator_commands
+from cellctl.records import RunStore
+from tests.unit.records.sample import good_run
 
 ROOT = Path(__file__).parents[3]
 
 
 def test_every_command_is_listed_once_and_no_other() -> None:
     assert sorted(listed.name for listed in (*CELL, *FILES)) == sorted(commands._ADD)
+    alone: Any = typer.main.get_command(operator_commands.app)
+    names = alone.list_commands(None)
+    assert [listed.name for listed in OPERATOR] == names
 
 
-@pytest.mark.parametrize("listed", [*CELL, *FILES], ids=lambda one: one.name)
+@pytest.mark.parametrize("listed", [*CELL, *OPERATOR, *FILES], ids=lambda one: one.name)
 def test_a_command_stands_in_its_own_panel_with_its_own_words(listed: Listed) -> None:
     group: Any = typer.main.get_command(commands.whole_app())
     name, panel, summary = next(row for row in group.rows(None) if row[0] == listed.name)
@@ -29,11 +38,11 @@ def test_a_command_stands_in_its_own_panel_with_its_own_words(listed: Listed) ->
     assert command.help.split()[:3] == summary.split()[:3]
 
 
-@pytest.mark.parametrize(
-    "words",
-    ["--help", "status", "faults", "faults 207", "runs list --data-dir absent", "runs --help"],
-)
-def test_a_command_that_computes_nothing_loads_nothing_that_computes(words: str) -> None:
+HEAVY = ("numpy", "scipy", "matplotlib", "cv2", "pandas", "sqlalchemy")
+
+
+def loaded_by(words: str, heavy: Sequence[str] = HEAVY) -> tuple[str, str]:
+    """Output of a command, and which of the heavy packages it has loaded."""
     program = (
         "import sys\n"
         f"sys.argv = ['cellctl', *{words.split()!r}]\n"
@@ -41,29 +50,42 @@ def test_a_command_that_computes_nothing_loads_nothing_that_computes(words: str)
         "try:\n"
         "    main()\n"
         "finally:\n"
-        "    heavy = {'numpy', 'scipy', 'matplotlib', 'cv2', 'pandas'} & set(sys.modules)\n"
-        "    print('heavy:', sorted(heavy), file=sys.stderr)\n"
+        f"    heavy = set({heavy!r}) & set(sys.modules)\n"
+        "    print('heavy:', *sorted(heavy), file=sys.stderr)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
     )
-    assert "heavy: []" in done.stderr, done.stderr
+    (found,) = re.findall("^heavy:(.*)$", done.stderr, re.MULTILINE)
+    return done.stdout, found.strip()
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["--help", "status", "faults", "faults 207", "runs list --data-dir absent", "runs --help"],
+)
+def test_a_command_that_computes_nothing_loads_nothing_that_computes(words: str) -> None:
+    assert loaded_by(words)[1] == ""
+
+
+@pytest.mark.parametrize("words", ["--help", "faults 207", "runs list --data-dir absent"])
+def test_whoever_asks_no_daemon_does_not_wait_for_its_messages(words: str) -> None:
+    assert loaded_by(words, ("cellctl.api.local.messages",))[1] == ""
+
+
+def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    good_run(store)
+    store.close()
+    out, heavy = loaded_by(f"runs list --json --data-dir {tmp_path}")
+    assert [run["serial"] for run in json.loads(out)] == ["SAT-0042"]
+    assert heavy == ""
 
 
 @pytest.mark.parametrize("name", ["deck", "antenna", "insertion-pin", "small"])
 def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(name: str) -> None:
-    program = (
-        "import sys\n"
-        f"sys.argv = ['cellctl', 'check', 'config/{name}.toml']\n"
-        "from cellctl.cli.app import main\n"
-        "try:\n"
-        "    main()\n"
-        "finally:\n"
-        "    heavy = {'matplotlib', 'cv2', 'sqlalchemy', 'pandas'} & set(sys.modules)\n"
-        "    print('heavy:', sorted(heavy), file=sys.stderr)\n"
+    out, heavy = loaded_by(
+        f"check config/{name}.toml", ("matplotlib", "cv2", "sqlalchemy", "pandas")
     )
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert "good." in done.stdout, done.stdout
-    assert "heavy: []" in done.stderr, done.stderr
+    assert "good." in out, out
+    assert heavy == ""

@@ -16,7 +16,7 @@ from cellctl.cli.records.runs import app
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import migration
-from cellctl.records.database.schema import SCHEMA_VERSION
+from cellctl.records.database.schema_version import SCHEMA_VERSION
 from cellctl.records.entries import LoopPass, PoseOrigin
 from cellctl.records.figures import figure
 from cellctl.records.report.export import export_run
