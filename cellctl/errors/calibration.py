@@ -4,7 +4,7 @@ CalibrationError
 ├── BoardNotFound, WrongBoard, TooFewViews, MixedImageSizes          601–604  what the images show
 ├── CalibrationCamerasSwapped, CalibrationCameraUpsideDown,
 │   PairsInconsistent, CameraSeenTwice                               605–608  how the pairs fit
-├── BoardMirrored                                                      670      one camera
+├── BoardMirrored, KnownBoardDiffers                                   670–671  one board
 ├── PoorCoverage, IllConditioned, SolveFailed, ResultOutOfLimits     611–614  any calibration
 ├── AxisMotionInvalid                                                621      base frame
 ├── BoardPoseInvalid                                                 622      board transfer
@@ -105,6 +105,15 @@ class BoardMirrored(CalibrationError):
     text = "The camera mirrors its image"
     cause = "Mirroring is switched on in the camera's settings, or it looks over a mirror."
     remedy = "Switch it off for every camera of the head, and take the images again."
+
+
+class KnownBoardDiffers(CalibrationError):
+    """The file of a known board is that of another board."""
+
+    number = 671
+    text = "The known board is another one"
+    cause = "The file belongs to a board of other corners or size, or the options are wrong."
+    remedy = "Give the result of a calibration with this very board, or none."
 
 
 class PoorCoverage(CalibrationError):

@@ -101,14 +101,14 @@ def _unchanged_by_turns(shape: ShapeModes, board: CalibrationBoard) -> ShapeMode
     columns: list[Array] = []
     sigma: list[float] = []
     # Modes of one sort by themselves, because a mixture of two would need a prior of its own.
-    sorts = np.stack([shape.sigma, np.abs(shape.modes[:, 2]).max(axis=0) > 0])
+    sorts = np.stack([np.abs(shape.modes[:, 2]).max(axis=0) == 0, shape.sigma])
     for one in np.unique(sorts, axis=1).T:
         same = np.flatnonzero((one == sorts.T).all(axis=1))
         block = kept[np.ix_(same, same)]
         values, vectors = np.linalg.eigh((block + block.T) / 2)
         chosen = vectors[:, values > _COMES_BACK]
         columns.append(shape.modes[:, :, same] @ chosen)
-        sigma += [float(one[0])] * chosen.shape[1]
+        sigma += [float(one[1])] * chosen.shape[1]
     return ShapeModes(np.concatenate(columns, axis=2), np.array(sigma))
 
 

@@ -1,11 +1,16 @@
 """The options by which a command is told which calibration board was before the camera."""
 
+import json
+from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Circles
+from cellctl.calibration.boards.known_board import KnownBoard, known_board_from_record
+from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM
+from cellctl.sealed_json import record_within
 
 BoardSize = Annotated[
     str, typer.Option(help="Inner corners, or circles of a grid, columns x rows, such as 9x6.")
@@ -31,6 +36,22 @@ Asymmetric = Annotated[
         "--asymmetric", help="Every second row of circles is moved by half: 4x11 of OpenCV."
     ),
 ]
+
+KnownBoardFile = Annotated[
+    Path | None,
+    typer.Option(help="Result of an earlier calibration with this very board, to start from."),
+]
+
+
+def read_known_board(path: Path) -> KnownBoard:
+    """The board in the result of a calibration, stored or not; raises ``FileInvalid``."""
+    try:
+        return known_board_from_record(record_within(json.loads(path.read_bytes())))
+    except OSError as error:
+        raise FileInvalid(f"{path}: {error.strerror or error}") from error
+    except (KeyError, TypeError, ValueError, OverflowError, RecursionError) as error:
+        reason = f"missing {error}" if isinstance(error, KeyError) else str(error)
+        raise FileInvalid(f"{path} holds no board: {reason}") from error
 
 
 def board_of(

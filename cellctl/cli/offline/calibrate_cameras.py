@@ -31,9 +31,11 @@ from cellctl.cli.offline.board_options import (
     BoardSize,
     CharucoMarkers,
     CircleDiameter,
+    KnownBoardFile,
     MarkerSide,
     SquareSide,
     board_of,
+    read_known_board,
 )
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
 from cellctl.cli.offline.measure import read_image
@@ -68,6 +70,7 @@ def stereo(
     circle_mm: CircleDiameter = None,
     asymmetric: Asymmetric = False,
     board_shape: Shape = None,
+    known_board: KnownBoardFile = None,
     baseline_mm: KnownBaseline = None,
     distance_mm: KnownDistance = None,
     focal_px: KnownFocal = None,
@@ -79,6 +82,7 @@ def stereo(
     the squares.
     """
     pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
+    earlier = None if known_board is None else read_known_board(known_board)
     found = detect_views(_pairs(left, right), pattern)
     console = console_of_figures()
     _say_left_out(console, found.not_found)
@@ -86,7 +90,9 @@ def stereo(
     limits = StereoLimits(known=known)
 
     def calibrated(shape: BoardShape) -> StereoResult:
-        return calibrate_stereo(found.views, pattern, found.image_size, shape=shape, limits=limits)
+        return calibrate_stereo(
+            found.views, pattern, found.image_size, shape=shape, known=earlier, limits=limits
+        )
 
     result = (
         with_chosen_shape(calibrated, lambda one: one.held_out_m)
@@ -116,17 +122,21 @@ def camera(
     circle_mm: CircleDiameter = None,
     asymmetric: Asymmetric = False,
     board_shape: Shape = None,
+    known_board: KnownBoardFile = None,
     picture: Picture = None,
 ) -> None:
     """Calibrate a single camera from images of a chessboard, ChArUco board or circle grid."""
     pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
+    earlier = None if known_board is None else read_known_board(known_board)
     named = [BoardImage(path.stem, read_image(path)) for path in _matching(images)]
     found = detect_camera_views(named, pattern)
     console = console_of_figures()
     _say_left_out(console, found.not_found)
 
     def calibrated(shape: BoardShape) -> SingleCameraResult:
-        return calibrate_single_camera(found.views, pattern, found.image_size, shape=shape)
+        return calibrate_single_camera(
+            found.views, pattern, found.image_size, shape=shape, known=earlier
+        )
 
     result = (
         with_chosen_shape(calibrated, lambda one: one.held_out_px)

@@ -6,7 +6,7 @@ length of a 25 mm lens by half a percent and does not show in the residuals.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import compress
 
 import numpy as np
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_in_camera import board_in_camera
-from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
+from cellctl.calibration.boards.board_shape import BoardShape
+from cellctl.calibration.boards.known_board import FoundShape, KnownBoard, shape_to_adjust
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
@@ -66,16 +67,18 @@ def calibrate_single_camera(
     image_size: tuple[int, int],
     *,
     shape: BoardShape = BoardShape.BENT,
+    known: KnownBoard | None = None,
     limits: SingleCameraLimits | None = None,
 ) -> SingleCameraResult:
     """Calibrate a camera; ``image_size`` is width, height in px.
 
-    Raises ``TooFewViews``, ``PoorCoverage`` or ``SolveFailed``; figures beyond
-    their limits are in ``checks``.
+    ``known`` is the board as an earlier calibration found it. Raises ``KnownBoardDiffers``,
+    ``TooFewViews``, ``PoorCoverage`` or ``SolveFailed``; figures beyond their limits are in
+    ``checks``.
     """
     limits = limits or SingleCameraLimits()
     covered, coverage_checks = _covered(views, board, image_size, limits.coverage)
-    flat_m, modes = board.corners_m, shape_modes(board, shape)
+    flat_m, modes = shape_to_adjust(board, shape, known)
     start = start_of_camera([view.corners for view in views], board, image_size)
     seen = [
         CameraView(view.name, corners) for view, corners in zip(views, start.images, strict=True)
@@ -100,7 +103,7 @@ def calibrate_single_camera(
     kept = list(compress(seen, good))
     norms = np.concatenate(residual_norms(result.residuals))
     rms_px = float(np.sqrt((norms**2).mean()))
-    held_out_px = _held_out_px(kept, board, shape, state)
+    held_out_px = _held_out_px(replace(problem, views=kept), state)
     sigma = np.sqrt(np.diag(result.covariance)[:CAMERA])
     focal_ratio = float((sigma[:2] / state.camera[:2]).max())
     return SingleCameraResult(
@@ -109,6 +112,7 @@ def calibrate_single_camera(
         board=board,
         views=residuals,
         board_m=flat_m + modes.modes @ state.shape,
+        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[CAMERA:])),
         coverage=covered,
         sigma=sigma,
         rms_px=rms_px,
@@ -159,20 +163,17 @@ def _start(start: CameraStart, modes: int) -> CameraBundle:
     )
 
 
-def _held_out_px(
-    views: Sequence[CameraView], board: CalibrationBoard, shape: BoardShape, state: CameraBundle
-) -> float | None:
+def _held_out_px(problem: CameraProblem, state: CameraBundle) -> float | None:
     """Residual of each half of the views in a camera that was calibrated with the other half."""
+    views, modes = problem.views, problem.modes
     if len(views) < 2 * _MIN_HALF:
         return None
-    modes = shape_modes(board, shape)
-    problem = CameraProblem(views, board.corners_m, modes)
     # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     squares, count = 0.0, 0
     for own in (first, ~first):
         half = adjust_bundle(problem.of_views(own), problem.state_of_views(state, own)).state
-        camera, board_m = camera_model(half.camera), board.corners_m + modes.modes @ half.shape
+        camera, board_m = camera_model(half.camera), problem.flat_m + modes.modes @ half.shape
         for view, is_own in zip(views, own, strict=True):
             if is_own:
                 continue

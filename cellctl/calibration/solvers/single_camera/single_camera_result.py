@@ -13,6 +13,11 @@ from cellctl.calibration.boards.board_record import (
     corners_from_record,
     corners_to_record,
 )
+from cellctl.calibration.boards.known_board import (
+    FoundShape,
+    found_shape_from_record,
+    found_shape_to_record,
+)
 from cellctl.calibration.checks import (
     Checks,
     all_passed,
@@ -67,6 +72,8 @@ class SingleCameraResult:
     """Standard deviation of a corner coordinate."""
     checks: Checks
     warnings: tuple[str, ...]
+    found_shape: FoundShape | None = None
+    """What was released of the board's shape; None in records of older versions."""
     residuals: Array = field(default_factory=lambda: np.zeros((0, 4)))
     """Columns u, v, du, dv in px; for the picture only, not in the record."""
 
@@ -91,6 +98,7 @@ class SingleCameraResult:
             "sigma_px": self.sigma_px,
             "board": board_to_record(self.board),
             **corners_to_record(self.board_m),
+            **found_shape_to_record(self.found_shape),
             "views": [
                 {name: getattr(view, name) for name in CameraViewResidual.__slots__}
                 for view in self.views
@@ -108,6 +116,7 @@ class SingleCameraResult:
             board=board_from_record(record["board"]),
             views=tuple(CameraViewResidual(**view) for view in record["views"]),
             board_m=corners_from_record(record),
+            found_shape=found_shape_from_record(record),
             coverage=coverage_from_record(record["coverage"]),
             sigma=np.asarray(record["sigma"], dtype=float),
             rms_px=float(record["rms_px"]),

@@ -6,12 +6,14 @@ millimetre (docs/calibration.md has the figures).
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import compress
 
 import numpy as np
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
-from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
+from cellctl.calibration.boards.board_shape import BoardShape
+from cellctl.calibration.boards.known_board import FoundShape, KnownBoard, shape_to_adjust
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
 from cellctl.calibration.solvers.stereo.bundle import BundleState, StereoProblem
@@ -40,20 +42,21 @@ def calibrate_stereo(
     image_size: tuple[int, int],
     *,
     shape: BoardShape = BoardShape.BENT,
+    known: KnownBoard | None = None,
     pitch_relative_sigma: float = 0.0,
     limits: StereoLimits | None = None,
 ) -> StereoResult:
     """Calibrate a head.
 
-    ``pitch_relative_sigma`` is the standard uncertainty of the board's pitch; nothing in the images
-    can tell it, and it goes into the covariance of the translation. Raises ``TooFewViews``,
-    ``PoorCoverage``, ``CalibrationCamerasSwapped``, ``CalibrationCameraUpsideDown``,
-    ``PairsInconsistent`` or ``SolveFailed``; figures beyond their limits are in ``checks``.
+    ``known`` is the board as an earlier calibration found it. ``pitch_relative_sigma`` is the
+    standard uncertainty of its pitch; nothing in the images can tell it, and it goes into the
+    covariance of the translation. Raises ``KnownBoardDiffers``, ``TooFewViews``, ``PoorCoverage``,
+    ``CalibrationCamerasSwapped``, ``CalibrationCameraUpsideDown``, ``PairsInconsistent`` or
+    ``SolveFailed``; figures beyond their limits are in ``checks``.
     """
     limits = limits or StereoLimits()
     left, right, coverage_checks = check_coverage(views, board, image_size, limits.coverage)
-    modes = shape_modes(board, shape, turns_known=_turns_known(board))
-    flat_m = board.corners_m
+    flat_m, modes = shape_to_adjust(board, shape, known, turns_known=_turns_known(board))
     start = start_values(views, board, image_size, len(modes.sigma))
     problem = StereoProblem(start.views, flat_m, modes)
     adjusted = adjust_good_views(problem, start.state, start.plausible, start.excluded)
@@ -64,7 +67,7 @@ def calibrate_stereo(
         raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")
     kept = list(compress(start.views, good))
     board_m = flat_m + modes.modes @ state.shape
-    validation = _validate(kept, board, shape, state, board_m)
+    validation = _validate(replace(problem, views=kept), state, board_m)
     norms = np.concatenate(residual_norms(result.residuals))
     covariance = _covariance(result, pitch_relative_sigma)
     head = StereoHead(
@@ -82,6 +85,7 @@ def calibrate_stereo(
         board=board,
         views=_view_residuals(start.views, adjusted),
         board_m=board_m,
+        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[24:])),
         coverage=(left, right),
         validation=validation,
         checks=(
@@ -131,19 +135,11 @@ def _view_residuals(
     )
 
 
-def _validate(
-    views: Sequence[BoardView],
-    board: CalibrationBoard,
-    shape: BoardShape,
-    state: BundleState,
-    board_m: Array,
-) -> CrossValidation | None:
+def _validate(problem: StereoProblem, state: BundleState, board_m: Array) -> CrossValidation | None:
     """Two half calibrations, every other view each; None when there are too few views."""
+    views = problem.views
     if len(views) < 2 * _MIN_HALF:
         return None
-    problem = StereoProblem(
-        views, board.corners_m, shape_modes(board, shape, turns_known=_turns_known(board))
-    )
     # Every other view: neighbours in time are alike, so both halves cover the whole range.
     first = np.arange(len(views)) % 2 == 0
     parts = (list(views[0::2]), list(views[1::2]))

@@ -13,6 +13,11 @@ from cellctl.calibration.boards.board_record import (
     corners_from_record,
     corners_to_record,
 )
+from cellctl.calibration.boards.known_board import (
+    FoundShape,
+    found_shape_from_record,
+    found_shape_to_record,
+)
 from cellctl.calibration.checks import (
     Checks,
     all_passed,
@@ -70,6 +75,8 @@ class StereoResult:
     warnings: tuple[str, ...]
     sigma_px: float
     """Standard deviation of a corner coordinate."""
+    found_shape: FoundShape | None = None
+    """What was released of the board's shape; None in records of older versions."""
     left_residuals: Array = field(default_factory=_no_residuals)
     """Columns u, v, du, dv in px; for the picture only, not in the record."""
     right_residuals: Array = field(default_factory=_no_residuals)
@@ -97,6 +104,7 @@ class StereoResult:
             "sigma_px": self.sigma_px,
             "board": board_to_record(self.board),
             **corners_to_record(self.board_m),
+            **found_shape_to_record(self.found_shape),
             "views": [_view_to_record(view) for view in self.views],
             "coverage": [coverage_to_record(side) for side in self.coverage],
             "cross_validation": _validation_to_record(self.validation),
@@ -112,6 +120,7 @@ class StereoResult:
             board=board_from_record(record["board"]),
             views=tuple(ViewResidual(**view) for view in record["views"]),
             board_m=corners_from_record(record),
+            found_shape=found_shape_from_record(record),
             coverage=(left, right),
             validation=_validation_from_record(record["cross_validation"]),
             checks=checks_from_record(record["checks"]),

@@ -13,7 +13,13 @@ from typer.testing import CliRunner, Result
 
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.cli.offline.calibrate import app
-from cellctl.errors.calibration import MixedImageSizes, PoorCoverage, TooFewViews, WrongBoard
+from cellctl.errors.calibration import (
+    KnownBoardDiffers,
+    MixedImageSizes,
+    PoorCoverage,
+    TooFewViews,
+    WrongBoard,
+)
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.vision import ImageFileInvalid
 from cellctl.vision.camera.single_camera import read_single_camera
@@ -130,3 +136,20 @@ def test_options_of_boards_that_do_not_go_together(
     assert result.exit_code == 2
     # The console breaks lines where they end.
     assert reason in " ".join(result.output.replace("│", " ").split())
+
+
+def test_the_board_of_an_earlier_result(images: Path, tmp_path: Path) -> None:
+    first, second = tmp_path / "first.json", tmp_path / "second.json"
+    assert calibrate(f"{images}/c-*.png", first).exit_code == 0
+    again = calibrate(f"{images}/c-*.png", second, "--known-board", first)
+    assert again.exit_code == 0, again.output
+    boards = [np.array(json.loads(p.read_text())["board_corners_mm"]) for p in (first, second)]
+    assert np.abs(boards[0] - boards[1]).max() < 5e-3
+    other = calibrate(f"{images}/c-*.png", second, "--known-board", first, "--square-mm", "9")
+    assert isinstance(other.exception, KnownBoardDiffers)
+    cut = tmp_path / "cut.json"
+    cut.write_text('{"board": {}}')
+    for path, words in ((cut, "holds no board"), (tmp_path / "none.json", "No such file")):
+        result = calibrate(f"{images}/c-*.png", second, "--known-board", path)
+        assert isinstance(result.exception, FileInvalid)
+        assert words in str(result.exception)
