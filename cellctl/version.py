@@ -8,6 +8,8 @@ from pathlib import Path
 from cellctl import __version__
 
 ROOT = Path(__file__).parents[1]
+RELEASE = "RELEASE"
+"""File in which `make install` keeps the revision of the tree that it was made from."""
 _TIMEOUT_S = 5.0
 
 
@@ -15,14 +17,16 @@ _TIMEOUT_S = 5.0
 def software() -> str:
     """``cellctl 0.1.0 (1a2b3c4d5e6f)``, with ``-dirty`` where files differ from the revision.
 
-    The same as long as the process lives. Blocks while git is asked, once; without a checkout or
-    git there is no revision.
+    The same as long as the process lives. Blocks while git is asked, once; without an installed
+    release, a checkout or git there is no revision.
     """
     revision = _revision(ROOT)
     return f"cellctl {__version__} ({revision})" if revision else f"cellctl {__version__}"
 
 
 def _revision(root: Path) -> str:
+    if (root / RELEASE).is_file():
+        return (root / RELEASE).read_text(encoding="utf-8").strip()
     if not (root / ".git").exists():
         return ""  # installed as a package: a repository around it would be another one
     # The daemon's user does not own the checkout; it only reads.

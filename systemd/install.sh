@@ -42,11 +42,19 @@ require_interpreter() {
     esac
 }
 
+# Of a checkout, or what a release that is installed from says of itself.
+revision() {
+    if [ -e "$HERE/RELEASE" ]; then
+        cat "$HERE/RELEASE"
+        return
+    fi
+    git -c safe.directory="$HERE" -C "$HERE" describe --always --dirty --abbrev=12 --exclude='*' 2>/dev/null ||
+        say source
+}
+
 release_name() {
     version=$(sed -n 's/^version = "\(.*\)"/\1/p' "$HERE/pyproject.toml")
-    revision=$(git -c safe.directory="$HERE" -C "$HERE" describe --always --dirty --exclude='*' 2>/dev/null) ||
-        revision=source
-    say "$version-$revision"
+    say "$version-$(revision)"
 }
 
 copy_source() {
@@ -60,6 +68,7 @@ copy_source() {
 build_release() {
     mkdir -p "$1"
     copy_source "$1"
+    revision >"$1/RELEASE"
     "$PYTHON" -m venv "$1/.venv"
     "$1/.venv/bin/python" -m pip install --quiet --require-hashes -r "$1/requirements.lock"
     "$1/.venv/bin/python" -m pip install --quiet --no-deps --no-build-isolation -e "$1"

@@ -72,8 +72,9 @@ def _text(text: str | None) -> str:
 
 
 def _escaped(text: str) -> str:
-    """A line that begins with a dot or an apostrophe would be a request."""
-    lines = text.replace("\\", r"\e").replace("-", r"\-").splitlines()
+    """A line that begins with a dot or an apostrophe would be a request, and not every terminal has
+    the character of three dots."""
+    lines = text.replace("\\", r"\e").replace("-", r"\-").replace("…", "...").splitlines()
     return "\n".join(
         line if line == ".PP" or not line.startswith((".", "'")) else rf"\&{line}" for line in lines
     )

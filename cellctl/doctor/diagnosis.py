@@ -52,7 +52,8 @@ def diagnose(cell_file: Path, pc: Pc | None = None) -> Iterator[Subject]:
         yield Subject("Records", tuple(storage_findings(pc, service, cell)))
     yield Subject("Clock", tuple(clock_findings(pc)))
     if cell is not None:
-        yield Subject("Network", tuple(network_findings(pc, cell)))
+        if of_network := tuple(network_findings(pc, cell)):
+            yield Subject("Network", of_network)
         if service is not None:
             limits = limits_finding(pc, cell, str(cell_file))
             yield Subject("Devices", (limits, *device_findings(pc, service, cell)))

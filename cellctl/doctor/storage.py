@@ -54,7 +54,7 @@ def _writable(pc: Pc, service: Service, folder: Path) -> Iterator[Finding]:
 def _kind(pc: Pc, folder: Path) -> Iterator[Finding]:
     kind = _file_system(pc.read("/proc/mounts") or "", folder)
     if kind in _FORGETS:
-        found = f"{folder} is on a {kind}: a power cut takes every record"
+        found = f"{folder} is on {kind}: a power cut takes every record"
         yield bad("disk", found, "a local disk with a journal (ext4, xfs, btrfs)")
     elif kind in _FAR:
         found = f"{folder} is on {kind}: a record waits for the network, and locks may not hold"

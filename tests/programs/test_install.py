@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cellctl import __version__
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 ROOT = Path(__file__).parents[2]
@@ -124,6 +125,9 @@ def test_a_whole_installation(tmp_path: Path) -> None:
     done = make("install", tmp_path, PYTHON=sys.executable)
     assert done.returncode == 0, done.stderr
     program = tmp_path / "usr/local/bin/cellctl"
+    release = os.readlink(tmp_path / "opt/cellctl/current").removeprefix("releases/")
+    said = (tmp_path / "opt/cellctl/current/RELEASE").read_text().strip()
+    assert release == f"{__version__}-{said}"
     cell_file = tmp_path / "etc/cellctl/cell.toml"
     checked = subprocess.run(
         [program, "check", cell_file], capture_output=True, text=True, check=False

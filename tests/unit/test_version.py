@@ -33,3 +33,8 @@ def test_without_a_checkout_there_is_none(tmp_path: Path) -> None:
     assert _revision(tmp_path) == ""
     (tmp_path / ".git").mkdir()
     assert _revision(tmp_path) == "", "git cannot tell"
+
+
+def test_an_installed_release_tells_what_it_was_made_from(tmp_path: Path) -> None:
+    (tmp_path / "RELEASE").write_text("1a2b3c4d5e6f\n")
+    assert _revision(tmp_path) == "1a2b3c4d5e6f"
