@@ -152,7 +152,7 @@ install_release() {
 # Which form of the run store a release knows, and which one there is.
 known_form() {
     "$1/.venv/bin/python" -c \
-        "from cellctl.records.database.schema import SCHEMA_VERSION; print(SCHEMA_VERSION)"
+        "from cellctl.records.database.schema_version import SCHEMA_VERSION; print(SCHEMA_VERSION)"
 }
 present_form() {
     "$1/.venv/bin/python" -c "import sqlite3, sys
