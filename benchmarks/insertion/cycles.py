@@ -135,7 +135,9 @@ class _Cycle:
         await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
         motions = self._motions(on_face(frames, face))
         try:
-            result = await search_and_insert(motions, plan, CycleLog.of(plan), self._begin)
+            result = await search_and_insert(
+                motions, plan, face.yields_m, CycleLog.of(plan), self._begin
+            )
             outcome.seated = self._world.seated
             if result.judgement.fault is not None:
                 raise result.judgement.fault

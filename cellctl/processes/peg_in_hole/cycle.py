@@ -81,12 +81,17 @@ BeginPhase = Callable[[CyclePhase, str], Awaitable[None]]
 
 
 async def search_and_insert(
-    motions: ContactMotions, plan: CyclePlan, log: CycleLog, begin: BeginPhase
+    motions: ContactMotions,
+    plan: CyclePlan,
+    face_yields_m: float,
+    log: CycleLog,
+    begin: BeginPhase,
 ) -> CycleResult:
     """From over the touched face, where frame A lies, to the verdict; ``log`` takes what is felt.
 
-    Raises what search and insertion raise; then the caller decides about the way out. Without a
-    touch on the part's rear the verdict rests on the grip force alone.
+    ``face_yields_m``: of the touches that frame A was laid by. Raises what search and insertion
+    raise; then the caller decides about the way out. Without a touch on the part's rear the verdict
+    rests on the grip force alone.
     """
     task = plan.task
     order = ", then ".join(name.value for name in plan.choice.order)
@@ -111,7 +116,7 @@ async def search_and_insert(
     await require_walls(motions, task, plan.choice.parameters, log.contacts)
     felt = log.contacts[-1].found.value
     await begin(CyclePhase.INSERTION, f"insert: the hole was found by {found_by.value}, {felt}")
-    fed = await insert(motions, task)
+    fed = await insert(motions, task, face_yields_m)
     await begin(CyclePhase.VERDICT, "verify: pushed to four sides")
     capture = await measure_capture(motions, task)
     keys, pull_n = task.fit.keys, plan.seat.pull_n

@@ -25,6 +25,9 @@ class AboveHole(AtHome):
 class FaceTouched(AboveHole):
     """Frame A lies on the face now; the tip is clear of it."""
 
+    face_yields_m: float
+    """See ``TouchedFace``."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PegInserted(FaceTouched):

@@ -41,19 +41,20 @@ class Fed:
     samples: tuple[ContactSample, ...]
 
 
-async def insert(motions: ContactMotions, task: SearchTask) -> Fed:
+async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float) -> Fed:
     """To the seat, with at most three recoveries that each gain depth.
 
-    Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with the figures
-    where the peg stands.
+    The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
+    face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
+    the figures where the peg stands.
     """
     if task.fit.keys is not None:
         await find_keyway(motions, task, task.fit.keys)
-    feed = _Feed(motions, task)
+    feed = _Feed(motions, task, face_yields_m)
     motion = await feed.on()
     helped: list[str] = []
     begun_s = motion.last.time_s
-    while motion.ended is Ended.FORCE and _short_of_seat(motion, task):
+    while motion.ended is Ended.FORCE and feed.short_of_seat(motion):
         standing = Standing.of(motion.last)
         measures = IN_ORDER if standing.sideways else WHEN_STRAIGHT
         left = [one for one in measures if one.name not in helped]
@@ -70,8 +71,8 @@ async def insert(motions: ContactMotions, task: SearchTask) -> Fed:
 class _Feed:
     """Feeds, and keeps every sample."""
 
-    def __init__(self, motions: ContactMotions, task: SearchTask) -> None:
-        self._motions, self._task = motions, task
+    def __init__(self, motions: ContactMotions, task: SearchTask, face_yields_m: float) -> None:
+        self._motions, self._task, self._face_yields_m = motions, task, face_yields_m
         self._samples: list[ContactSample] = []
 
     async def on(self) -> ContactMotion:
@@ -83,26 +84,27 @@ class _Feed:
         self._samples += motion.samples
         return motion
 
+    def short_of_seat(self, motion: ContactMotion) -> bool:
+        """Whether a feed that a force has ended is not at the seat."""
+        reached_m = self._unloaded_m(Standing.of(motion.last))
+        return reached_m < self._task.fit.depth_m - SEAT_TOLERANCE_M
+
+    def _unloaded_m(self, standing: Standing) -> float:
+        """Depth of the tip, which arm and contact have yielded under the force to get beyond."""
+        yields_m = standing.axial_n / self._task.cell.stiffness_n_m
+        return standing.depth_m - yields_m + self._face_yields_m
+
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""
         end = Standing.of(motion.last)
         return Fed(
-            depth_m=_unloaded_m(end, self._task),
+            depth_m=self._unloaded_m(end),
             seat_force_n=end.axial_n,
             seat_slope_n_m=seat_slope_n_m(motion.samples),
             greatest_force_n=greatest_axial_n(self._samples),
             recoveries=recoveries,
             samples=tuple(self._samples),
         )
-
-
-def _short_of_seat(motion: ContactMotion, task: SearchTask) -> bool:
-    return _unloaded_m(Standing.of(motion.last), task) < task.fit.depth_m - SEAT_TOLERANCE_M
-
-
-def _unloaded_m(standing: Standing, task: SearchTask) -> float:
-    """Depth of the tip, which arm and contact have yielded under the force to get beyond."""
-    return standing.depth_m - standing.axial_n / task.cell.stiffness_n_m
 
 
 async def _help(

@@ -4,13 +4,13 @@ Its height is never taken from vision: every depth of search, insertion and verd
 plane. Source: section 2 (S1b, S1c) of the study of insertion by touch.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.contact_motion.motions import ContactMotions, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
@@ -47,6 +47,9 @@ class TouchedFace:
     """Of the fourth touch, away from the plane of the others."""
     slope_sigma: float
     """Standard deviation of each component of ``slope``."""
+    yields_m: float = 0.0
+    """By so much arm and face had yielded to the touches: a tip that the face does not carry yet is
+    so much less deep."""
 
     @property
     def tilt_rad(self) -> float:
@@ -80,16 +83,23 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     above_m = height_uncertainty_m + _OVER_PLANE_M
     reach_m = 2 * height_uncertainty_m + _OVER_PLANE_M + _BEYOND_M
     await touching.over_first(places[0], plan.datum_depth_m - above_m)
-    first_m = await touching.at(places[0], reach_m, speed_m_s=fast_m_s)
-    depths = [first_m]
+    touches = [await touching.at(places[0], reach_m, speed_m_s=fast_m_s)]
+    first_m = _depth_m(touches[0])
     for angle_rad, place in zip(_ANGLES_RAD[1:], places[1:], strict=True):
         # A face that is tilted by as much as is allowed is still met from above.
         apart_m = float(np.linalg.norm(place - places[0]))
         above_m = _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
         await touching.over_next(float(angle_rad), radius_m, first_m - above_m)
-        depths.append(await touching.at(place, 2 * above_m + _BEYOND_M))
+        touches.append(await touching.at(place, 2 * above_m + _BEYOND_M))
     await touching.leave(places[-1], first_m - above_m)
-    return _checked(places, np.array(depths) - plan.datum_depth_m, task, radius_m)
+    depths = np.array([_depth_m(touch) for touch in touches])
+    pressed_n = np.array([-touch.force_n[2] for touch in touches])[_OF_PLANE]
+    face = _checked(places, depths - plan.datum_depth_m, task, radius_m)
+    return replace(face, yields_m=float(np.mean(pressed_n)) / task.cell.stiffness_n_m)
+
+
+def _depth_m(touch: ContactSample) -> float:
+    return float(touch.task_position_tip_m[2])
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,15 +140,17 @@ class _Touching:
         """High enough for a plug that stands proud of what is touched."""
         return from_m if self.datum_depth_m == 0 else -self.height_uncertainty_m - _CLEAR_M
 
-    async def at(self, place_m: Array, travel_m: float, *, speed_m_s: float | None = None) -> float:
-        """Depth of the tip in contact at a place (2,), over which it stands."""
+    async def at(
+        self, place_m: Array, travel_m: float, *, speed_m_s: float | None = None
+    ) -> ContactSample:
+        """The tip in contact at a place (2,), over which it stands."""
         touched = await self.motions.touch(_DOWN, travel_m, self.task.limits.search_n, speed_m_s)
         if touched.ended is not Ended.FORCE:
             x_mm, y_mm = place_m * 1e3
             raise FaceAbsent(
                 f"no contact at x {x_mm:.1f}, y {y_mm:.1f} mm within {travel_m * 1e3:.1f} mm"
             )
-        return float(touched.last.task_position_tip_m[2])
+        return touched.last
 
 
 def _checked(places: Array, depths: Array, task: SearchTask, radius_m: float) -> TouchedFace:

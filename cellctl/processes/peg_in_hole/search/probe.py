@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
+from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass, class_by_force
 from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, STANDS_M, SearchParameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
@@ -122,7 +123,7 @@ class TouchProbe:
     async def enters(self) -> bool:
         """Press; True when the peg stays below the depth of entry."""
         last, entered = await self._sinks()
-        if not entered and _stands_lower(last):
+        if not entered and self._on_edge(last):
             # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in. That
             # nothing carries it then is what is hoped for.
             lost = LostSupport(self.press_n)
@@ -133,10 +134,15 @@ class TouchProbe:
                 turns=False,
             )
             last, entered = await self._sinks()
-        stands = Felt.EDGE if _stands_lower(last) else Felt.FACE
+        stands = Felt.EDGE if self._on_edge(last) else Felt.FACE
         self.trace.note(last, Felt.ENTRY if entered else stands)
         self.still_in_time(last)
         return entered
+
+    def _on_edge(self, sample: ContactSample) -> bool:
+        """By its depth, or by a force that no face makes: the height of a face is not that sure."""
+        across = class_by_force(sample.force_n, self.task.cell) is not ContactClass.END_FACE
+        return _stands_lower(sample) or across
 
     async def _sinks(self) -> tuple[ContactSample, bool]:
         """Press until the peg is in, or something carries it; the end, and whether it is in."""

@@ -28,17 +28,19 @@ async def find_and_insert(touched: FaceTouched) -> PegInserted:
     log = CycleLog.of(plan)
     try:
         async with contact(run, touched.frames, keys.INSERTION) as motions:
-            result = await _cycle(run, motions, log)
+            result = await _cycle(run, motions, touched.face_yields_m, log)
     except CellError as fault:
         await record_failure(run.recorder, log, fault)
         raise
     finally:
         # Whatever came of it: map and path show where a search has looked that found nothing.
         await record_search(run.recorder, log)
-    return PegInserted(run, touched.frames, result)
+    return PegInserted(run, touched.frames, touched.face_yields_m, result)
 
 
-async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleResult:
+async def _cycle(
+    run: PegRun, motions: StreamedContact, face_yields_m: float, log: CycleLog
+) -> CycleResult:
     plan = run.facts.plan
 
     async def begin(phase: CyclePhase, words: str) -> None:
@@ -46,7 +48,7 @@ async def _cycle(run: PegRun, motions: StreamedContact, log: CycleLog) -> CycleR
         await watch_phase(run, motions, phase)
 
     try:
-        result = await search_and_insert(motions, plan, log, begin)
+        result = await search_and_insert(motions, plan, face_yields_m, log, begin)
         # Before the arm leaves the part: what was found is on the disk then, also when the way out
         # fails.
         await motions.hold_while(record_cycle(run, result))

@@ -26,7 +26,7 @@ async def find_face(above: AboveHole) -> FaceTouched:
     frames = on_face(above.frames, face)
     if run.facts.panel is not None:
         await _compare(run, run.facts.panel, frames)
-    return FaceTouched(run, frames)
+    return FaceTouched(run, frames, face.yields_m)
 
 
 async def _compare(run: PegRun, panel: PanelReference, frames: ContactFrames) -> None:

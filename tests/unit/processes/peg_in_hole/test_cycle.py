@@ -42,7 +42,7 @@ async def run_cycle(
             phases.append(phase)
 
     await touch_face(motions, plan.task, plan.face)
-    return await search_and_insert(motions, plan, CycleLog.of(plan), begin)
+    return await search_and_insert(motions, plan, 0.0, CycleLog.of(plan), begin)
 
 
 @pytest.mark.parametrize("task", [plug(), pin(chamfer_mm=0.5), SOFT_PIN])

@@ -48,8 +48,8 @@ class Bore(KinematicMotions):
         return ContactSample(self.time_s, self.position_m.copy(), np.zeros(3), force, moment, 0.3)
 
 
-def fed(bore: Bore) -> Fed:
-    result = asyncio.run(insert(bore, bore.task))
+def fed(bore: Bore, face_yields_m: float = 0.0) -> Fed:
+    result = asyncio.run(insert(bore, bore.task, face_yields_m))
     assert bore.greatest_asked_n == bore.task.limits.insertion_n  # no retry asks for more
     return result
 
@@ -60,6 +60,13 @@ def test_a_free_hole_is_fed_to_its_seat() -> None:
     assert found.seat_force_n == pytest.approx(LIMIT_N, abs=0.1)
     assert found.seat_slope_n_m == pytest.approx(1e6, rel=0.01)
     assert found.recoveries == ()
+
+
+def test_depth_counts_from_the_face_and_not_from_where_it_had_yielded_to() -> None:
+    # At its seat, and by the frame 0.4 mm short of it: the touches had pressed the face in.
+    found = fed(Bore([11.6], side_n=0), face_yields_m=0.4e-3)
+    assert found.recoveries == ()
+    assert found.depth_m == pytest.approx(12e-3 - LIMIT_N / 1e6, abs=1e-6)
 
 
 def test_a_jam_is_freed_by_giving_way_first() -> None:

@@ -32,6 +32,7 @@ def test_slopes_are_found_as_well_as_they_are_said_to_be() -> None:
     assert abs(np.mean([face.depth_m for face in faces])) < 5e-6
     assert faces[0].tilt_rad == pytest.approx(np.hypot(*slope), rel=0.2)
     assert faces[0].slope[0] > 0
+    assert faces[0].yields_m == pytest.approx(8.0 / 1e6, rel=0.2)
 
 
 def test_a_tilted_face_is_a_fault() -> None:

@@ -58,6 +58,14 @@ def test_a_peg_on_the_chamfer_slides_in_when_it_is_let_go(stiffness_n_m: float) 
     assert asyncio.run(probe_in(world, stiffness_n_m, 0.5).enters())
 
 
+def test_a_peg_on_the_chamfer_is_known_by_its_side_force_too() -> None:
+    # The touches had pressed the face in by 0.3 mm: by its depth the peg stands on the face.
+    believed_m = 0.3e-3
+    part, sunk = hole(1e5, 0.5), np.array([0, 0, believed_m, 0, 0, 0])
+    world = standing_in(lambda tip: part(tip + sunk), at_m=(0.25e-3, 0.0, 0.0))
+    assert asyncio.run(probe_in(world, 1e5, 0.5).enters())
+
+
 @pytest.mark.parametrize("stiffness_n_m", [1e5, 1e6])
 def test_a_peg_that_the_face_carries_is_not_pressed_for_longer(stiffness_n_m: float) -> None:
     world = standing_in(wall(stiffness_n_m), at_m=(0.0, 0.0, -0.02e-3))

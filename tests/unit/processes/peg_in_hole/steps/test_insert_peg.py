@@ -66,7 +66,7 @@ class Bench:
             SimpleNamespace(plan=planned(self.task), cell=SimpleNamespace(arm=self._arm())),
         )
         self.patch.setattr(insert_peg, "contact", self._contact)
-        touched = FaceTouched(PegRun(facts, self.board, recorder), FRAMES)
+        touched = FaceTouched(PegRun(facts, self.board, recorder), FRAMES, 0.0)
         self.fault: CellError | None = None
         try:
             await insert_peg.find_and_insert(touched)
