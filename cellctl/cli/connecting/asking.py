@@ -1,6 +1,7 @@
 """Asks all devices of a cell at once, those first that tell whether somebody has the cell."""
 
 import asyncio
+import threading
 from collections.abc import Callable, Coroutine, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -30,7 +31,7 @@ async def ask_devices(
     it may have the outputs, cameras and sensors too, and would lose them.
     """
     with line_port_held(cell.plc) as line:
-        found = await _asked(cell, _robots(cell), tell)
+        found = await _robots_and_channels(cell, tell)
         taken = [one.path for one in found if isinstance(one.fault, PortInUse)]
         others = _others(cell)
         if taken:
@@ -61,12 +62,19 @@ async def _asked(
     return [task.result() for task in asked]
 
 
-def _robots(cell: CellConfig) -> Questions:
-    """Robots and the guards' stop channels, which a controller may open together only."""
-    return {f"robots.{name}": ask_robot(cell, name) for name in cell.robots} | {
-        f"force_sensors.{name}.stop_channel": ask_stop_channel(name, sensor)
+async def _robots_and_channels(cell: CellConfig, tell: Callable[[str, bool], None]) -> list[Answer]:
+    """Together, since a controller may open its connections together only."""
+    robots_asked = threading.Event()
+    channels = {
+        f"force_sensors.{name}.stop_channel": ask_stop_channel(name, sensor, robots_asked)
         for name, sensor in cell.force_sensors.items()
     }
+    async with asyncio.TaskGroup() as tasks:
+        of_channels = tasks.create_task(_asked(cell, channels, tell))
+        robots = {f"robots.{name}": ask_robot(cell, name) for name in cell.robots}
+        found = await _asked(cell, robots, tell)
+        robots_asked.set()
+    return [*found, *of_channels.result()]
 
 
 def _others(cell: CellConfig) -> Questions:

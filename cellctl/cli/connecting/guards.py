@@ -32,9 +32,12 @@ async def ask_sensor(name: str, config: ForceSensorConfig) -> Answer:
     return await in_thread(partial(_sensor, name, config))
 
 
-async def ask_stop_channel(name: str, config: ForceSensorConfig) -> Answer:
-    """A second of reports with heartbeats; raises what the driver raises."""
-    return await in_thread(partial(_stop_channel, name, config))
+async def ask_stop_channel(
+    name: str, config: ForceSensorConfig, robots_asked: threading.Event
+) -> Answer:
+    """A second of reports with heartbeats, which go on until the robots have been asked too: a
+    controller may latch when it loses the channel. Raises what the driver raises."""
+    return await in_thread(partial(_stop_channel, name, config, robots_asked))
 
 
 def _sensor(name: str, config: ForceSensorConfig, ended: threading.Event) -> Answer:
@@ -86,13 +89,15 @@ def _bad(health: FtHealth) -> tuple[str, ...]:
     return tuple(f"{count} {what}" for what, count in counts.items() if count)
 
 
-def _stop_channel(name: str, config: ForceSensorConfig, ended: threading.Event) -> Answer:
+def _stop_channel(
+    name: str, config: ForceSensorConfig, robots_asked: threading.Event, ended: threading.Event
+) -> Answer:
     channel: StopChannel = _driver(plugins.STOP_CHANNEL, config.stop_channel)
     began_s = now_s()
     channel.open()
     try:
         connect_s = now_s() - began_s
-        reports = _reports(channel, ended)
+        reports = heard_from(channel, robots_asked, ended)
     finally:
         channel.close()
     path, driver = f"force_sensors.{name}.stop_channel", config.stop_channel.driver
@@ -104,7 +109,6 @@ def _stop_channel(name: str, config: ForceSensorConfig, ended: threading.Event) 
     last = reports[-1]
     place = "  ".join(f"{value / MM:.1f}" for value in last.position_m)
     facts["reports"] = f"{len(reports)} in {LISTEN_S:g} s, {spread_ms(gaps_s)}"
-    facts["stop latch, as found"] = "set" if reports[0].stop_latched else "not set"
     facts["flange"] = f"{place} mm of the base"
     most_ms = 1e3 * max(gaps_s, default=0.0)
     late = most_ms > config.flange_age_ms
@@ -112,18 +116,23 @@ def _stop_channel(name: str, config: ForceSensorConfig, ended: threading.Event) 
     return Answer(path, driver, facts, notes=(text,) if late else ())
 
 
-def _reports(channel: StopChannel, ended: threading.Event) -> list[FlangeState]:
-    """Those of a second; heartbeats go out meanwhile, for whom a dead man waits."""
+def heard_from(
+    channel: StopChannel, robots_asked: threading.Event, ended: threading.Event
+) -> list[FlangeState]:
+    """The reports of a second.
+
+    Heartbeats, for which a dead man waits, go out until ``robots_asked`` or ``ended`` is set.
+    """
     found: list[FlangeState] = []
     end_s = now_s() + LISTEN_S
     beat_s = now_s()
-    while now_s() < end_s and not ended.is_set():
+    while (now_s() < end_s or not robots_asked.is_set()) and not ended.is_set():
         if now_s() >= beat_s:
             channel.heartbeat()
             beat_s += _BEAT_S
         select.select([channel.fileno()], [], [], _LOOK_S)
         report = channel.poll()
-        if report is not None:
+        if report is not None and report.time_s < end_s:
             found.append(report)
     return found
 

@@ -2,7 +2,14 @@
 
 from cellctl.cell.arm_loads import require_selected_loads
 from cellctl.cell.readiness import reasons_not_ready
-from cellctl.cell.robot_reports import NOT_TOLD, RobotReports, joints_deg, listen, selection_as_json
+from cellctl.cell.robot_reports import (
+    ANY_AGE_S,
+    NOT_TOLD,
+    RobotReports,
+    joints_deg,
+    listen,
+    selection_as_json,
+)
 from cellctl.cli.commissioning.one_robot import connected
 from cellctl.cli.connecting.answer import Answer, spread_ms
 from cellctl.config import CellConfig
@@ -17,8 +24,10 @@ async def ask_robot(cell: CellConfig, name: str) -> Answer:
     config = cell.robots[name]
     differs: list[str] = []
     async with connected(cell, name) as (robot, connect_s):
-        heard = await listen(robot, LISTEN_S)
+        # Before anything else: a link that is dropped meanwhile would latch the arm.
+        latched = robot.state(ANY_AGE_S).stop_latched
         notes = [f"would refuse a motion: {why}" for why in reasons_not_ready(robot)]
+        heard = await listen(robot, LISTEN_S)
         try:
             await require_selected_loads([robot], cell.robots)
         except OtherLoadSelected as fault:
@@ -34,7 +43,7 @@ async def ask_robot(cell: CellConfig, name: str) -> Answer:
     return Answer(
         f"robots.{name}",
         config.driver,
-        _facts(heard, connect_s),
+        _facts(heard, connect_s) | {"stop latch, as found": "set" if latched else "not set"},
         differs=tuple(differs),
         notes=tuple(notes),
     )
@@ -48,9 +57,7 @@ def _facts(heard: RobotReports, connect_s: float) -> dict[str, str]:
         facts["answers after"] = spread_ms(heard.round_trips_s)
     drives = "on" if state.drives_on else "off"
     stop = "pressed" if state.emergency_stop else "not pressed"
-    latch = "set" if state.stop_latched else "not set"
     facts["state"] = f"{state.mode.value}, drives {drives}, emergency stop {stop}"
-    facts["stop latch, as found"] = latch
     facts["joints"] = "  ".join(f"{angle:.3f}" for angle in joints_deg(state)) + " deg"
     told = {k: v for k, v in selection_as_json(heard.selection).items() if v != NOT_TOLD}
     words = "; ".join(f"{key}: {value}" for key, value in told.items())

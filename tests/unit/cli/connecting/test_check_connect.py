@@ -75,14 +75,18 @@ def test_every_device_says_who_it_is(own: OwnCell) -> None:
     assert f"{own.modbus_port} is free" in found["plc"]["facts"]["port"]
 
 
-def test_a_latch_is_left_as_it_was_found(own: OwnCell) -> None:
+def test_a_latch_is_left_as_it_was_found(tmp_path: Path) -> None:
     """The links of the first call end with it, for which this controller latches."""
-    devices(own)
-    for _ in range(2):
-        found = devices(own)
-        assert found[ROBOT]["facts"]["stop latch, as found"] == "set"
-        assert found[CHANNEL]["facts"]["stop latch, as found"] == "set"
-        assert any("stop is latched" in note for note in found[ROBOT]["notes"])
+    fresh = OwnCell.make(tmp_path, "small")
+    try:
+        fresh.fake().ready()
+        for latch in ("not set", "set", "set"):
+            found = devices(fresh)[ROBOT]
+            assert found["facts"]["stop latch, as found"] == latch
+            noted = any("stop is latched" in note for note in found["notes"])
+            assert noted == (latch == "set")
+    finally:
+        fresh.kill_all()
 
 
 def test_words_for_people(own: OwnCell) -> None:

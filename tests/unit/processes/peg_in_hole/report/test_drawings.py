@@ -21,6 +21,7 @@ def test_the_search_is_drawn_by_what_was_felt() -> None:
         for n, felt in enumerate(felts)
     ]
     belief = {"reach_mm": 2.3, "weights": [[0.1, 0.2], [1.0, 0.3]]}
-    drawing = search_picture({"points": points}, belief)
+    contacts = [{"x_mm": 0.5, "y_mm": 0.5, "class": "side"}]
+    drawing = search_picture({"points": points, "contacts": contacts}, belief)
     assert ET.fromstring(drawing).tag.endswith("svg")
     assert confusable(drawing) == []

@@ -1,0 +1,73 @@
+"""A stop channel is kept until the robots have been asked: its loss would latch an arm."""
+
+import os
+import threading
+import time
+from collections.abc import Iterator
+
+import pytest
+
+from cellctl.cli.connecting.guards import LISTEN_S, heard_from
+from cellctl.clock import now_s
+from cellctl.interfaces import StopChannel
+from cellctl.interfaces.stop_channel import FlangeState
+
+IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+
+class Channel(StopChannel):
+    """Always has a report; counts heartbeats."""
+
+    def __init__(self) -> None:
+        self.readable, self._other_end = os.pipe()
+        os.write(self._other_end, b"x")
+        self.last_beat_s = 0.0
+        self.stops = 0
+
+    def open(self) -> None:
+        pass
+
+    def close(self) -> None:
+        os.close(self.readable)
+        os.close(self._other_end)
+
+    def fileno(self) -> int:
+        return self.readable
+
+    def request_stop(self) -> None:
+        self.stops += 1
+
+    def heartbeat(self) -> None:
+        self.last_beat_s = now_s()
+
+    def poll(self) -> FlangeState:
+        # The pace of a real channel, which is waited for by its descriptor.
+        time.sleep(0.01)
+        return FlangeState(now_s(), (0.0, 0.0, 0.0), IDENTITY, moving=False, stop_latched=False)
+
+
+@pytest.fixture
+def channel() -> Iterator[Channel]:
+    channel = Channel()
+    yield channel
+    channel.close()
+
+
+@pytest.mark.parametrize("end", ["robots_asked", "ended"])
+def test_heartbeats_go_on_until_the_robots_were_asked(channel: Channel, end: str) -> None:
+    events = {"robots_asked": threading.Event(), "ended": threading.Event()}
+    reports: list[FlangeState] = []
+    listener = threading.Thread(
+        target=lambda: reports.extend(heard_from(channel, **events)), daemon=True
+    )
+    began_s = now_s()
+    listener.start()
+    while channel.last_beat_s < began_s + LISTEN_S + 0.3:
+        assert listener.is_alive(), "the channel was let go while a robot was still asked"
+        time.sleep(0.01)
+    events[end].set()
+    listener.join(10.0)
+    assert not listener.is_alive()
+    assert reports
+    assert all(report.time_s < began_s + LISTEN_S + 0.3 for report in reports)
+    assert channel.stops == 0
