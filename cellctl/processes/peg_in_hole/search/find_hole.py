@@ -28,11 +28,18 @@ STRATEGIES: Mapping[SearchName, SearchStrategy] = {
 async def find_hole(probe: TouchProbe, order: tuple[SearchName, ...]) -> SearchName:
     """The strategy by which the peg has entered.
 
-    Raises ``HoleAbsent`` when all have been tried, ``SearchGaveUp`` at the deadline before that.
+    A map that is not exhausted then is the prior of one retry: the peg is lifted and looks round
+    the place that is likeliest now, within the time of the search. Raises ``HoleAbsent`` when
+    nothing is left, ``SearchGaveUp`` at the deadline before that.
     """
     for name in order:
         if await STRATEGIES[name].find(probe):
             return name
+    looked = "the whole map"
+    if not probe.hole_map.exhausted:
+        probe.hole_map.begin_again()
+        if await probe.look_round(probe.hole_map.likeliest_m(), 2 * probe.task.fit.catch_radius_m):
+            return SearchName.SPIRAL
+        looked = "what these strategies reach, nor round the likeliest place of the rest"
     tried = ", ".join(order)
-    looked = "the whole map" if probe.hole_map.exhausted else "what these strategies reach"
     raise HoleAbsent(f"{tried} found none in {looked}, {len(probe.trace.points)} points felt")

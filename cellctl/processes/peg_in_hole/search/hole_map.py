@@ -21,8 +21,8 @@ _FEWEST, _MOST = 61, 401
 class HoleMap:
     """Belief about the axis of the hole on a square grid in frame A."""
 
-    def __init__(self, uncertainty_m: float, catch_m: float, prior: Array | None = None) -> None:
-        """``prior``: the belief that an earlier search has left, of the same grid."""
+    def __init__(self, uncertainty_m: float, catch_m: float) -> None:
+        """``uncertainty_m``: radius that holds the hole in 99 of 100 cases."""
         self.reach_m = 1.15 * uncertainty_m
         cells = int(np.clip(np.ceil(4 * self.reach_m / catch_m), _FEWEST, _MOST)) | 1
         self.axis_m: Array = np.linspace(-self.reach_m, self.reach_m, cells)
@@ -32,7 +32,7 @@ class HoleMap:
         sigma_m = uncertainty_m / _SIGMAS_OF_P99
         radius_m = np.hypot(x, y)
         begun = np.exp(-0.5 * (radius_m / sigma_m) ** 2) * (radius_m <= self.reach_m)
-        self.weights: Array = begun / begun.sum() if prior is None else prior / prior.sum()
+        self.weights: Array = begun / begun.sum()
         self._begun = self.weights.copy()
         self._seen = np.zeros(begun.shape, dtype=bool)
         self._catch_m = catch_m
@@ -63,6 +63,16 @@ class HoleMap:
     def weigh(self, likelihood: Array) -> None:
         """What a touch says about every cell, shape (n, n)."""
         self._scale(likelihood)
+
+    def begin_again(self) -> None:
+        """What is believed now is the prior of a retry, in which nothing was looked at yet."""
+        self._begun = self.weights.copy()
+        self._seen[:] = False
+
+    def likeliest_m(self) -> Array:
+        """Middle of the cell that holds most of the belief, shape (2,)."""
+        cell = np.unravel_index(np.argmax(self.weights), self.weights.shape)
+        return np.asarray(self.points_m[cell])
 
     def mean_m(self) -> Array:
         """Expected place of the hole, shape (2,)."""

@@ -29,11 +29,15 @@ def test_exhausted_once_nearly_all_of_it_was_visited() -> None:
 
 
 def test_a_retry_begins_with_what_is_left() -> None:
-    first = HoleMap(2e-3, 0.5e-3)
-    first.rule_out(np.array([[0.5e-3, 0.0]]))
-    again = HoleMap(2e-3, 0.5e-3, prior=first.weights)
-    np.testing.assert_allclose(again.mean_m(), first.mean_m())
-    assert not again.exhausted
+    belief = HoleMap(2e-3, 0.5e-3)
+    belief.rule_out(belief.points_m[belief.points_m[..., 0] > -0.5e-3])
+    left = belief.weights.copy()
+    assert belief.likeliest_m()[0] < -0.9e-3
+    belief.begin_again()
+    np.testing.assert_array_equal(belief.weights, left)
+    assert not belief.exhausted
+    belief.rule_out(belief.points_m.reshape(-1, 2))
+    assert belief.exhausted
 
 
 def test_points_outside_of_the_map_say_nothing() -> None:

@@ -1,6 +1,7 @@
 """Every strategy on the kinematic model: few seeds here, figures in ``make campaign-insertion``."""
 
 import asyncio
+from typing import cast
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.find_hole import STRATEGIES, find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
+from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 from tests.rigs.insertion.kinematic import KinematicMotions
 from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
@@ -55,6 +57,37 @@ def test_a_strategy_finds_the_hole_and_stands_in_it(
         assert entered == (off_m < task.fit.catch_radius_m)
         found += entered
     assert found >= least
+
+
+class FindsNothing(SearchStrategy):
+    """Has looked at the half of the map in which the hole is not."""
+
+    name = SearchName.ARC
+
+    async def find(self, probe: TouchProbe) -> bool:
+        points_m = probe.hole_map.points_m
+        probe.hole_map.rule_out(points_m[points_m[..., 0] < 0.4e-3])
+        return False
+
+
+@pytest.mark.parametrize(("hole_mm", "found"), [(1.2, True), (-5.0, False)])
+def test_what_the_map_has_left_is_looked_at_once_more(
+    hole_mm: float, *, found: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    task = pin(0.1, chamfer_mm=0.5)
+    truth = Truth(np.array([hole_mm * 1e-3, 0.0]), np.zeros(2))
+    motions = KinematicMotions(task, truth, np.random.default_rng(1))
+    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
+    probe = TouchProbe(motions, task, search_parameters(task), hole_map, 120.0)
+    monkeypatch.setitem(
+        cast(dict[SearchName, SearchStrategy], STRATEGIES), SearchName.ARC, FindsNothing()
+    )
+    if found:
+        assert asyncio.run(find_hole(probe, (SearchName.ARC,))) is SearchName.SPIRAL
+    else:
+        with pytest.raises(HoleAbsent, match="likeliest place of the rest"):
+            asyncio.run(find_hole(probe, (SearchName.ARC,)))
+    assert probe.trace.points, "it has looked"
 
 
 def test_without_a_hole_a_spiral_searches_the_whole_map() -> None:
