@@ -91,6 +91,19 @@ class GripperContract(ABC):
                 await call()
         assert bench.travels() == 0
 
+    async def test_letting_go_moves_nothing(self, bench: GripperBench) -> None:
+        await bench.gripper.let_go()
+        await bench.gripper.connect()
+        await bench.gripper.close()
+        before = bench.travels()
+        await bench.gripper.let_go()
+        assert bench.shut()
+        with pytest.raises(LinkError):
+            await bench.gripper.state()
+        await bench.gripper.connect()
+        await bench.gripper.confirm_part()
+        assert bench.travels() == before
+
     async def test_the_part_stays_when_the_link_ends_and_comes_back(
         self, bench: GripperBench
     ) -> None:

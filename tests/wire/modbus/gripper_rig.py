@@ -21,6 +21,7 @@ class GripperRig:
     jaws: PneumaticJaws
     coupler: CouplerServer
     wire: ChaosProxy
+    settings: PneumaticGripperConfig
 
 
 @asynccontextmanager
@@ -43,6 +44,6 @@ async def gripper_rig(**changes: object) -> AsyncIterator[GripperRig]:
         }
         config = PneumaticGripperConfig.model_validate(settings | changes)
         gripper = PneumaticGripper("gripper", config)
-        yield GripperRig(gripper, jaws, coupler, wire)
+        yield GripperRig(gripper, jaws, coupler, wire, config)
         await gripper.disconnect()
     await coupler.stop()
