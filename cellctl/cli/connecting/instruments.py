@@ -37,18 +37,26 @@ def _of_recipe(
 ) -> Iterator[tuple[str, str]]:
     definition = process_definition(recipe.process)
     kinds: Kinds = definition.calibration_kinds() if issubclass(definition, Process) else ()
+    trackers = [role for role, what in definition.roles.items() if what.section == "trackers"]
     for kind in kinds:
-        if kind.device is None:
+        # A result that belongs to no device was measured with a tracker, if with any.
+        role = kind.device or (trackers[0] if len(trackers) == 1 else None)
+        if role is None:
             continue
-        path = f"{definition.roles[kind.device].section}.{recipe.device(kind.device)}"
+        path = f"{definition.roles[role].section}.{recipe.device(role)}"
         name = kind.for_recipe(recipe.id).name
         found = answers.get(path)
-        if found is None or found.fault is not None:
+        made_for = _made_for(folder, name)
+        if found is None or found.fault is not None or made_for is None:
             continue
-        try:
-            made_for = read_stored(folder, name).serial_number
-        except CellError:
-            continue
-        if made_for != found.serial_number:
+        measured = kind.device is not None or made_for != ""
+        if measured and made_for != found.serial_number:
             text = f"calibration {name} was made for {made_for!r}, connected is "
             yield path, text + repr(found.serial_number)
+
+
+def _made_for(folder: Path, name: str) -> str | None:
+    try:
+        return read_stored(folder, name).serial_number
+    except CellError:
+        return None

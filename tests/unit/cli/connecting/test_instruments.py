@@ -42,6 +42,17 @@ def test_another_device_differs_and_names_the_calibration(right: Answer) -> None
     assert (fault.number, fault.detail) == (741, f"{HEAD}: {text}")
 
 
+def test_another_tracker_than_the_base_frame_was_measured_with_differs() -> None:
+    tracker = Answer("trackers.tracker", "target-server", serial_number="ET-0001")
+    assert found(tracker) == tracker
+    texts = found(replace(tracker, serial_number="ET-0002")).differs
+    assert [text.split(" was made for ")[0] for text in texts] == [
+        "calibration base_frame",
+        "calibration board_transfer",
+    ]
+    assert "'ET-0001', connected is 'ET-0002'" in texts[0]
+
+
 def test_a_silent_device_differs_from_nothing() -> None:
     silent = Answer(HEAD, "frame-server", fault=ConnectTimeout("off"))
     assert found(silent) == silent
