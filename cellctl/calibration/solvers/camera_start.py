@@ -36,6 +36,10 @@ class CameraStart:
     """What was seen; on a circle grid with the images of the centres in place of the centres of
     the images."""
 
+    def with_terms(self, terms: int) -> Array:
+        """The camera with the distortion that an adjustment begins with, shape (4 + terms,)."""
+        return np.concatenate([self.camera, np.zeros(terms - 5)])
+
 
 def start_of_camera(
     images: Sequence[Corners], board: CalibrationBoard, image_size: tuple[int, int]

@@ -14,7 +14,7 @@ from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 
-_WORTH = 0.95
+WORTH = 0.95
 """Held-out error with the print released, over that without, from which on it is released. The
 noise of corners that were averaged over eight views and more changes the ratio by less."""
 
@@ -36,6 +36,6 @@ def with_chosen_shape(
     printed = calibrate(BoardShape.PRINTED)
     released = held_out(printed)
     ratio = float("inf") if released is None else released / without
-    chosen = printed if ratio <= _WORTH else bent
+    chosen = printed if ratio <= WORTH else bent
     said = f"held-out error with every corner released is {ratio:.3f} of that without"
     return replace(chosen, method=f"{chosen.method} ({said})")

@@ -1,7 +1,9 @@
 """``cellctl calibrate stereo`` and ``cellctl calibrate camera``: from images of a board."""
 
 import glob
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Annotated
 
@@ -16,7 +18,9 @@ from cellctl.calibration.boards.board_images import (
     detect_views,
 )
 from cellctl.calibration.boards.board_shape import BoardShape
-from cellctl.calibration.solvers.shape_choice import with_chosen_shape
+from cellctl.calibration.boards.lens_model import LensModel
+from cellctl.calibration.solvers.lens_choice import chosen_lens
+from cellctl.calibration.solvers.shape_choice import R, with_chosen_shape
 from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
     calibrate_single_camera,
 )
@@ -46,6 +50,7 @@ Shape = Annotated[
     BoardShape | None,
     typer.Option(help="What may deviate from the drawing of the board; else the data decide."),
 ]
+Lens = Annotated[LensModel | None, typer.Option(help="Terms of the lens; else the data decide.")]
 KnownBaseline = Annotated[
     float | None, typer.Option(help="Distance of the cameras by the drawing, within 5 %.", min=1.0)
 ]
@@ -71,6 +76,7 @@ def stereo(
     asymmetric: Asymmetric = False,
     board_shape: Shape = None,
     known_board: KnownBoardFile = None,
+    lens: Lens = None,
     baseline_mm: KnownBaseline = None,
     distance_mm: KnownDistance = None,
     focal_px: KnownFocal = None,
@@ -89,16 +95,19 @@ def stereo(
     known = KnownGeometry(_metres(baseline_mm), _metres(distance_mm), focal_px)
     limits = StereoLimits(known=known)
 
-    def calibrated(shape: BoardShape) -> StereoResult:
+    @cache
+    def calibrated(shape: BoardShape, model: LensModel) -> StereoResult:
         return calibrate_stereo(
-            found.views, pattern, found.image_size, shape=shape, known=earlier, limits=limits
+            found.views,
+            pattern,
+            found.image_size,
+            shape=shape,
+            known=earlier,
+            lens=model,
+            limits=limits,
         )
 
-    result = (
-        with_chosen_shape(calibrated, lambda one: one.held_out_m)
-        if board_shape is None
-        else calibrated(board_shape)
-    )
+    result = _chosen(calibrated, lambda one: one.held_out_m, board_shape, lens)
     console.print(result.method, markup=False)
     for view in result.views:
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
@@ -123,6 +132,7 @@ def camera(
     asymmetric: Asymmetric = False,
     board_shape: Shape = None,
     known_board: KnownBoardFile = None,
+    lens: Lens = None,
     picture: Picture = None,
 ) -> None:
     """Calibrate a single camera from images of a chessboard, ChArUco board or circle grid."""
@@ -133,16 +143,13 @@ def camera(
     console = console_of_figures()
     _say_left_out(console, found.not_found)
 
-    def calibrated(shape: BoardShape) -> SingleCameraResult:
+    @cache
+    def calibrated(shape: BoardShape, model: LensModel) -> SingleCameraResult:
         return calibrate_single_camera(
-            found.views, pattern, found.image_size, shape=shape, known=earlier
+            found.views, pattern, found.image_size, shape=shape, known=earlier, lens=model
         )
 
-    result = (
-        with_chosen_shape(calibrated, lambda one: one.held_out_px)
-        if board_shape is None
-        else calibrated(board_shape)
-    )
+    result = _chosen(calibrated, lambda one: one.held_out_px, board_shape, lens)
     console.print(result.method, markup=False)
     for view in result.views:
         weight = _weight(view.shift_sigmas)
@@ -157,6 +164,27 @@ def camera(
         )
     console.print(f"board flat to {result.flatness_m / MM:.4f} mm; id {result.camera.id}")
     finish(result, result.warnings, out, picture, lambda: single_camera_picture(result))
+
+
+def _chosen(
+    calibrate: Callable[[BoardShape, LensModel], R],
+    held_out: Callable[[R], float | None],
+    shape: BoardShape | None,
+    lens: LensModel | None,
+) -> R:
+    """The calibration with shape and lens as they were given, else as the data ask for."""
+    why = ""
+    if lens is None:
+        bent = shape or BoardShape.BENT
+        lens, why = chosen_lens(lambda model: calibrate(bent, model), held_out)
+        why = f"; {why}"
+    model = lens
+    result = (
+        with_chosen_shape(lambda one: calibrate(one, model), held_out)
+        if shape is None
+        else calibrate(shape, model)
+    )
+    return replace(result, method=f"{result.method}{why}")
 
 
 def _metres(length_mm: float | None) -> float | None:

@@ -18,7 +18,13 @@ def project(camera: CameraModel, points: Array) -> Array:
 def distort(camera: CameraModel, rays: Array) -> Array:
     """Raw pixels, shape (n, 2), of undistorted rays x/z, y/z, shape (n, 2)."""
     # ``cv2.projectPoints`` gives the same, but its fixed cost is too high for the many calls with
-    # few points that the fit of a rim makes.
+    # few points that the fit of a rim makes. Lenses of more than five terms are rare.
+    if len(camera.distortion) != 5:
+        points = np.column_stack([rays, np.ones(len(rays))])
+        pixels, _ = cv2.projectPoints(
+            points, np.zeros(3), np.zeros(3), camera.camera_matrix, camera.distortion
+        )
+        return np.asarray(pixels, dtype=float).reshape(-1, 2)
     k1, k2, p1, p2, k3 = camera.distortion.tolist()
     x, y = rays[:, 0], rays[:, 1]
     xx, yy, twice_xy = x * x, y * y, 2.0 * x * y

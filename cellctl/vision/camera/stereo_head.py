@@ -6,7 +6,7 @@ The head frame is the left camera: x right, y down, z forward. Pixel centres lie
 import json
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,27 +17,25 @@ from cellctl.errors.vision import CalibrationFileInvalid
 from cellctl.geometry.pose import MM, Array
 from cellctl.sealed_json import record_within
 
-CAMERA_PARAMETERS = ("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3")
-PARAMETER_ORDER = (
-    *(f"left.{name}" for name in CAMERA_PARAMETERS),
-    *(f"right.{name}" for name in CAMERA_PARAMETERS),
-    *("rotation.x", "rotation.y", "rotation.z"),
-    *("translation.x", "translation.y", "translation.z"),
+DISTORTION_TERMS = (5, 8, 12, 14)
+"""Lengths of the distortion: OpenCV's models, of which each contains the shorter ones."""
+CAMERA_PARAMETERS = (
+    *("fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"),
+    *("k4", "k5", "k6", "s1", "s2", "s3", "s4", "tau_x", "tau_y"),
 )
-"""Order of ``StereoHead.covariance``: px, plain numbers, rad (R = Exp(dr) R0), m (file: mm)."""
-
-_FILE_UNITS = np.array([1.0] * 21 + [MM] * 3)
+"""Numbers of a camera; one with five terms of distortion has the first nine."""
 _ROTATION_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraModel:
-    """One camera: pinhole with OpenCV's five distortion coefficients."""
+    """One camera: pinhole with OpenCV's distortion."""
 
     camera_matrix: Array
     """Shape (3, 3), px."""
     distortion: Array
-    """Shape (5,): k1, k2, p1, p2, k3."""
+    """Shape (5,), (8,), (12,) or (14,): k1, k2, p1, p2, k3, k4 to k6, s1 to s4, and the two angles
+    of a tilted sensor (rad)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +52,18 @@ class StereoHead:
     """Shape (3,)."""
     rms_px: float
     covariance: Array | None = None
-    """Shape (24, 24) in the order of ``PARAMETER_ORDER``, or None when unknown."""
+    """In the order of ``parameter_order``, shape (24, 24) with five terms of distortion each, or
+    None when unknown: px, plain numbers, rad (R = Exp(dr) R0), m (file: mm)."""
+
+    @property
+    def parameter_order(self) -> tuple[str, ...]:
+        """Names of the numbers of a head: those of both cameras, rotation, translation."""
+        return (
+            *(f"left.{name}" for name in CAMERA_PARAMETERS[: 4 + len(self.left.distortion)]),
+            *(f"right.{name}" for name in CAMERA_PARAMETERS[: 4 + len(self.right.distortion)]),
+            *("rotation.x", "rotation.y", "rotation.z"),
+            *("translation.x", "translation.y", "translation.z"),
+        )
 
     @property
     def right_T_left(self) -> RigidTransform:
@@ -100,11 +109,10 @@ def stereo_head_to_json(head: StereoHead) -> dict[str, Any]:
         "translation_mm": (head.translation_m / MM).tolist(),
         "rms_px": head.rms_px,
         "covariance": None,
-        "covariance_order": list(PARAMETER_ORDER),
+        "covariance_order": list(head.parameter_order),
     }
     if head.covariance is not None:
-        scale = np.outer(_FILE_UNITS, _FILE_UNITS)
-        data["covariance"] = (head.covariance / scale).tolist()
+        data["covariance"] = (head.covariance / _file_scale(head)).tolist()
     return data
 
 
@@ -134,27 +142,35 @@ def stereo_head_from_json(data: Mapping[str, Any]) -> StereoHead:
     translation_m = _array(data, "translation_mm", (3,)) * MM
     if not np.linalg.norm(translation_m) > 0:
         raise ValueError("translation_mm is zero: the cameras have no baseline")
-    return StereoHead(
+    head = StereoHead(
         image_size=(width, height),
         left=_side_from_json(data, "left"),
         right=_side_from_json(data, "right"),
         rotation=rotation,
         translation_m=translation_m,
         rms_px=float(data.get("rms_px", np.nan)),
-        covariance=_covariance_from_json(data),
     )
+    return replace(head, covariance=_covariance_from_json(data, head))
 
 
-def _covariance_from_json(data: Mapping[str, Any]) -> Array | None:
+def _file_scale(head: StereoHead) -> Array:
+    """Files have the translation in mm."""
+    units = np.ones(len(head.parameter_order))
+    units[-3:] = MM
+    return np.outer(units, units)
+
+
+def _covariance_from_json(data: Mapping[str, Any], head: StereoHead) -> Array | None:
     """In our order; that of other programs means nothing here and is left out, with a warning."""
     if data.get("covariance") is None:
         return None
-    if data.get("covariance_order") != list(PARAMETER_ORDER):
+    if data.get("covariance_order") != list(head.parameter_order):
         warnings.warn(
             "covariance of the calibration left out: covariance_order is not ours", stacklevel=2
         )
         return None
-    return _array(data, "covariance", (24, 24)) * np.outer(_FILE_UNITS, _FILE_UNITS)
+    count = len(head.parameter_order)
+    return _array(data, "covariance", (count, count)) * _file_scale(head)
 
 
 def _side_from_json(data: Mapping[str, Any], side: str) -> CameraModel:
@@ -169,7 +185,8 @@ def _side_from_json(data: Mapping[str, Any], side: str) -> CameraModel:
 def camera_from_json(data: Mapping[str, Any]) -> CameraModel:
     """The inverse of ``camera_to_json``; raises ``KeyError``, ``TypeError`` or ``ValueError``."""
     matrix = _array(data, "camera_matrix", (3, 3))
-    distortion = _array(data, "distortion", (5,))
+    terms = np.size(data["distortion"])
+    distortion = _array(data, "distortion", (terms if terms in DISTORTION_TERMS else 5,))
     if matrix[0, 0] <= 0 or matrix[1, 1] <= 0 or not np.array_equal(matrix[2], [0.0, 0.0, 1.0]):
         raise ValueError("camera_matrix must be [[fx,0,cx],[0,fy,cy],[0,0,1]] with positive fx, fy")
     return CameraModel(matrix, distortion)

@@ -17,7 +17,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Ro
 from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
-from cellctl.vision.camera.stereo_head import CameraModel
+from cellctl.vision.camera.stereo_head import DISTORTION_TERMS, CameraModel
 
 
 def _camera_matrix(values: Any) -> Array:
@@ -25,7 +25,13 @@ def _camera_matrix(values: Any) -> Array:
 
 
 def _distortion(values: Any) -> Array:
-    return numbers(values, (None,), "distortion must be a list of numbers")
+    given = numbers(values, (None,), "distortion must be a list of numbers")
+    # OpenCV also writes four numbers, without k3.
+    if len(given) == 4:
+        given = np.append(given, 0.0)
+    if len(given) not in DISTORTION_TERMS:
+        raise ValueError(f"distortion must have 4, 5, 8, 12 or 14 numbers, has {len(given)}")
+    return given
 
 
 def _pixels(values: Any) -> Array:

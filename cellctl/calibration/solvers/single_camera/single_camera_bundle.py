@@ -1,6 +1,6 @@
 """The joint adjustment of one camera, all board poses and the shape of the board.
 
-Unknowns that all views share, in order: the nine of ``CAMERA_PARAMETERS``, then those of the
+Unknowns that all views share, in order: those of the camera (``projection``), then those of the
 board's shape.
 """
 
@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cellctl.calibration.boards.board import CameraView, Corners
+from cellctl.calibration.boards.lens_model import LensModel, longer_terms_prior
 from cellctl.calibration.boards.projection import project
 from cellctl.calibration.solvers.bundle import (
     LinearImage,
@@ -17,7 +18,6 @@ from cellctl.calibration.solvers.bundle import (
 from cellctl.calibration.solvers.views_of_board import BoardPoses, ViewsOfBoard
 from cellctl.geometry.pose import Array
 
-CAMERA = 9
 _RADIAL_SIGMA = 1.0
 """Prior of k1, k2 and k3, far wider than any lens that images a board sharply. Behind a long lens
 k3 moves no corner by a hundredth of a pixel, and without a prior it would take any value."""
@@ -29,7 +29,7 @@ class CameraBundle(BoardPoses):
     """All unknowns."""
 
     camera: Array
-    """Nine numbers of ``CAMERA_PARAMETERS``."""
+    """As of ``projection``."""
     shape: Array
     """Parameters of the board's shape."""
 
@@ -38,15 +38,16 @@ class CameraBundle(BoardPoses):
 class CameraProblem(ViewsOfBoard[CameraView, CameraBundle]):
     """Adjusts a ``CameraBundle``; see ``ProblemOfViews``.
 
-    The covariance has shape (9 + shape, 9 + shape).
+    The covariance has shape (4 + terms + shape, 4 + terms + shape).
     """
 
+    lens: LensModel = LensModel.FIVE
     name: str = "camera"
 
     @property
     def prior(self) -> Array:
         """Inverse prior variance of each shared unknown, 0 where it is free, shape (s,)."""
-        camera = np.zeros(CAMERA)
+        camera = longer_terms_prior(self.lens.terms)
         camera[_RADIAL] = 1 / _RADIAL_SIGMA**2
         return np.concatenate([camera, 1 / self.modes.sigma**2])
 
@@ -74,6 +75,6 @@ class CameraProblem(ViewsOfBoard[CameraView, CameraBundle]):
         """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""
         return replace(
             state.views_moved(views),
-            camera=state.camera + shared[:CAMERA],
-            shape=state.shape + shared[CAMERA:],
+            camera=state.camera + shared[: len(state.camera)],
+            shape=state.shape + shared[len(state.camera) :],
         )

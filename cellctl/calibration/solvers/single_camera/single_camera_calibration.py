@@ -16,13 +16,13 @@ from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_in_camera import board_in_camera
 from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.boards.known_board import FoundShape, KnownBoard, shape_to_adjust
+from cellctl.calibration.boards.lens_model import LensModel
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
 from cellctl.calibration.solvers.camera_start import CameraStart, start_of_camera
 from cellctl.calibration.solvers.coverage import Coverage, CoverageLimits, coverage
 from cellctl.calibration.solvers.single_camera.single_camera_bundle import (
-    CAMERA,
     CameraBundle,
     CameraProblem,
 )
@@ -68,6 +68,7 @@ def calibrate_single_camera(
     *,
     shape: BoardShape = BoardShape.BENT,
     known: KnownBoard | None = None,
+    lens: LensModel = LensModel.FIVE,
     limits: SingleCameraLimits | None = None,
 ) -> SingleCameraResult:
     """Calibrate a camera; ``image_size`` is width, height in px.
@@ -83,10 +84,12 @@ def calibrate_single_camera(
     seen = [
         CameraView(view.name, corners) for view, corners in zip(views, start.images, strict=True)
     ]
-    problem = CameraProblem(seen, flat_m, modes)
+    problem = CameraProblem(seen, flat_m, modes, lens)
     again = repeated([view.corners for view in views])
     excluded = np.array([index in again for index in range(len(views))])
-    adjusted = adjust_good_views(problem, _start(start, len(modes.sigma)), start.fits, excluded)
+    adjusted = adjust_good_views(
+        problem, _start(start, len(modes.sigma), lens), start.fits, excluded
+    )
     good, result, state = adjusted.good, adjusted.result, adjusted.result.state
     twice = {i: f"its picture is that of {views[earlier].name}" for i, earlier in again.items()}
     rejected = why_left_out([view.name for view in views], adjusted, twice)
@@ -104,15 +107,15 @@ def calibrate_single_camera(
     norms = np.concatenate(residual_norms(result.residuals))
     rms_px = float(np.sqrt((norms**2).mean()))
     held_out_px = _held_out_px(replace(problem, views=kept), state)
-    sigma = np.sqrt(np.diag(result.covariance)[:CAMERA])
+    sigma = np.sqrt(np.diag(result.covariance)[: len(state.camera)])
     focal_ratio = float((sigma[:2] / state.camera[:2]).max())
     return SingleCameraResult(
         camera=SingleCamera(image_size, camera_model(state.camera)),
-        method=f"joint bundle adjustment, board shape {shape.value}",
+        method=f"joint bundle adjustment, board shape {shape.value}, lens of {lens.terms} terms",
         board=board,
         views=residuals,
         board_m=flat_m + modes.modes @ state.shape,
-        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[CAMERA:])),
+        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[len(state.camera) :])),
         coverage=covered,
         sigma=sigma,
         rms_px=rms_px,
@@ -154,9 +157,9 @@ def _covered(
     return covered, checks
 
 
-def _start(start: CameraStart, modes: int) -> CameraBundle:
+def _start(start: CameraStart, modes: int, lens: LensModel) -> CameraBundle:
     return CameraBundle(
-        camera=start.camera,
+        camera=start.with_terms(lens.terms),
         shape=np.zeros(modes),
         view_rotations=np.stack([pose[:3, :3] for pose in start.camera_T_board]),
         view_translations_m=np.stack([pose[:3, 3] for pose in start.camera_T_board]),

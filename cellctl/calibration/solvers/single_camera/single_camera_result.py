@@ -63,7 +63,7 @@ class SingleCameraResult:
     """Corners of the board as found, shape (n, 3)."""
     coverage: Coverage
     sigma: Array
-    """Standard deviations of the nine ``CAMERA_PARAMETERS``, shape (9,)."""
+    """Standard deviations of the camera's ``CAMERA_PARAMETERS``, shape (4 + terms,)."""
     rms_px: float
     """Of the corners of all views that were used, both axes together."""
     held_out_px: float | None

@@ -14,6 +14,7 @@ import numpy as np
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
 from cellctl.calibration.boards.board_shape import BoardShape
 from cellctl.calibration.boards.known_board import FoundShape, KnownBoard, shape_to_adjust
+from cellctl.calibration.boards.lens_model import LensModel
 from cellctl.calibration.boards.projection import camera_model
 from cellctl.calibration.solvers.bundle import BundleResult, adjust_bundle, residual_norms
 from cellctl.calibration.solvers.stereo.bundle import BundleState, StereoProblem
@@ -43,6 +44,7 @@ def calibrate_stereo(
     *,
     shape: BoardShape = BoardShape.BENT,
     known: KnownBoard | None = None,
+    lens: LensModel = LensModel.FIVE,
     pitch_relative_sigma: float = 0.0,
     limits: StereoLimits | None = None,
 ) -> StereoResult:
@@ -57,8 +59,8 @@ def calibrate_stereo(
     limits = limits or StereoLimits()
     left, right, coverage_checks = check_coverage(views, board, image_size, limits.coverage)
     flat_m, modes = shape_to_adjust(board, shape, known, turns_known=_turns_known(board))
-    start = start_values(views, board, image_size, len(modes.sigma))
-    problem = StereoProblem(start.views, flat_m, modes)
+    start = start_values(views, board, image_size, len(modes.sigma), lens)
+    problem = StereoProblem(start.views, flat_m, modes, lens)
     adjusted = adjust_good_views(problem, start.state, start.plausible, start.excluded)
     good, result, state = adjusted.good, adjusted.result, adjusted.result.state
     rejected = why_left_out([view.name for view in start.views], adjusted, start.doubts)
@@ -69,7 +71,7 @@ def calibrate_stereo(
     board_m = flat_m + modes.modes @ state.shape
     validation = _validate(replace(problem, views=kept), state, board_m)
     norms = np.concatenate(residual_norms(result.residuals))
-    covariance = _covariance(result, pitch_relative_sigma)
+    covariance = _covariance(result, problem.head, pitch_relative_sigma)
     head = StereoHead(
         image_size=image_size,
         left=camera_model(state.left),
@@ -81,11 +83,11 @@ def calibrate_stereo(
     )
     return StereoResult(
         head=head,
-        method=f"joint bundle adjustment, board shape {shape.value}",
+        method=f"joint bundle adjustment, board shape {shape.value}, lens of {lens.terms} terms",
         board=board,
         views=_view_residuals(start.views, adjusted),
         board_m=board_m,
-        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[24:])),
+        found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[problem.head :])),
         coverage=(left, right),
         validation=validation,
         checks=(
@@ -152,11 +154,11 @@ def _validate(problem: StereoProblem, state: BundleState, board_m: Array) -> Cro
     return cross_validate((halves[0], halves[1]), parts, board_m)
 
 
-def _covariance(result: BundleResult[BundleState], pitch_relative_sigma: float) -> Array:
-    covariance = result.covariance[:24, :24].copy()
+def _covariance(result: BundleResult[BundleState], head: int, pitch_relative_sigma: float) -> Array:
+    covariance = result.covariance[:head, :head].copy()
     # A wrong pitch stretches everything that is measured, and with it the baseline.
     scale_m = result.state.translation_m * pitch_relative_sigma
-    covariance[21:, 21:] += np.outer(scale_m, scale_m)
+    covariance[-3:, -3:] += np.outer(scale_m, scale_m)
     return covariance
 
 

@@ -81,8 +81,9 @@ class StereoLimits:
         """The figures of a result; ``distances_m`` of the boards, shape (views,)."""
         baseline_m = _baseline_m(head)
         direction = head.translation_m / baseline_m
-        covariance = np.zeros((24, 24)) if head.covariance is None else head.covariance
-        sigma_m = float(np.sqrt(direction @ covariance[21:, 21:] @ direction))
+        count = len(head.parameter_order)
+        covariance = np.zeros((count, count)) if head.covariance is None else head.covariance
+        sigma_m = float(np.sqrt(direction @ covariance[-3:, -3:] @ direction))
         limit_m = self.baseline_sigma_m or _BASELINE_RATIO * baseline_m
         checks = [
             LimitCheck("reprojection rms", head.rms_px, self.rms_px, "px"),

@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard, Corners
+from cellctl.calibration.boards.lens_model import LensModel
 from cellctl.calibration.solvers.camera_start import start_of_camera
 from cellctl.calibration.solvers.stereo.bundle import BundleState
 from cellctl.calibration.solvers.view_rejection import Mask, repeated
@@ -42,7 +43,11 @@ class StereoStart:
 
 
 def start_values(
-    views: Sequence[BoardView], board: CalibrationBoard, image_size: tuple[int, int], modes: int
+    views: Sequence[BoardView],
+    board: CalibrationBoard,
+    image_size: tuple[int, int],
+    modes: int,
+    lens: LensModel,
 ) -> StereoStart:
     """Views in a consistent corner order, and a start for the adjustment.
 
@@ -75,8 +80,8 @@ def start_values(
         doubts[index] = f"its {' and '.join(sides)} {pictures} of {views[earlier].name}"
     plausible = np.array([index not in doubts for index in range(len(views))])
     state = BundleState(
-        left=left.camera,
-        right=right.camera,
+        left=left.with_terms(lens.terms),
+        right=right.with_terms(lens.terms),
         rotation=rotation,
         translation_m=translation_m,
         shape=np.zeros(modes),

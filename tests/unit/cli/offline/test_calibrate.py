@@ -22,7 +22,7 @@ from cellctl.errors.calibration import (
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.vision.camera.lens import project
-from cellctl.vision.camera.stereo_head import read_stereo_head
+from cellctl.vision.camera.stereo_head import CameraModel, read_stereo_head
 from fakes.render import api
 from fakes.world.scene import LensTruth, SceneChessboard, StereoTruth
 from tests.rigs.calibration import board_placements as transfer_case
@@ -72,18 +72,24 @@ def test_hand_eye(tmp_path: Path) -> None:
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-def test_hand_eye_from_corners(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    "more_terms",
+    [(), (0.3, 0.1, 0.0), (0.3, 0.1, 0.0, 5e-3, 0.0, -4e-3, 0.0, 0.02, -0.03)],
+    ids=len,
+)
+def test_hand_eye_from_corners(tmp_path: Path, more_terms: tuple[float, ...]) -> None:
+    plain = hand_eye_case.CAMERA
+    camera = CameraModel(plain.camera_matrix, np.array([*plain.distortion, *more_terms]))
     rng = np.random.default_rng(5)
     entries = []
     for _ in range(12):
         seen = hand_eye_case.random_view(rng)
         flange = hand_eye_case.BASE_T_BOARD * seen.inv() * hand_eye_case.FLANGE_T_CAMERA.inv()
-        pixels = project(hand_eye_case.CAMERA, seen.apply(hand_eye_case.BOARD_M))
+        pixels = project(camera, seen.apply(hand_eye_case.BOARD_M))
         noisy = pixels + rng.normal(0, 0.1, pixels.shape)
         matrix = flange.as_matrix()
         matrix[:3, 3] /= MM
         entries.append({"base_T_flange": matrix.tolist(), "corners_px": noisy.tolist()})
-    camera = hand_eye_case.CAMERA
     data = {
         "setup": "eye-in-hand",
         "camera": {
@@ -295,7 +301,7 @@ def test_stereo_from_images(images: Path, tmp_path: Path) -> None:
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
-BENT = ("--board-shape", "bent")
+BENT = ("--board-shape", "bent", "--lens", "five")
 """Nothing is left for the data to decide, which takes its time."""
 
 

@@ -2,8 +2,10 @@
 
 import cv2
 import numpy as np
+import pytest
 
 from cellctl.vision.camera.lens import distort, distort_jacobian, project, undistort
+from tests.rigs.calibration import wide_lens
 from tests.unit.vision.plates import table_1_head
 
 HEAD = table_1_head()
@@ -24,3 +26,16 @@ def test_jacobian_of_the_distortion() -> None:
     step = np.array([3e-5, -2e-5])
     change = distort(HEAD.right, (ray + step)[None])[0] - distort(HEAD.right, ray[None])[0]
     assert np.allclose(distort_jacobian(HEAD.right, ray) @ step, change, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    "distortion", [wide_lens.RATIONAL, wide_lens.TILTED[:12], wide_lens.TILTED]
+)
+def test_lenses_of_more_terms(distortion: tuple[float, ...]) -> None:
+    camera = wide_lens.camera(distortion)
+    rays = np.random.default_rng(0).uniform(-0.7, 0.7, (50, 2))
+    pixels = distort(camera, rays)
+    np.testing.assert_allclose(undistort(camera, pixels), rays, atol=1e-9)
+    # None of the terms is left out: without the last ones the pixels are others.
+    fewer = wide_lens.camera(distortion[: {8: 5, 12: 8, 14: 12}[len(distortion)]])
+    assert np.abs(distort(fewer, rays) - pixels).max() > 0.3

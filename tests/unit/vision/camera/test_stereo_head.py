@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from cellctl.errors.vision import CalibrationFileInvalid
-from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
+from cellctl.vision.camera.stereo_head import (
+    StereoHead,
+    read_stereo_head,
+    stereo_head_from_json,
+    stereo_head_to_json,
+)
 from tests.unit.vision.plates import table_1_head, write_stereo_head
 
 
@@ -97,3 +102,11 @@ def test_a_calibration_that_did_not_pass_is_read_with_a_warning(tmp_path: Path) 
     write_stereo_head(path, table_1_head(), {"verdict": "fail"})
     with pytest.warns(UserWarning, match="did not pass its checks"):
         read_stereo_head(path)
+
+
+@pytest.mark.parametrize("terms", [4, 6, 15])
+def test_lengths_that_no_lens_has_are_refused(terms: int) -> None:
+    data = stereo_head_to_json(table_1_head())
+    data["left"]["distortion"] = [0.0] * terms
+    with pytest.raises(ValueError, match="left: distortion must hold finite numbers"):
+        stereo_head_from_json(data)
