@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean install rollback
+	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean install rollback bundle
 
 venv: $(VENV)/.installed
 
@@ -131,6 +131,10 @@ install:
 
 rollback:
 	@systemd/install.sh rollback
+
+# One archive for a PC without a network; KEY signs it.
+bundle: venv
+	@PYTHON=$(BIN)/python systemd/bundle.sh
 
 format: venv
 	$(BIN)/ruff check --fix .

@@ -8,11 +8,14 @@
 # PREFIX  where the releases lie               (/opt/cellctl)
 # PYTHON  the interpreter, which the service's user must be able to run     (python3)
 # INTO    a folder that stands for /, to try it all without touching the PC  (empty)
+# SIGNERS whose signature of a bundle is accepted, in the form of ssh-keygen(1) ALLOWED SIGNERS;
+#         `none` takes an unsigned one        (/etc/cellctl/allowed_signers)
 set -eu
 
 PREFIX=${PREFIX:-/opt/cellctl}
 PYTHON=${PYTHON:-python3}
 INTO=${INTO:-}
+SIGNERS=${SIGNERS:-/etc/cellctl/allowed_signers}
 HERE=$(CDPATH='' cd -- "$(dirname -- "$0")/.." && pwd)
 RELEASES=$INTO$PREFIX/releases
 STORE_FOLDER=$INTO/var/lib/cellctl
@@ -42,6 +45,28 @@ require_interpreter() {
     esac
 }
 
+# A bundle has a list of its files, with their sums and the signature of whoever packed it. A file
+# that is not in the list would be installed unseen.
+require_whole_bundle() {
+    [ -e "$HERE/SHA256SUMS" ] || return 0
+    if [ "$SIGNERS" != none ]; then
+        [ -e "$HERE/SHA256SUMS.sig" ] ||
+            refuse "this bundle is not signed. If that is wanted: make install SIGNERS=none"
+        [ -e "$SIGNERS" ] || refuse "there is no $SIGNERS that says whose signature counts"
+        signer=$(ssh-keygen -Y find-principals -f "$SIGNERS" -s "$HERE/SHA256SUMS.sig" 2>/dev/null |
+            head -n 1)
+        [ -n "$signer" ] || refuse "nobody in $SIGNERS has signed this bundle"
+        ssh-keygen -q -Y verify -f "$SIGNERS" -I "$signer" -n cellctl-bundle \
+            -s "$HERE/SHA256SUMS.sig" <"$HERE/SHA256SUMS" >/dev/null ||
+            refuse "the signature does not fit the list of files"
+    fi
+    (cd "$HERE" && sha256sum --check --quiet --strict SHA256SUMS) ||
+        refuse "files of this bundle are not those that were packed"
+    listed=$(wc -l <"$HERE/SHA256SUMS")
+    present=$(cd "$HERE" && find . -type f -not -name SHA256SUMS -not -name SHA256SUMS.sig | wc -l)
+    [ "$listed" -eq "$present" ] || refuse "the bundle has $present files, its list $listed"
+}
+
 # Of a checkout, or what a release that is installed from says of itself.
 revision() {
     if [ -e "$HERE/RELEASE" ]; then
@@ -61,7 +86,7 @@ copy_source() {
     if [ -e "$HERE/.git" ]; then
         git -c safe.directory="$HERE" -C "$HERE" ls-files -z
     else
-        (cd "$HERE" && find . -type f -not -path './.venv*' -not -path './runs/*' -print0)
+        (cd "$HERE" && find . -type f -not -path './.venv*' -not -path './runs/*' -not -path './wheels/*' -print0)
     fi | tar -C "$HERE" --null -T - -cf - | tar -C "$1" --no-same-owner -xf -
 }
 
@@ -70,6 +95,10 @@ build_release() {
     copy_source "$1"
     revision >"$1/RELEASE"
     "$PYTHON" -m venv "$1/.venv"
+    # A bundle brings its packages; nothing is asked of a network then.
+    if [ -d "$HERE/wheels" ]; then
+        export PIP_NO_INDEX=1 PIP_FIND_LINKS="$HERE/wheels"
+    fi
     "$1/.venv/bin/python" -m pip install --quiet --require-hashes -r "$1/requirements.lock"
     "$1/.venv/bin/python" -m pip install --quiet --no-deps --no-build-isolation -e "$1"
     chmod -R u=rwX,go=rX "$1"
@@ -124,6 +153,7 @@ install_release() {
     require_root install
     require_standstill
     require_interpreter
+    require_whole_bundle
     name=$(release_name)
     release=$RELEASES/$name
     # One that was broken off is made anew, and so is one whose name does not say what is in it.
@@ -197,8 +227,9 @@ put_store_back() {
 case ${1:-} in
 install) install_release ;;
 rollback) roll_back ;;
+name) release_name ;;
 *)
-    say "usage: install.sh install|rollback" >&2
+    say "usage: install.sh install|rollback|name" >&2
     exit 2
     ;;
 esac
