@@ -39,7 +39,8 @@ def read_wheel(path: Path) -> Wheel:
     """Read one wheel; raises ``ValueError`` for a file that is none."""
     try:
         with zipfile.ZipFile(path) as archive:
-            files = [name for name in archive.namelist() if ".dist-info/" in name]
+            # A wheel may carry others within a package of its own; those are part of it.
+            files = [name for name in archive.namelist() if _is_about_itself(name)]
             (metadata,) = (name for name in files if name.endswith(".dist-info/METADATA"))
             head = Parser().parsestr(archive.read(metadata).decode("utf-8"))
             texts = {
@@ -97,6 +98,10 @@ def _component(wheel: Wheel) -> dict[str, Any]:
     elif wheel.licence:
         component["licenses"] = [{"license": {"name": wheel.licence}}]
     return component
+
+
+def _is_about_itself(name: str) -> bool:
+    return Path(name).parts[0].endswith(".dist-info")
 
 
 def _in_words(head: Message) -> str:

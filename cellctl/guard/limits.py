@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from cellctl.force.contact.cusum import Cusum
+from cellctl.force.contact.touch_detector import Cusum
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import RigidTransform

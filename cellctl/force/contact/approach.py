@@ -14,7 +14,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.force import ContactPlanInvalid
 from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
-from cellctl.force.contact.cusum import Cusum
+from cellctl.force.contact.touch_detector import Cusum
 
 
 @dataclass(frozen=True, slots=True)

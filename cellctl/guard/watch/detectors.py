@@ -7,7 +7,7 @@ Wherever a NaN could arrive, the comparison is written so that NaN counts as bey
 import math
 from collections import deque
 
-from cellctl.force.contact.cusum import CusumDetector
+from cellctl.force.contact.touch_detector import CusumDetector
 from cellctl.guard.limits import GuardLimits, Six
 
 

@@ -6,7 +6,7 @@ import math
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.driver_settings import sensor_rate_hz
 from cellctl.force.contact.approach import planned_stiffness
-from cellctl.force.contact.cusum import Cusum, touch_threshold_n
+from cellctl.force.contact.touch_detector import Cusum, touch_threshold_n
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cellctl.force.contact.cusum import Cusum
 from cellctl.force.contact.seat import SeatLimits, seat_limits
+from cellctl.force.contact.touch_detector import Cusum
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from cellctl.force.contact.approach import (
     peak_at,
     segment_length,
 )
-from cellctl.force.contact.cusum import Cusum
+from cellctl.force.contact.touch_detector import Cusum
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.poses.pose_correction import flange_target
 

@@ -9,7 +9,7 @@ import pytest
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.calibration import HeadPoseChanged
 from cellctl.errors.robot import SpeedOverridden
-from cellctl.force.contact.cusum import Cusum, touch_threshold_n
+from cellctl.force.contact.touch_detector import Cusum, touch_threshold_n
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.contact_plan import contact_plan

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from cellctl.force.contact.cusum import Cusum, CusumDetector, touch_threshold_n
+from cellctl.force.contact.touch_detector import Cusum, CusumDetector, touch_threshold_n
 
 PERIOD_S = 1e-3
 
