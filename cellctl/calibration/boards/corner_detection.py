@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 
-from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Corners
+from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Corners, Ids
 from cellctl.calibration.boards.board_search import find_chessboard
 from cellctl.calibration.boards.circle_centres import measured_rims
 from cellctl.calibration.boards.circle_search import find_circles
@@ -59,17 +59,53 @@ def _detect_charuco(image: Image, board: CalibrationBoard, charuco: Charuco) -> 
     dictionary_id = getattr(cv2.aruco, f"DICT_{charuco.dictionary}", None)
     if not isinstance(dictionary_id, int):
         raise WrongBoard(f"there is no marker dictionary {charuco.dictionary!r}")
-    size = (board.columns + 1, board.rows + 1)
-    dictionary = cv2.aruco.getPredefinedDictionary(dictionary_id)
-    pattern = cv2.aruco.CharucoBoard(size, board.square_m, charuco.marker_m, dictionary)
-    found, ids, _, _ = cv2.aruco.CharucoDetector(pattern).detectBoard(image)
-    if ids is None or len(ids) < _MIN_CHARUCO:
+    pattern = cv2.aruco.CharucoBoard(
+        (board.columns + 1, board.rows + 1),
+        board.square_m,
+        charuco.marker_m,
+        cv2.aruco.getPredefinedDictionary(dictionary_id),
+    )
+    corners = _charuco_corners(image, pattern, board)
+    # Markers cannot be read in a mirror, so an image without any is tried the other way round.
+    if (
+        corners is None
+        and _charuco_corners(np.ascontiguousarray(image[:, ::-1]), pattern, board) is not None
+    ):
+        raise BoardMirrored(f"the {board} is seen as in a mirror")
+    return corners
+
+
+def _charuco_corners(
+    image: Image, pattern: cv2.aruco.CharucoBoard, board: CalibrationBoard
+) -> Corners | None:
+    count = board.columns * board.rows
+    best: tuple[Array, Ids] | None = None
+    for parameters in (cv2.aruco.DetectorParameters(), _thorough()):
+        refined = cv2.aruco.CharucoParameters()
+        # Markers that were not read are looked for where the others say that they must be.
+        refined.tryRefineMarkers = True
+        found, ids, _, _ = cv2.aruco.CharucoDetector(pattern, refined, parameters).detectBoard(
+            image
+        )
+        if ids is None or (best is not None and len(ids) <= len(best[1])):
+            continue
+        best = np.asarray(found, dtype=float).reshape(-1, 2), np.ravel(ids).astype(np.int64)
+        if len(ids) == count:
+            break
+    if best is None or len(best[1]) < _MIN_CHARUCO:
         return None
-    order = np.argsort(np.ravel(ids))
-    sorted_ids = np.ravel(ids)[order].astype(np.int64)
-    pixels = np.asarray(found, dtype=float).reshape(-1, 2)[order]
+    order = np.argsort(best[1])
     # Markers stand close to the corners, so the smallest window.
-    return Corners(sorted_ids, _refine(image, pixels, 0.0))
+    return Corners(best[1][order], _refine(image, best[0][order], 0.0))
+
+
+def _thorough() -> cv2.aruco.DetectorParameters:
+    """For boards that are far, tilted or out of focus: slower, and with markers of all sizes."""
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.adaptiveThreshWinSizeMax = 53
+    parameters.minMarkerPerimeterRate = 0.01
+    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_SUBPIX
+    return parameters
 
 
 def _detect_circles(image: Image, board: CalibrationBoard) -> Corners | None:

@@ -48,7 +48,7 @@ def measure(  # noqa: PLR0917 - the options of the command
     Exit code 3 when a hole is missing or ambiguous, 1 for any other reason to refuse.
     """
     try:
-        with warnings.catch_warnings(record=True) as notes:
+        with warnings.catch_warnings(record=True, action="always") as notes:
             stereo_head = read_stereo_head(calibration)
         for note in notes:
             typer.echo(f"warning: {note.message}", err=True)

@@ -17,7 +17,7 @@ from fakes.world.scene import LensTruth, SceneDisc, SceneTargetBoard, StereoTrut
 STAGGERED = CalibrationBoard(4, 11, 0.012, circles=Circles(0.0105, asymmetric=True))
 """Nothing of it comes back after a turn."""
 GRID = CalibrationBoard(9, 7, 0.02, circles=Circles(0.013))
-_FLIPPED = RigidTransform.from_rotation(Rotation.from_euler("x", 180, degrees=True))
+BOARD_FROM_DRAWN = RigidTransform.from_rotation(Rotation.from_euler("x", 180, degrees=True))
 """z of a rendered board points towards the camera, that of a calibration board away from it."""
 
 
@@ -61,8 +61,8 @@ def seen_grid(
     shift_m = (*rng.uniform(-0.04, 0.04, 2), rng.uniform(-0.03, 0.06))
     about_x, about_y, about_z = tilt_deg
     pose = api.facing_pose(shift_m=shift_m, tilt_deg=(about_x, about_y, about_z))
-    camera_T_board = pose * _FLIPPED
-    places = np.asarray(_FLIPPED.apply(board.corners_m), dtype=float).reshape(-1, 3)
+    camera_T_board = pose * BOARD_FROM_DRAWN
+    places = np.asarray(BOARD_FROM_DRAWN.apply(board.corners_m), dtype=float).reshape(-1, 3)
     discs = tuple(SceneDisc(f"{i}", (float(x), float(y))) for i, (x, y, _) in enumerate(places))
     sides = 2 * np.abs(places[:, :2]).max(axis=0) + 2.5 * board.circles.diameter_m
     side_x, side_y = sides.tolist()

@@ -157,3 +157,21 @@ def test_no_board_at_all() -> None:
         detect_views([BoardImages("p0", noise, noise)], BOARD)
     with pytest.raises(TooFewViews):
         detect_views([], BOARD)
+
+
+@pytest.mark.parametrize("margin", [0.15, 0.4])
+def test_a_whole_board_with_a_narrow_margin_is_taken(margin: float) -> None:
+    homography = view(1)
+    image = draw(BOARD, homography, samples=32)
+    ends = np.array([(x, y) for x, y in ((-1, -1), (9, -1), (9, 6), (-1, 6))], dtype=float)
+    middle = ends.mean(axis=0)
+    ends += np.sign(ends - middle) * margin
+    points = np.column_stack([ends * SQUARE_PX, np.ones(4)]) @ homography.T
+    outline = np.rint(points[:, :2] / points[:, 2:]).astype(np.int32)
+    mask = np.zeros_like(image)
+    cv2.fillPoly(mask, [outline], 255)
+    # Beyond its edge there is something as dark as the squares.
+    image[mask == 0] = 45
+    corners = detect_corners(image, BOARD)
+    assert corners is not None
+    assert np.abs(corners.pixels - expected(BOARD, homography)).max() < 0.1

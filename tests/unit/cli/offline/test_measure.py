@@ -1,4 +1,6 @@
 import json
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -86,3 +88,37 @@ def test_files_that_are_not_images_exit_with_1(folder: Path) -> None:
         result = run(folder, right=right)
         assert result.exit_code == 1
         assert "F403" in result.stderr
+
+
+@pytest.mark.parametrize("kind", [np.uint16, np.float32])
+def test_images_of_other_depths_are_refused_by_a_text_that_says_so(
+    folder: Path, kind: type[np.generic]
+) -> None:
+    image = cv2.imread(str(folder / "right.png"), cv2.IMREAD_UNCHANGED)
+    assert image is not None
+    name = f"deep-{kind.__name__}.tiff"
+    cv2.imwrite(str(folder / name), image.astype(kind))
+    result = run(folder, right=name)
+    assert result.exit_code == 1
+    assert f"{name}: needs 8 bit grey values, has {kind.__name__}" in result.stderr
+
+
+def test_a_head_that_did_not_pass_is_measured_with_a_warning(folder: Path) -> None:
+    data = json.loads((folder / "head.json").read_text())
+    (folder / "failed.json").write_text(json.dumps({**data, "verdict": "fail"}))
+    result = run(folder, "--calibration", str(folder / "failed.json"))
+    assert result.exit_code == 0
+    assert "warning" in result.stderr
+    assert "did not pass its checks" in result.stderr
+    assert "did not pass" not in run(folder).stderr
+
+
+def test_the_command_loads_nothing_that_it_does_not_need() -> None:
+    """It must start in little more than a second, and libraries of plots and stores take longer."""
+    code = "import cellctl.cli.offline.measure, sys; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    ).stdout.split()
+    assert "cellctl.vision.measure" in loaded
+    heavy = {"matplotlib", "sqlalchemy", "pydantic_settings", "fastapi", "mcap", "harvesters"}
+    assert heavy.isdisjoint(loaded)
