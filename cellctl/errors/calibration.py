@@ -67,8 +67,11 @@ class CalibrationCamerasSwapped(CalibrationError):
 
     number = 605
     text = "Left and right images are exchanged"
-    cause = "The two cameras or the two groups of files were given in the wrong order."
-    remedy = "Exchange left and right."
+    cause = (
+        "The two cameras or the two groups of files were given in the wrong order, or both cameras "
+        "mirror their image, which a chessboard cannot tell."
+    )
+    remedy = "Look whether print in an image reads backwards. If not, exchange left and right."
 
 
 class CalibrationCameraUpsideDown(CalibrationError):
