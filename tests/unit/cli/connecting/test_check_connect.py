@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -154,9 +155,12 @@ def test_ctrl_c_ends_it_while_it_waits_for_a_robot(own: OwnCell) -> None:
     own.change('robot_name = "ARM-1"\n', f'robot_name = "ARM-1"\n{patient}\n')
     own.change('robot_name = "ARM-1",', f'robot_name = "ARM-1", {patient},')
     words = [sys.executable, "-m", "cellctl", "check", str(own.cell), "--connect"]
-    with subprocess.Popen(
-        words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    ) as process:
+    with (
+        a_child_that_may_be_interrupted(),
+        subprocess.Popen(
+            words, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+        ) as process,
+    ):
         for port in (command, guard):
             _listened_on(port, process)
         os.kill(process.pid, signal.SIGINT)
@@ -164,6 +168,14 @@ def test_ctrl_c_ends_it_while_it_waits_for_a_robot(own: OwnCell) -> None:
     assert process.returncode == 130, out + err
     assert "ended by Ctrl-C: the links are dropped, nothing was moved" in err
     assert "Traceback" not in err
+
+
+@contextmanager
+def a_child_that_may_be_interrupted() -> Iterator[None]:
+    """A shell lets what it runs in the background ignore Ctrl-C, and children inherit that."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def _listened_on(port: int, process: "subprocess.Popen[str]") -> None:
