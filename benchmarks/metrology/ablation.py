@@ -40,6 +40,7 @@ from cellctl.vision.rim import (
     problem,
     selection,
     shape,
+    solver,
     stereo_fit,
 )
 from fakes.render import api
@@ -187,6 +188,7 @@ TERMS = (
         (less("_inside", slice(14, 19), only_if=lambda model: model.turns_grey > 0.0),),
     ),
     Term("outliers weigh less", ("lit wall", "turns", "deck"), ((noise, "_HUBER", 1e9),)),
+    Term("lower edge must settle", (*WALLS, "deck"), ((solver, "_LOWER_EDGE", 0.0),)),
     Term(
         "covariance: alike over arcs",
         (*WALLS, "deck"),
