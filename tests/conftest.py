@@ -55,6 +55,11 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     gc.freeze()
 
 
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Libraries in C++ that look for leaks at the end would take what is frozen for one."""
+    gc.unfreeze()
+
+
 class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no types
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
