@@ -56,7 +56,10 @@ class CommandRefused(LocalError):
     number = 715
     text = "The cell refuses the command"
     cause = "See the detail; the codes are the line PLC's, docs/register-map.md."
-    remedy = "Give one of the permitted commands; `cellctl status` says why the others are refused."
+    remedy = (
+        "Give one of the permitted commands, which `cellctl status` lists; with --json it says why "
+    )
+    remedy += "the others are refused."
     reaction = Reaction.WARN
 
 

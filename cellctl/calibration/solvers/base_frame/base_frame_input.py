@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import PlainValidator
+from pydantic import Field, PlainValidator
 
 from cellctl.calibration.input_file import InputFile, InputPosition, numbers
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
@@ -42,8 +42,9 @@ class StopEntry(InputFile):
 class BaseFrameFile(InputFile):
     """The whole file: two links of the arm, and the stops of axes A1 and A2."""
 
-    d1_mm: float
-    a1_mm: float
+    # As in the cell file. The stops fit with any length, so metres would pass unseen.
+    d1_mm: Annotated[float, Field(ge=100, le=3000)]
+    a1_mm: Annotated[float, Field(ge=0, le=2000)]
     a1_sign: int = 1
     a2_sign: int = 1
     a1_zero_deg: float = 0.0

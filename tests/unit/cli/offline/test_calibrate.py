@@ -164,6 +164,14 @@ def test_result_beyond_its_limits_is_written_with_exit_code_3(tmp_path: Path) ->
     assert json.loads(out.read_text())["verdict"] == "fail"
 
 
+@pytest.mark.parametrize("metres", [{"d1_mm": 1.045}, {"a1_mm": -0.5}])
+def test_links_that_are_none_are_refused(tmp_path: Path, metres: dict[str, float]) -> None:
+    """The stops fit with any length of the first link: nothing else would tell."""
+    result = call("base-frame", "--in", base_frame_file(tmp_path, **metres))
+    assert isinstance(result.exception, FileInvalid)
+    assert next(iter(metres)) in str(result.exception)
+
+
 def discs(rng: np.random.Generator, pose: RigidTransform, sigma_m: float) -> list[dict[str, Any]]:
     points = transfer_case.board_points(rng, pose, np.full(3, sigma_m))
     return [
