@@ -11,6 +11,7 @@ from cellctl.errors.records import StoreUnavailable
 
 SERVICE_SOCKET = Path("/run/cellctl/cellctl.sock")
 SERVICE_STORE = Path("/var/lib/cellctl")
+SERVICE_CELL = Path("/etc/cellctl/cell.toml")
 _STARTED_HERE = ("runs", "runs/*/store")
 """Where `cellctl run` with the shipped cell files and `cellctl demo` keep store and socket."""
 

@@ -23,7 +23,8 @@ class ServiceLimits:
     """Addresses or networks, as they are written."""
     devices: tuple[str, ...]
     """Paths below /dev."""
-    socket_can: bool
+    can_channels: tuple[str, ...]
+    """Interfaces of SocketCAN, such as can0."""
     open_ends: tuple[str, ...]
     """Devices whose peers nobody can tell from the file, and why."""
 
@@ -33,12 +34,13 @@ def service_limits(cell: CellConfig) -> ServiceLimits:
     peers: dict[str, None] = dict.fromkeys(_addresses(cell.plc.allowed_clients))
     devices: dict[str, None] = {}
     open_ends: list[str] = []
-    socket_can = False
+    channels: dict[str, None] = {}
     for path, (_, device) in cell.devices().items():
         settings = device.settings
         local = {value for value in settings.values() if _is_device(value)}
         can = settings.get("transport") == "can"
-        socket_can |= can and settings.get("can_interface", _SOCKET_CAN) == _SOCKET_CAN
+        if can and settings.get("can_interface", _SOCKET_CAN) == _SOCKET_CAN:
+            channels[str(settings.get("can_channel", "can0"))] = None
         devices |= dict.fromkeys(sorted(local))
         if local or can:
             continue  # a serial line or a bus: its settings of a network mean nothing
@@ -48,7 +50,7 @@ def service_limits(cell: CellConfig) -> ServiceLimits:
         if not named:
             open_ends.append(f"{path} ({device.driver}) names no address")
         open_ends += [f"{path}: {name} is a name" for name in named if name not in known]
-    return ServiceLimits(tuple(peers), tuple(devices), socket_can, tuple(open_ends))
+    return ServiceLimits(tuple(peers), tuple(devices), tuple(channels), tuple(open_ends))
 
 
 def drop_in(name: str, limits: ServiceLimits) -> str:
@@ -62,7 +64,7 @@ def _lines(name: str, limits: ServiceLimits) -> Iterator[str]:
     yield "# The first line empties the list of the unit."
     yield "DeviceAllow="
     yield from (f"DeviceAllow={device} rw" for device in limits.devices)
-    if limits.socket_can:
+    if limits.can_channels:
         yield "RestrictAddressFamilies=AF_CAN"
     yield "IPAddressDeny=any"
     yield "IPAddressAllow=localhost"

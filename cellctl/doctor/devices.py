@@ -17,12 +17,11 @@ then comes in bunches, and the guard sees each late by that much."""
 
 def device_findings(pc: Pc, service: Service, cell: CellConfig) -> Iterator[Finding]:
     """Whether each is there and the service may use it."""
-    for path in service_limits(cell).devices:
+    limits = service_limits(cell)
+    for path in limits.devices:
         yield from _serial_line(pc, service, path)
-    for _, (_, device) in cell.devices().items():
-        settings = device.settings
-        if settings.get("transport") == "can" and settings.get("can_interface") == "socketcan":
-            yield _can_bus(pc, str(settings.get("can_channel", "can0")))
+    for channel in limits.can_channels:
+        yield _can_bus(pc, channel)
 
 
 def _serial_line(pc: Pc, service: Service, device: str) -> Iterator[Finding]:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cellctl.cli.offline.invalidate import INSTALLED
+from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.doctor.diagnosis import Subject, diagnose
 from cellctl.doctor.finding import Finding, Health
 
@@ -20,7 +20,7 @@ _MARKS = {
 
 
 def doctor(
-    cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")] = INSTALLED,
+    cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")] = SERVICE_CELL,
     *,
     as_json: Annotated[bool, typer.Option("--json", help="As JSON.")] = False,
 ) -> None:

@@ -8,13 +8,12 @@ import typer
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.calibration.store.store import CalibrationStore
+from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.store import RunStore
 from cellctl.runtime.process import calibration_kinds
-
-INSTALLED = Path("/etc/cellctl/cell.toml")
 
 
 def invalidate(
@@ -22,7 +21,7 @@ def invalidate(
     *,
     reason: Annotated[str, typer.Option(help="What happened; the operator will read it.")],
     by: Annotated[str, typer.Option(help="Who says so, for the audit log.")] = "operator",
-    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = INSTALLED,
+    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = SERVICE_CELL,
     data_dir: Annotated[
         Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
     ] = None,

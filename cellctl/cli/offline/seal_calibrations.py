@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from cellctl.calibration.store.old_form import seal_old_files
-from cellctl.cli.offline.invalidate import INSTALLED
+from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.config import load_cell
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.store import RunStore
@@ -16,7 +16,7 @@ from cellctl.records.store import RunStore
 def seal(
     *,
     by: Annotated[str, typer.Option(help="Who has compared the dates, for the audit log.")],
-    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = INSTALLED,
+    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = SERVICE_CELL,
     data_dir: Annotated[
         Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
     ] = None,

@@ -59,7 +59,7 @@ def test_socket_can_is_allowed_where_it_is_used(
     template: CellConfig, interface: str, needed: bool
 ) -> None:
     cell = changed(template, transport="can", can_interface=interface, can_channel="can0")
-    assert service_limits(cell).socket_can is needed
+    assert bool(service_limits(cell).can_channels) is needed
     assert ("RestrictAddressFamilies=AF_CAN" in drop_in_of(cell)) is needed
 
 
