@@ -3,26 +3,16 @@
 import asyncio
 
 from cellctl.errors.link import LinkLost, ReplyTimeout
+from tests.contracts.inprocess.link import InProcessLink
 
 
-class InProcessExposure:
+class InProcessExposure(InProcessLink):
     """``silent`` and ``cut`` hold for the next request."""
 
     def __init__(self, name: str) -> None:
-        self.name = name
+        super().__init__(name)
         self.exposures = 0
         self.silent = self.cut = False
-        self._connected = False
-
-    async def connect(self) -> None:
-        self._connected = True
-
-    async def disconnect(self) -> None:
-        self._connected = False
-
-    async def serial_number(self) -> str:
-        self._check()
-        return "MEMORY-1"
 
     async def _expose(self) -> int:
         """Number of the exposure; raises as a driver does that hears nothing or loses its link."""
@@ -36,7 +26,3 @@ class InProcessExposure:
             raise ReplyTimeout(self.name)
         self.exposures += 1
         return self.exposures
-
-    def _check(self) -> None:
-        if not self._connected:
-            raise LinkLost(self.name)

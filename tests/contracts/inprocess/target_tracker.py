@@ -2,30 +2,20 @@
 
 import asyncio
 
-from cellctl.errors.link import LinkLost, ProtocolViolation, ReplyTimeout
+from cellctl.errors.link import ProtocolViolation, ReplyTimeout
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.target_tracker import Target, TargetTracker
+from tests.contracts.inprocess.link import InProcessLink
 
 
-class InProcessTracker(TargetTracker):
+class InProcessTracker(InProcessLink, TargetTracker):
     """Sees the targets it is given, exactly."""
 
     def __init__(self, name: str, truth: dict[str, Array]) -> None:
-        self.name = name
+        super().__init__(name)
         self.hidden: set[str] = set()
         self.silent = self.garbled = False
         self._truth = truth
-        self._connected = False
-
-    async def connect(self) -> None:
-        self._connected = True
-
-    async def disconnect(self) -> None:
-        self._connected = False
-
-    async def serial_number(self) -> str:
-        self._check()
-        return "MEMORY-1"
 
     async def measure(self, frames: int = 1) -> tuple[Target, ...]:
         self._check()
@@ -38,7 +28,3 @@ class InProcessTracker(TargetTracker):
             raise ProtocolViolation(self.name)
         seen = self._truth.keys() - self.hidden
         return tuple(Target(name, self._truth[name], 3e-5) for name in sorted(seen))
-
-    def _check(self) -> None:
-        if not self._connected:
-            raise LinkLost(self.name)
