@@ -15,11 +15,11 @@ from fakes.control import ControlServer
 from fakes.device import DeviceFaults
 from fakes.devices import DeviceRack
 from fakes.faults import JOB_FAULTS, ROBOT_FAULTS, FaultBoard
-from fakes.jobs.controller import JobController
-from fakes.jobs.installation import Adaptation
 from fakes.motion_watch import MotionWatch
 from fakes.operator import Operator
 from fakes.priority import stand_apart
+from fakes.robot_jobs.controller import JobController
+from fakes.robot_jobs.installation import Adaptation
 from fakes.scenario_file.scenario import Scenario
 from fakes.scenario_file.sections import Robot
 from fakes.scenes.load import open_world

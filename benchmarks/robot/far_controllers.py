@@ -4,7 +4,7 @@ import asyncio
 from multiprocessing.connection import Connection
 
 from benchmarks.robot.stalls import StallWatch
-from fakes.jobs.controller import JobController
+from fakes.robot_jobs.controller import JobController
 from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.controller import SjlController
 from tests.rigs.wire.standing_arm import standing_arm

@@ -2,13 +2,13 @@
 
     python -m benchmarks.robot.slow_jobs --out build/slow-jobs.json
 
-The shipped job files run in the interpreter of ``fakes/jobs`` with 1 to 20 ms a statement, the real
-driver at the other end, in a time that does not wait and is exact (``quick_time``). Measured:
-period of the reports, begin of a commanded motion, and the time from the cause of a stop, at any
-phase of a round, until the motion is told to end: requests over STA and GRD, a PC that falls
+The shipped job files run in the interpreter of ``fakes/robot_jobs`` with 1 to 20 ms a statement,
+the real driver at the other end, in a time that does not wait and is exact (``quick_time``).
+Measured: period of the reports, begin of a commanded motion, and the time from the cause of a stop,
+at any phase of a round, until the motion is told to end: requests over STA and GRD, a PC that falls
 silent, and the contact of the PC in the permit loop. Then motions of a PC that is there all the
-time, or answers one report late, and that are stopped all the same. The dead time of the
-controller comes on top.
+time, or answers one report late, and that are stopped all the same. The dead time of the controller
+comes on top.
 """
 
 import argparse

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.robot.stop_ways import WAYS, Way
+from benchmarks.robot.stop_methods import WAYS, Way
 from cellctl.errors.base import CellError
 
 WAY_M, SPEED_M_S = 0.1, 0.02

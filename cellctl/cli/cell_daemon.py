@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cellctl.api.local.report import StatusReport
-from cellctl.api.local.socket_file import default_path
+from cellctl.api.local_socket.report import StatusReport
+from cellctl.api.local_socket.socket_file import default_path
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.config import CellConfig
 from cellctl.errors.local import DaemonNotReached

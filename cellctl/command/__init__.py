@@ -2,8 +2,8 @@
 
 The walk of a command:
 
-1. An interface (``api.modbus`` for the line PLC, ``api.local`` for the terminal) turns what it
-   received into a ``UnitCommand`` and wraps it in a ``Submission``, through which the interface
+1. An interface (``api.modbus`` for the line PLC, ``api.local_socket`` for the terminal) turns what
+   it received into a ``UnitCommand`` and wraps it in a ``Submission``, through which the interface
    hears how the command ends. The line's commands wait in a ``CommandQueue`` first.
 2. ``CommandArbiter.submit`` takes the submission. Stop and Abort skip step 3.
 3. The ``CommandValidator`` checks the command. Where the checks succeed, the client's record and an

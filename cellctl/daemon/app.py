@@ -13,8 +13,8 @@ from types import TracebackType
 from typing import Any
 
 from cellctl import log
-from cellctl.api.local.api import local_api
-from cellctl.api.local.live_feed import LiveFeed
+from cellctl.api.local_socket.api import local_api
+from cellctl.api.local_socket.live_feed import LiveFeed
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
-from cellctl.api.local.messages import Role
+from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.hosts import host_name
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import Problem

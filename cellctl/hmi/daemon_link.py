@@ -4,7 +4,7 @@ import asyncio
 from pathlib import Path
 
 from cellctl import log
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     ANSWER_LIMIT,
     Answer,
     FollowRequest,

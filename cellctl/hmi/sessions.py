@@ -5,7 +5,7 @@ import secrets
 from collections import OrderedDict
 from dataclasses import dataclass
 
-from cellctl.api.local.messages import Role
+from cellctl.api.local_socket.messages import Role
 from cellctl.clock import Monotonic, now_s
 
 SESSIONS = 200

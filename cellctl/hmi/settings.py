@@ -7,7 +7,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from cellctl.api.local.messages import Role
+from cellctl.api.local_socket.messages import Role
 from cellctl.errors.local import PageSettingsWrong
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,32}$")]

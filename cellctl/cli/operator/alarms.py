@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cellctl.api.local.messages import AcknowledgeCommand, made
+from cellctl.api.local_socket.messages import AcknowledgeCommand, made
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 

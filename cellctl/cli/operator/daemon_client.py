@@ -5,7 +5,7 @@ import time
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     ANSWER_LIMIT,
     Answer,
     CommandRequest,
@@ -19,7 +19,7 @@ from cellctl.api.local.messages import (
     parse_answer,
     to_line,
 )
-from cellctl.api.local.report import StatusReport
+from cellctl.api.local_socket.report import StatusReport
 from cellctl.cli.nearest_cell import nearest_socket
 from cellctl.clock import Monotonic, now_s
 from cellctl.errors.local import (

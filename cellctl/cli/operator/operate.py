@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     ModeCommand,
     PlainCommand,
     PlainName,
@@ -15,7 +15,7 @@ from cellctl.api.local.messages import (
     StartCommand,
     made,
 )
-from cellctl.api.local.report import StatusReport
+from cellctl.api.local_socket.report import StatusReport
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.errors.local import CommandMissedItsGoal

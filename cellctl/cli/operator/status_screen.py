@@ -6,7 +6,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from cellctl.api.local.report import (
+from cellctl.api.local_socket.report import (
     AxisReport,
     CalibrationReport,
     FaultReport,

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Header, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     CommandRequest,
     Failed,
     OnBehalf,

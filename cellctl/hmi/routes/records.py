@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
 from pydantic import BaseModel, ConfigDict, Field
 
-from cellctl.api.local.messages import Role
+from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
 

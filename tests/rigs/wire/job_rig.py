@@ -7,8 +7,8 @@ from pathlib import Path
 
 from drivers.robot.siasun.config import SiasunConfig, SiasunStopChannelConfig
 from drivers.robot.siasun.driver import SiasunRobot
-from fakes.jobs.controller import JobController
-from fakes.jobs.program import load_program
+from fakes.robot_jobs.controller import JobController
+from fakes.robot_jobs.program import load_program
 from fakes.scenario_file.sections import Channel
 from fakes.world.robot import RobotArm
 from tests.rigs.wire.ports import free_ports

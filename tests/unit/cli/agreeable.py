@@ -8,10 +8,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cellctl.api.local.messages import Answer, Refused, Request, StatusAnswer, StatusRequest, Taken
-from cellctl.api.local.report import StatusReport
-from cellctl.api.local.server import LocalServer
-from cellctl.api.local.socket_file import SocketFile
+from cellctl.api.local_socket.messages import (
+    Answer,
+    Refused,
+    Request,
+    StatusAnswer,
+    StatusRequest,
+    Taken,
+)
+from cellctl.api.local_socket.report import StatusReport
+from cellctl.api.local_socket.server import LocalServer
+from cellctl.api.local_socket.socket_file import SocketFile
 
 _LEADS_TO = {
     "clear": "STOPPED",

@@ -70,7 +70,7 @@ def test_a_command_that_computes_nothing_loads_nothing_that_computes(words: str)
 
 @pytest.mark.parametrize("words", ["--help", "faults 207", "runs list --data-dir absent"])
 def test_whoever_asks_no_daemon_does_not_wait_for_its_messages(words: str) -> None:
-    assert loaded_by(words, ("cellctl.api.local.messages",))[1] == ""
+    assert loaded_by(words, ("cellctl.api.local_socket.messages",))[1] == ""
 
 
 def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ import pytest
 from cellctl.hmi.people import secret_of
 from cellctl.records.store import RunStore
 from tests.unit.hmi.http_client import Client
-from tests.unit.hmi.paper_daemon import PIN, PaperDaemon, page_thread, serving
+from tests.unit.hmi.scripted_daemon import PIN, PaperDaemon, page_thread, serving
 
 TOKEN = "a-token-of-a-program"
 

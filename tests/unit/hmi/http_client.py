@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import urlsplit
 
-from tests.unit.hmi.paper_daemon import PIN
+from tests.unit.hmi.scripted_daemon import PIN
 
 
 @dataclass

@@ -7,11 +7,11 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from cellctl.api.local.messages import Failed, PlainCommand, Refused, StartCommand
+from cellctl.api.local_socket.messages import Failed, PlainCommand, Refused, StartCommand
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client, Reply
-from tests.unit.hmi.paper_daemon import PaperDaemon, snapshot
+from tests.unit.hmi.scripted_daemon import PaperDaemon, snapshot
 
 RESET = {"request": "reset"}
 

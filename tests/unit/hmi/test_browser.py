@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from cellctl.api.local.messages import PlainCommand, Refused, StartCommand
+from cellctl.api.local_socket.messages import PlainCommand, Refused, StartCommand
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from tests.unit.hmi.paper_daemon import (
+from tests.unit.hmi.scripted_daemon import (
     NAMES,
     PIN,
     PaperDaemon,

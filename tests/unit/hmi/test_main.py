@@ -19,7 +19,7 @@ from cellctl.hmi.people import matches, secret_of
 from cellctl.hmi.rates import RateLimit
 from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import PageSettings, load_settings
-from tests.unit.hmi.paper_daemon import page_process
+from tests.unit.hmi.scripted_daemon import page_process
 
 
 def test_a_secret_is_that_of_its_pin_alone() -> None:

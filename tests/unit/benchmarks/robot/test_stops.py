@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchmarks.robot.stop_ways import WAYS
+from benchmarks.robot.stop_methods import WAYS
 from benchmarks.robot.stops import StopRow, main, table
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner, Result
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     Request,
     RobotAnswer,
     RobotRequest,

@@ -18,7 +18,7 @@ import pytest
 from rich.console import Console
 from typer.testing import CliRunner, Result
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
     ModeCommand,
     PlainCommand,
@@ -26,7 +26,7 @@ from cellctl.api.local.messages import (
     Refused,
     StartCommand,
 )
-from cellctl.api.local.report import (
+from cellctl.api.local_socket.report import (
     AxisReport,
     CalibrationReport,
     FaultReport,
@@ -34,7 +34,7 @@ from cellctl.api.local.report import (
     RunReport,
     StatusReport,
 )
-from cellctl.api.local.socket_file import default_path
+from cellctl.api.local_socket.socket_file import default_path
 from cellctl.cli import nearest_cell
 from cellctl.cli.commands import whole_app
 from cellctl.cli.operator.daemon_client import DaemonClient

@@ -5,7 +5,7 @@ from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 
 from cellctl import log
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     REQUEST_LIMIT,
     Answer,
     Failed,
@@ -14,8 +14,8 @@ from cellctl.api.local.messages import (
     parse_request,
     to_line,
 )
-from cellctl.api.local.socket_file import SocketFile
-from cellctl.api.local.users import peer_uid
+from cellctl.api.local_socket.socket_file import SocketFile
+from cellctl.api.local_socket.users import peer_uid
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.local import MessageMalformed

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import numpy as np
 
 from fakes.faults import FaultBoard
-from fakes.jobs.lexer import JobError
-from fakes.jobs.position import JOINTS, POSE, Position
+from fakes.robot_jobs.lexer import JobError
+from fakes.robot_jobs.position import JOINTS, POSE, Position
 from fakes.wire.sjl.panel import Panel
 from fakes.world.frames import MM, from_written, matrix_to_written
 from fakes.world.robot import RefusedMotionError, RobotArm

@@ -4,11 +4,11 @@ import asyncio
 
 import pytest
 
-from fakes.jobs.program import load_program
+from fakes.robot_jobs.program import load_program
 from fakes.scenario_file.sections import Channel
 from tests.rigs.wire.job_rig import JOBS, JobRig, job_rig
 from tests.rigs.wire.refusals import REFUSALS
-from tests.wire.jobs.job_ways import WAYS, Way
+from tests.wire.robot_jobs.job_ways import WAYS, Way
 
 
 @pytest.mark.parametrize("name", WAYS)

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fakes.faults import JOB_FAULTS, FaultBoard
-from fakes.jobs.installation import SHIPPED, Adaptation, installed
-from fakes.jobs.lexer import JobError
-from fakes.jobs.memory import Memory
-from fakes.jobs.motion import Motions
-from fakes.jobs.sockets import JobSocket
-from fakes.jobs.task import Shared, Task
+from fakes.robot_jobs.installation import SHIPPED, Adaptation, installed
+from fakes.robot_jobs.lexer import JobError
+from fakes.robot_jobs.memory import Memory
+from fakes.robot_jobs.motion import Motions
+from fakes.robot_jobs.sockets import JobSocket
+from fakes.robot_jobs.task import Shared, Task
 from fakes.scenario_file.sections import Channel
 from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm

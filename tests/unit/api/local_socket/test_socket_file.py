@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.api.local.socket_file import SocketFile, default_path
+from cellctl.api.local_socket.socket_file import SocketFile, default_path
 from cellctl.errors.local import CannotServeLocally, LocalApiInUse
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from fakes.jobs.lexer import JobError, Token, tokens
+from fakes.robot_jobs.lexer import JobError, Token, tokens
 
 _VARIABLES = "IHR"
 _OPERANDS = "NIHRC"

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
-from cellctl.api.local.live_feed import LiveFeed, as_line
-from cellctl.api.local.live_view import LiveView
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.live_feed import LiveFeed, as_line
+from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.messages import (
     Answer,
     CommandRequest,
     OnBehalf,
@@ -21,9 +21,9 @@ from cellctl.api.local.messages import (
     parse_request,
     to_line,
 )
-from cellctl.api.local.page_desk import AT_A_PANEL, refusal
-from cellctl.api.local.reporter import Reporter
-from cellctl.api.local.terminal import Terminal
+from cellctl.api.local_socket.page_desk import AT_A_PANEL, refusal
+from cellctl.api.local_socket.reporter import Reporter
+from cellctl.api.local_socket.terminal import Terminal
 from cellctl.errors.link import LinkLost
 from cellctl.errors.local import NotThePage
 from cellctl.packml.reject import RejectCode

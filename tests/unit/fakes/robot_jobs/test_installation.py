@@ -2,8 +2,8 @@
 
 import pytest
 
-from fakes.jobs.installation import SHIPPED, Adaptation, installed
-from fakes.jobs.lexer import JobError
+from fakes.robot_jobs.installation import SHIPPED, Adaptation, installed
+from fakes.robot_jobs.lexer import JobError
 
 SITE = Adaptation("T90A-1", step_max_mm=0.25, deadman_ms=1000)
 JOBS = ("SJLMAIN", "SJLSTA", "SJLGRD")

@@ -5,7 +5,7 @@ import os
 from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Mapping
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     Answer,
     CommandRequest,
     Failed,
@@ -15,7 +15,7 @@ from cellctl.api.local.messages import (
     Role,
     Taken,
 )
-from cellctl.api.local.users import Users
+from cellctl.api.local_socket.users import Users
 from cellctl.errors.local import NotThePage
 from cellctl.packml.reject import RejectCode
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from cellctl import log
-from cellctl.api.local.live_view import LiveView
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
     Answer,
     CommandRequest,
@@ -23,9 +23,9 @@ from cellctl.api.local.messages import (
     StatusRequest,
     Taken,
 )
-from cellctl.api.local.page_desk import PageDesk
-from cellctl.api.local.reporter import Reporter
-from cellctl.api.local.users import Users
+from cellctl.api.local_socket.page_desk import PageDesk
+from cellctl.api.local_socket.reporter import Reporter
+from cellctl.api.local_socket.users import Users
 from cellctl.command.submission import Submission, Submit
 from cellctl.config import CellConfig
 from cellctl.packml.command import Command

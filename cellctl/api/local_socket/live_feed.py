@@ -5,7 +5,7 @@ import json
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from cellctl.api.local.live_view import LiveView
+from cellctl.api.local_socket.live_view import LiveView
 from cellctl.runtime.cell_status import CellStatus
 
 FOLLOWERS = 2

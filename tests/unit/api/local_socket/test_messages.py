@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
     ModeCommand,
     PlainCommand,

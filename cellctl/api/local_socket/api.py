@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cellctl.api.local.live_feed import LiveFeed
-from cellctl.api.local.live_view import LiveView
-from cellctl.api.local.reporter import Reporter
-from cellctl.api.local.server import LocalServer
-from cellctl.api.local.socket_file import SocketFile, default_path
-from cellctl.api.local.terminal import Terminal
+from cellctl.api.local_socket.live_feed import LiveFeed
+from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.reporter import Reporter
+from cellctl.api.local_socket.server import LocalServer
+from cellctl.api.local_socket.socket_file import SocketFile, default_path
+from cellctl.api.local_socket.terminal import Terminal
 from cellctl.cell.devices import Cell
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.records.async_store import AsyncRunStore

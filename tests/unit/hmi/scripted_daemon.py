@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from cellctl.api.local.live_feed import as_line
-from cellctl.api.local.messages import Answer, PageCommand, Request, Taken
-from cellctl.api.local.server import LocalServer
-from cellctl.api.local.socket_file import SocketFile
+from cellctl.api.local_socket.live_feed import as_line
+from cellctl.api.local_socket.messages import Answer, PageCommand, Request, Taken
+from cellctl.api.local_socket.server import LocalServer
+from cellctl.api.local_socket.socket_file import SocketFile
 from cellctl.clock import now_s
 from cellctl.hmi.main import page_server, url_of
 from cellctl.hmi.settings import load_settings

@@ -4,8 +4,8 @@ import asyncio
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from cellctl.api.local.live_view import LiveView
-from cellctl.api.local.report import (
+from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.report import (
     AxisReport,
     CalibrationReport,
     FaultReport,

@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from fakes.jobs.lexer import JobError, Token
-from fakes.jobs.position import Position
+from fakes.robot_jobs.lexer import JobError, Token
+from fakes.robot_jobs.position import Position
 
 STRING_MAX = 128
 """Bytes of a string variable: an assumption, so that no job relies on more."""

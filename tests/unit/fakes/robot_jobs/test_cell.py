@@ -6,7 +6,7 @@ import pytest
 
 from fakes.cell import Cell
 from fakes.faults import JOB_FAULTS, ROBOT_FAULTS
-from fakes.jobs.controller import JobController
+from fakes.robot_jobs.controller import JobController
 from fakes.scenes.load import load
 from fakes.wire.sjl.controller import SjlController
 

@@ -8,8 +8,8 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from fakes.jobs.lexer import JobError
-from fakes.jobs.program import Program, load_program, read_program
+from fakes.robot_jobs.lexer import JobError
+from fakes.robot_jobs.program import Program, load_program, read_program
 
 SHIPPED = Path(__file__).parents[2] / "drivers" / "robot" / "siasun" / "job"
 """Folder of the delivery."""

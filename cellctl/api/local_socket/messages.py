@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
-from cellctl.api.local.report import StatusReport
+from cellctl.api.local_socket.report import StatusReport
 from cellctl.errors.local import MessageMalformed
 
 REQUEST_LIMIT = 4096

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from cellctl.api.local.messages import Answer, Request, Taken
-from cellctl.api.local.server import LocalLimits, LocalServer
-from cellctl.api.local.socket_file import SocketFile
+from cellctl.api.local_socket.messages import Answer, Request, Taken
+from cellctl.api.local_socket.server import LocalLimits, LocalServer
+from cellctl.api.local_socket.socket_file import SocketFile
 from cellctl.errors.link import LinkLost
 
 WAIT_S = 5.0

@@ -6,8 +6,8 @@ from datetime import timedelta
 
 import pytest
 
-from cellctl.api.local.live_view import LiveView
-from cellctl.api.local.messages import (
+from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
     ModeCommand,
     PlainCommand,
@@ -23,10 +23,10 @@ from cellctl.api.local.messages import (
     parse_answer,
     to_line,
 )
-from cellctl.api.local.report import StatusReport
-from cellctl.api.local.reporter import Reporter
-from cellctl.api.local.terminal import Terminal
-from cellctl.api.local.users import Users
+from cellctl.api.local_socket.report import StatusReport
+from cellctl.api.local_socket.reporter import Reporter
+from cellctl.api.local_socket.terminal import Terminal
+from cellctl.api.local_socket.users import Users
 from cellctl.errors.link import LinkLost, StaleData
 from cellctl.errors.local import MessageMalformed
 from cellctl.errors.records import StoreUnavailable

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from fakes.faults import JOB_FAULTS, FaultBoard
-from fakes.jobs.lexer import JobError
-from fakes.jobs.memory import Memory
-from fakes.jobs.motion import Motions
-from fakes.jobs.program import load_program
-from fakes.jobs.strings import WORDS
-from fakes.jobs.task import Shared, Task
+from fakes.robot_jobs.lexer import JobError
+from fakes.robot_jobs.memory import Memory
+from fakes.robot_jobs.motion import Motions
+from fakes.robot_jobs.program import load_program
+from fakes.robot_jobs.strings import WORDS
+from fakes.robot_jobs.task import Shared, Task
 from fakes.scenes.load import load
 from fakes.wire.sjl.panel import Panel
 from fakes.world.robot import RobotArm

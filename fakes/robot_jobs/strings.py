@@ -1,8 +1,8 @@
 """String words of the job language. Places count from 0, not found is -1: assumptions that the
 installation sheet has verified, like the order of the arguments."""
 
-from fakes.jobs.lexer import JobError, Token
-from fakes.jobs.memory import Memory
+from fakes.robot_jobs.lexer import JobError, Token
+from fakes.robot_jobs.memory import Memory
 
 WORDS = {
     "STRLEN", "STRFIND", "STRFINDEND", "STRSUB", "STRCMP", "STR2I", "STR2R", "I2STR",

@@ -9,7 +9,7 @@ installation sheet of the jobs has them verified.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from fakes.jobs.lexer import JobError
+from fakes.robot_jobs.lexer import JobError
 
 POSE = ("X", "Y", "Z", "RZ", "RY", "RX")
 """In mm and degrees."""

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.cameras.ways``: what a pair of the fake cell costs on each way.
+"""``python -m benchmarks.cameras.transport_cost``: what a pair of the fake cell costs on each way.
 
 A whole fake cell renders for a head that stands still, behind a frame server and behind the fake
 GenTL producer, turn by turn. Both of its processes, the driver and the maker's library count.

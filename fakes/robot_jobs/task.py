@@ -4,13 +4,13 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from fakes.jobs import strings
-from fakes.jobs.lexer import JobError, Token
-from fakes.jobs.memory import Memory
-from fakes.jobs.motion import Motions
-from fakes.jobs.position import Position
-from fakes.jobs.program import Condition, Program, Statement
-from fakes.jobs.sockets import JobSocket, Route
+from fakes.robot_jobs import strings
+from fakes.robot_jobs.lexer import JobError, Token
+from fakes.robot_jobs.memory import Memory
+from fakes.robot_jobs.motion import Motions
+from fakes.robot_jobs.position import Position
+from fakes.robot_jobs.program import Condition, Program, Statement
+from fakes.robot_jobs.sockets import JobSocket, Route
 
 _POLL_S = 0.002
 _CATCH_UP_S = 0.01
