@@ -19,6 +19,7 @@ _SHARED_IMAGES = (
     "tests/unit/cli/offline/test_calibrate.py",
 )
 _SHARED_MATING = ("tests/unit/processes/deck_to_frame/mating/test_mate.py",)
+_SHARED_REPORT = ("tests/unit/records/report/test_pdf.py",)
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs. The same examples in every run: a commit that
@@ -64,7 +65,7 @@ class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no 
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
     This matters when pytest is called by hand with several workers; `make test` gives them one.
-    Files whose tests share rendered images or a simulated mating go out whole, so that these are
+    Files whose tests share rendered images, a mating or a report go out whole, so that these are
     made once; the others singly. (`--dist loadgroup` would do, but xdist 3.8 loses the groups with
     pytest 9.2, silently.)
     """
@@ -72,7 +73,7 @@ class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no 
     def _split_scope(self, nodeid: str) -> str:
         if nodeid.startswith("tests/cell/"):
             return "cell"
-        shared = nodeid.startswith(_SHARED_IMAGES + _SHARED_MATING)
+        shared = nodeid.startswith(_SHARED_IMAGES + _SHARED_MATING + _SHARED_REPORT)
         return nodeid.split("::", maxsplit=1)[0] if shared else nodeid
 
 

@@ -41,6 +41,7 @@ def test_one_late_answer_stops_a_slow_job() -> None:
     assert tried("undisturbed", 5.0).stop_ms is None
 
 
+@pytest.mark.long
 def test_the_same_seed_is_the_same_row() -> None:
     rows = [QuickTime().run(measure(2.0, 1, seed=4)) for _ in range(2)]
     assert rows[0].stop_ms["STA stop"][0] == pytest.approx(rows[1].stop_ms["STA stop"][0], abs=2.0)

@@ -2,7 +2,9 @@
 
 import re
 import sys
+from collections.abc import Iterator
 from ctypes.util import find_library
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from types import ModuleType
@@ -41,27 +43,50 @@ def text_of_pdf(data: bytes) -> str:
     return " ".join(page.extract_text() for page in PdfReader(BytesIO(data)).pages)
 
 
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """A good run and the PDF that the command has made of it, which takes seconds."""
+
+    store: RunStore
+    run: int
+    pdf: Path
+    said: str
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Recorded]:
+    folder = tmp_path_factory.mktemp("recorded")
+    store = RunStore(folder / "runs")
+    run, pdf = good_run(store, picture()), folder / "report.pdf"
+    yield Recorded(store, run, pdf, command(store, run, pdf, "--pdf"))
+    store.close()
+
+
+def command(store: RunStore, run: int, out: Path, *options: str) -> str:
+    where = ["--data-dir", str(store.path), "--out", str(out)]
+    result = CliRunner().invoke(app, ["report", str(run), *options, *where])
+    assert result.exit_code == 0, result.output
+    return result.stdout.strip()
+
+
 @drawn
-def test_every_figure_of_the_page_is_in_the_pdf(store: RunStore, tmp_path: Path) -> None:
-    run = good_run(store, picture())
-    write_report(store, run, tmp_path / "report.html", pages=pages)
-    write_report(store, run, tmp_path / "report.pdf", pages=pages, pdf=True)
+def test_every_figure_of_the_page_is_in_the_pdf(recorded: Recorded, tmp_path: Path) -> None:
+    write_report(recorded.store, recorded.run, tmp_path / "report.html", pages=pages)
     page = read(tmp_path / "report.html")
-    pdf = text_of_pdf((tmp_path / "report.pdf").read_bytes())
+    pdf = text_of_pdf(recorded.pdf.read_bytes())
     wanted = {found for text in page.shown for found in _NUMBER.findall(text)}
     assert len(wanted) > 100
     squeezed = re.sub(r"\s+", "", pdf)
     assert [number for number in sorted(wanted) if number not in squeezed] == []
     words = {word for text in page.shown for word in re.findall(r"[A-Za-z]{3,}", text)}
     assert [word for word in sorted(words) if word.lower() not in squeezed.lower()] == []
-    with_pictures = [one for one in PdfReader(tmp_path / "report.pdf").pages if one.images]
+    with_pictures = [one for one in PdfReader(recorded.pdf).pages if one.images]
     assert with_pictures
 
 
 @drawn
-def test_the_first_page_holds_what_is_signed(store: RunStore, tmp_path: Path) -> None:
-    write_report(store, good_run(store, picture()), tmp_path / "a.pdf", pages=pages, pdf=True)
-    first = PdfReader(tmp_path / "a.pdf").pages[0].extract_text()
+def test_the_first_page_holds_what_is_signed(recorded: Recorded) -> None:
+    first = PdfReader(recorded.pdf).pages[0].extract_text()
     for expected in ("SAT-0042", "Good part", "Acceptance", "38.4 N", "k = 2", "accepted by"):
         assert expected in first, expected
 
@@ -86,15 +111,9 @@ def test_a_computer_without_the_libraries_says_which(monkeypatch: pytest.MonkeyP
 
 
 @drawn
-def test_the_command_writes_one_file(store: RunStore, tmp_path: Path) -> None:
-    run = str(good_run(store, picture()))
-    where = ["--data-dir", str(store.path)]
-    for options, name, begin in (
-        (["--pdf"], "a.pdf", b"%PDF-"),
-        ([], "a.html", b"<!doctype html>"),
-    ):
-        out = tmp_path / name
-        result = CliRunner().invoke(app, ["report", run, *options, "--out", str(out), *where])
-        assert result.exit_code == 0, result.output
-        assert out.read_bytes().startswith(begin)
-        assert result.stdout.strip() == str(out)
+def test_the_command_writes_one_file(recorded: Recorded, tmp_path: Path) -> None:
+    assert recorded.said == str(recorded.pdf)
+    assert recorded.pdf.read_bytes().startswith(b"%PDF-")
+    html = tmp_path / "a.html"
+    assert command(recorded.store, recorded.run, html) == str(html)
+    assert html.read_bytes().startswith(b"<!doctype html>")
