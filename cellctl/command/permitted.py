@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from cellctl.command.validator import validate_authority, validate_in_new_mode
+from cellctl.command.validator import validate_authority, validate_in_mode
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
@@ -39,13 +39,10 @@ def _plain(machine: PackMLMachine, command: Command, *, line_alive: bool) -> Rej
 
 
 def _start(machine: PackMLMachine, jobs: JobFactory, mode: Mode, *, line_alive: bool) -> RejectCode:
-    asked = UnitCommand(Source.PAGE, cntrl_cmd=Command.START, unit_mode=mode)
+    asked = UnitCommand(Source.PAGE, cntrl_cmd=Command.START, in_mode=mode)
     authority = validate_authority(asked, machine.mode, line_alive=line_alive)
-    if machine.mode is mode:
-        code = machine.validate(Command.START)
-    else:
-        code = validate_mode(machine.state, mode) or validate_in_new_mode(asked, machine.state)
-    return authority or code or jobs.refusal(mode)
+    code = authority or validate_in_mode(asked, machine.mode, machine.state)
+    return code or machine.validate(Command.START) or jobs.refusal(mode)
 
 
 def _mode(machine: PackMLMachine, mode: Mode, *, line_alive: bool) -> RejectCode:

@@ -1,18 +1,19 @@
 """Every check that a command meets, in the order in which it meets them.
 
-The first check that fails gives the reject code. Stop and Abort meet only checks 6 and 7.
+The first check that fails gives the reject code. Stop and Abort meet only checks 7 and 8.
 
 1. Link: a client whose link is dead may only end motion (``Submission.link_fault``).
 2. Parameters: serial number, order and options are well formed.
 3. Turn: no Stop, and no command of another source, came between giving and executing the command.
 4. Authority: the line PLC alone commands motion in Production while it is alive.
-5. Start: recipe or procedure, calibrations, records and devices (``runtime.jobs.factory``).
-6. Tables: the state and the mode allow the command (``packml.validation``).
-7. Devices are connected (the gate of the state machine).
+5. Mode: a command that is meant for one mode is not carried out in another.
+6. Start: recipe or procedure, calibrations, records and devices (``runtime.jobs.factory``).
+7. Tables: the state and the mode allow the command (``packml.validation``).
+8. Devices are connected (the gate of the state machine).
 
-The arbiter asks for 1 to 5 before it queues for execution, because 5 reads files. It asks for 3 and
-4 again right before execution: while 5 waited for the disk a Stop may have come, or the line may
-have come alive. 6 and 7 belong to the state machine, which asks them whoever commands it.
+The arbiter asks for 1 to 6 before it queues for execution, because 6 reads files. It asks for 3 to
+5 again right before execution: while 6 waited for the disk a Stop may have come, the line may have
+come alive, or somebody may have changed the mode. 7 and 8 belong to the state machine, which asks them whoever commands it.
 """
 
 import math
@@ -66,10 +67,24 @@ def validate_authority(command: UnitCommand, mode: Mode, *, line_alive: bool) ->
         return RejectCode.NONE
     # A command may bring its mode with it: what would start Production counts as motion in
     # Production.
-    wanted = command.unit_mode or mode
+    wanted = command.unit_mode or command.in_mode or mode
     moves = command.cntrl_cmd in MAY_MOVE and Mode.PRODUCTION in (mode, wanted)
     leaves_production = line_in_control(mode, line_alive=line_alive) and wanted != mode
     return RejectCode.LINE_IN_CONTROL if moves or leaves_production else RejectCode.NONE
+
+
+def validate_in_mode(command: UnitCommand, mode: Mode, state: State) -> RejectCode:
+    """Why a command that is meant for one mode is refused in this one; NONE where it may go on.
+
+    A Start at the terminal says what shall run. It does not say that the mode may change, which
+    decides about speeds and about who may command.
+    """
+    if command.in_mode in (0, mode):
+        return RejectCode.NONE
+    # A state that refuses the command in any mode is the truer reason: another mode would not help.
+    return validate_command(state, Mode(command.in_mode), command.cntrl_cmd) or (
+        RejectCode.OTHER_MODE
+    )
 
 
 def validate_in_new_mode(command: UnitCommand, state: State) -> RejectCode:
@@ -97,7 +112,7 @@ def start_mode(command: UnitCommand, machine: PackMLMachine) -> Mode | None:
 
 
 class CommandValidator:
-    """Checks 1 to 5, and the times that check 3 needs."""
+    """Checks 1 to 6, and the times that check 3 needs."""
 
     def __init__(
         self, machine: PackMLMachine, jobs: JobFactory, line_alive: Callable[[], bool]
@@ -111,23 +126,25 @@ class CommandValidator:
         """Monotonic time at which the last command of each source was executed."""
 
     def validate(self, submission: Submission) -> RejectCode:
-        """Checks 1 to 4: everything that needs no disk."""
+        """Checks 1 to 5: everything that needs no disk."""
         command = submission.command
         return (
             submission.link_fault() or validate_parameters(command) or self.validate_turn(command)
         )
 
     def validate_turn(self, command: UnitCommand) -> RejectCode:
-        """Checks 3 and 4: whether it is still the turn of whoever gave the command."""
+        """Checks 3 to 5: whether it is still the turn of whoever gave the command."""
         others = (time_s for source, time_s in self._executed_s.items() if source != command.source)
         # Whoever gave a command before one of these happened did not know of it, and might have
         # decided otherwise. Their own earlier commands, however, they do know.
         if command.arrived_s < max(self._stopped_s, *others):
             return RejectCode.SUPERSEDED
-        return validate_authority(command, self._machine.mode, line_alive=self._line_alive())
+        mode, state = self._machine.mode, self._machine.state
+        authority = validate_authority(command, mode, line_alive=self._line_alive())
+        return authority or validate_in_mode(command, mode, state)
 
     async def validate_start(self, command: UnitCommand) -> RejectCode:
-        """Check 5; NONE for other commands. Reads files and the run store."""
+        """Check 6; NONE for other commands. Reads files and the run store."""
         mode = start_mode(command, self._machine)
         return RejectCode.NONE if mode is None else await self._jobs.validate(command, mode)
 

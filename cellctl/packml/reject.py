@@ -27,6 +27,7 @@ class RejectCode(IntEnum):
     LINE_IN_CONTROL = 0x10B
     ROLE_MISSING = 0x10C
     NOT_AT_A_PANEL = 0x10D
+    OTHER_MODE = 0x10E
 
     @property
     def text(self) -> str:
@@ -56,4 +57,5 @@ _TEXT = {
     RejectCode.LINE_IN_CONTROL: "to terminal and page only: the line PLC is in control",
     RejectCode.ROLE_MISSING: "to the page only: the person does not have the role for it",
     RejectCode.NOT_AT_A_PANEL: "to the page only: what may move the cell needs a panel at the cell",
+    RejectCode.OTHER_MODE: "to terminal and page only: needs another mode, which is to be set first",
 }

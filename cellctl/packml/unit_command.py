@@ -33,7 +33,7 @@ KNOWN_OPTIONS = Options.DRY_RUN | Options.SINGLE_STEP
 class UnitCommand:
     """What somebody asks of the unit. Nothing in it has been validated yet.
 
-    Mode, command, recipe and options are plain numbers for that reason: an unknown number has to
+    Modes, command, recipe and options are plain numbers for that reason: an unknown number has to
     reach the validator, which refuses it with its code. 0 (or an empty text) means "not asked for".
     """
 
@@ -44,6 +44,8 @@ class UnitCommand:
     """Number of a ``Command``: CntrlCmd of the PackTags."""
     unit_mode: int = 0
     """Number of the ``Mode`` that is asked for; 0 leaves the mode as it is."""
+    in_mode: int = 0
+    """Number of the ``Mode`` in which alone the command is meant; 0 for any. Changes nothing."""
     recipe_id: int = 0
     """Recipe in Production, procedure in Maintenance."""
     options: Options = Options.NONE

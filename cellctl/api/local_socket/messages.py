@@ -142,6 +142,8 @@ class Refused(Message):
     state: str
     permitted: tuple[str, ...] = ()
     """Names of the commands that would be taken now."""
+    remedy: str = ""
+    """What to do first, in words; empty where ``permitted`` and ``known`` say it."""
     known: tuple[str, ...] = ()
     """Recipes or procedures of this cell, where the one that was named is none of them."""
 

@@ -24,6 +24,7 @@ from cellctl.api.local_socket.messages import (
     Taken,
 )
 from cellctl.api.local_socket.page_desk import PageDesk
+from cellctl.api.local_socket.refusal_remedy import remedy
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.users import Users
 from cellctl.command.submission import Submission, Submit
@@ -112,9 +113,14 @@ class Terminal:
         _log.info("local command", who=command.who, cmd=name, reject=code.text)
         if code is RejectCode.NONE:
             return Taken(state=state)
-        known = self._known(command.unit_mode) if code is RejectCode.RECIPE_UNKNOWN else ()
+        known = self._known(command.in_mode) if code is RejectCode.RECIPE_UNKNOWN else ()
         return Refused(
-            code=code, text=code.text, state=state, permitted=self._view.permitted(), known=known
+            code=code,
+            text=code.text,
+            state=state,
+            permitted=self._view.permitted(),
+            remedy=remedy(code, command),
+            known=known,
         )
 
     def _known(self, mode: int) -> tuple[str, ...]:
@@ -132,7 +138,7 @@ class Terminal:
                 return UnitCommand(
                     Source.TERMINAL,
                     cntrl_cmd=Command.START,
-                    unit_mode=Mode.PRODUCTION,
+                    in_mode=Mode.PRODUCTION,
                     recipe_id=self._recipe_id(request.recipe),
                     options=_options(request),
                     serial=request.serial,
@@ -143,7 +149,7 @@ class Terminal:
                 return UnitCommand(
                     Source.TERMINAL,
                     cntrl_cmd=Command.START,
-                    unit_mode=Mode.MAINTENANCE,
+                    in_mode=Mode.MAINTENANCE,
                     recipe_id=request.number,
                     serial=request.serial,
                 )

@@ -103,6 +103,8 @@ class DaemonClient:
 
 def _refusal(answer: Refused) -> Iterator[str]:
     yield f"0x{answer.code:X} {answer.text} (state {answer.state})"
+    if answer.remedy:
+        yield answer.remedy
     if answer.known:
         yield f"this cell has {', '.join(answer.known)}"
     if answer.permitted:

@@ -86,7 +86,7 @@ def start(
     wait: Wait = False,
     socket: SocketOption = None,
 ) -> None:
-    """Assemble a part, in Production mode."""
+    """Assemble a part; refused unless the mode is Production."""
     request = made(
         StartCommand,
         serial=serial,
@@ -106,7 +106,7 @@ def procedure(
     wait: Wait = False,
     socket: SocketOption = None,
 ) -> None:
-    """Calibrate, identify or verify, in Maintenance mode."""
+    """Calibrate, identify or verify; refused unless the mode is Maintenance."""
     request = made(ProcedureCommand, number=number, serial=serial or f"PROCEDURE-{number}")
     _begin(DaemonClient(socket), request, wait=wait)
 

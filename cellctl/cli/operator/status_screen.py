@@ -27,10 +27,15 @@ _COLOURS = {
 _NEXT = {
     "ABORTED": "remove the cause of the fault, then `cellctl clear`",
     "STOPPED": "`cellctl reset`: robots are released, and one that stands in the station lifts off",
-    "IDLE": "`cellctl start --serial SERIAL`, or `cellctl procedure NUMBER`",
     "COMPLETED": "take the part out, then `cellctl reset`",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
+_NEXT_IN_IDLE = {
+    "PRODUCTION": "`cellctl start --serial SERIAL`; for procedures `cellctl mode maintenance` first",
+    "MAINTENANCE": "`cellctl procedure NUMBER`; for parts `cellctl mode production` first",
+    "MANUAL": "`cellctl mode production` or `maintenance`: in Manual nothing is started",
+}
+_BEGINS = {"PRODUCTION": "start", "MAINTENANCE": "procedure"}
 _CONTROL = {
     "line": "line PLC; here only Stop, Abort, Hold, Clear and alarms",
     "shared": "terminal and line PLC",
@@ -96,9 +101,9 @@ def _next(report: StatusReport) -> str:
     """What an operator does now, in words."""
     if report.state != report.state_requested:
         return "wait"
-    refused = report.permitted.get("start", "")
-    if report.state == "IDLE" and refused:
-        return f"Start is refused: {refused}"
+    if report.state == "IDLE":
+        refused = report.permitted.get(_BEGINS.get(report.mode, ""), "")
+        return f"Start is refused: {refused}" if refused else _NEXT_IN_IDLE[report.mode]
     return _NEXT.get(report.state, "wait; `cellctl hold` pauses at the next safe point")
 
 

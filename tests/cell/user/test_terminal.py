@@ -45,9 +45,15 @@ def test_a_procedure_without_a_line(visited: OwnCell) -> None:
     assert "F715" in refused.stderr
     assert "0x84" in refused.stderr
     assert terminal.does("clear") == "stopped, mode production"
+    assert "0x84" in terminal("procedure", "104").stderr, "not in Stopped, whatever the mode"
     assert terminal.does("mode", "maintenance") == "stopped, mode maintenance"
     assert terminal.does("reset") == "idle, mode maintenance"
     assert terminal.status()["ready"]
+    refused = terminal("start", "--serial", "S.1")
+    assert refused.returncode == 1
+    assert "0x10E" in refused.stderr
+    assert "`cellctl mode production` first" in refused.stderr
+    assert terminal.status()["state"] == "IDLE"
     with visited.control() as control:
         control.request("present", frame=False, deck=False)
         control.request("place_target_board", head="head_1")

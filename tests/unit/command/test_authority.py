@@ -83,6 +83,30 @@ async def test_a_cell_without_a_line_is_run_from_the_terminal(rig: DaemonRig) ->
     assert await rig.archive.do(RunStore.line_seq) is None
 
 
+async def test_a_mode_that_was_changed_meanwhile_is_not_started_in(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between validation and execution."""
+    await rig.idle()
+    factory = rig.unit.factory
+    validate = factory.validate
+
+    async def slow(*asked: object) -> RejectCode:
+        await rig.unit.machine.set_mode(Mode.MAINTENANCE)
+        return await validate(*asked)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(factory, "validate", slow)
+    assert await rig.ask(Command.START, in_mode=1) is RejectCode.OTHER_MODE
+    assert rig.unit.machine.state is State.IDLE
+
+
+@pytest.mark.parametrize("mode", [Mode.PRODUCTION, Mode.MAINTENANCE])
+def test_a_start_that_names_its_mode_is_the_lines_where_either_is_production(mode: Mode) -> None:
+    wanted = Mode.MAINTENANCE if mode is Mode.PRODUCTION else Mode.PRODUCTION
+    asked = start_command(unit_mode=0, in_mode=wanted, **BY_ANNA)
+    assert validate_authority(asked, mode, line_alive=True) is IN_CONTROL
+
+
 async def test_the_terminals_commands_meet_the_same_checks(rig: DaemonRig) -> None:
     rig.bench.cell.connected = False
     assert await rig.ask(Command.RESET) is RejectCode.DEVICE_NOT_READY

@@ -101,7 +101,7 @@ async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
         (StartCommand(serial="S", order="a b"), RejectCode.ORDER_INVALID),
         (StartCommand(serial="S", recipe="unknown"), RejectCode.RECIPE_UNKNOWN),
         (StartCommand(serial="S", recipe="101"), RejectCode.RECIPE_UNKNOWN),
-        (ProcedureCommand(number=1, serial="P"), RejectCode.RECIPE_UNKNOWN),
+        (ProcedureCommand(number=101, serial="P"), RejectCode.OTHER_MODE),
         (AcknowledgeCommand(number=999), RejectCode.ALARM_UNKNOWN),
     ],
 )
@@ -120,6 +120,32 @@ async def test_a_mode_that_is_set_already_is_reached(rig: DaemonRig, operator: O
         answer = await operator.ask(ModeCommand.model_validate({"mode": name}))
         assert isinstance(answer, Taken), name
     assert (await operator.status()).mode == "PRODUCTION"
+
+
+async def test_no_start_changes_the_mode(rig: DaemonRig, operator: Operator) -> None:
+    start, procedure = StartCommand(serial="S"), ProcedureCommand(number=101, serial="P")
+    others = (("production", procedure), ("maintenance", start), ("manual", start))
+    await rig.idle()
+    for mode, request in others:
+        await operator.ask(ModeCommand.model_validate({"mode": mode}))
+        answer = await operator.ask(request)
+        assert isinstance(answer, Refused), mode
+        assert answer.code == RejectCode.OTHER_MODE
+        wanted = "maintenance" if request is procedure else "production"
+        assert answer.remedy == f"`cellctl mode {wanted}` first"
+        report = await operator.status()
+        assert (report.state, report.mode) == ("IDLE", mode.upper())
+        assert report.permitted[request.request] == RejectCode.OTHER_MODE.text
+    assert await rig.runs() == []
+
+
+async def test_a_start_during_a_procedure_is_refused_by_the_state(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    await operator.ask(ModeCommand(mode="maintenance"))
+    answer = await operator.ask(StartCommand(serial="S"))
+    assert isinstance(answer, Refused)
+    assert answer.code == RejectCode.COMMAND_NOT_ALLOWED, "in Stopped another mode does not help"
 
 
 async def test_who_is_in_control_is_shown(rig: DaemonRig, operator: Operator) -> None:
@@ -193,8 +219,9 @@ async def test_a_refusal_names_what_the_cell_has(rig: DaemonRig, operator: Opera
     answer = await operator.ask(StartCommand(serial="S", recipe="unknown"))
     assert isinstance(answer, Refused)
     assert answer.known == tuple(f"{one.id} {one.name}" for one in rig.bench.as_cell.config.recipes)
-    assert {"start", "procedure", "stop"} <= {*answer.permitted}
-    assert "unhold" not in answer.permitted
+    assert {"start", "mode", "stop"} <= {*answer.permitted}
+    assert not {"unhold", "procedure"} & {*answer.permitted}
+    await operator.ask(ModeCommand(mode="maintenance"))
     answer = await operator.ask(ProcedureCommand(number=9999, serial="P"))
     assert isinstance(answer, Refused)
     assert any(name.startswith("101 ") for name in answer.known)

@@ -136,10 +136,12 @@ def test_a_refusal_names_what_there_is_and_what_is_permitted(daemon: Agreeable) 
         state="IDLE",
         permitted=("start", "stop"),
         known=("1 panel", "2 deck"),
+        remedy="think of another one",
     )
     text = str(cellctl("start", "--serial", "S").exception)
     assert "this cell has 1 panel, 2 deck" in text
     assert "permitted now: start, stop" in text
+    assert "; think of another one; " in text
 
 
 def test_a_run_step_by_step_holds_where_it_should(daemon: Agreeable) -> None:
