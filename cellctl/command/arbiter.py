@@ -162,6 +162,8 @@ class CommandArbiter:
         command = submission.command
         detail: dict[str, int | str] = {"mode": self._unit.machine.mode.name.lower()}
         detail |= submission.reference
+        if command.order:
+            detail["order"] = command.order
         if command.cntrl_cmd == Command.START:
             detail |= {
                 "recipe": command.recipe_id,

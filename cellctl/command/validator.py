@@ -13,7 +13,8 @@ The first check that fails gives the reject code. Stop and Abort meet only check
 
 The arbiter asks for 1 to 6 before it queues for execution, because 6 reads files. It asks for 3 to
 5 again right before execution: while 6 waited for the disk a Stop may have come, the line may have
-come alive, or somebody may have changed the mode. 7 and 8 belong to the state machine, which asks them whoever commands it.
+come alive, or somebody may have changed the mode. 7 and 8 belong to the state machine, which asks
+them whoever commands it.
 """
 
 import math

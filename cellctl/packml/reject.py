@@ -57,5 +57,5 @@ _TEXT = {
     RejectCode.LINE_IN_CONTROL: "to terminal and page only: the line PLC is in control",
     RejectCode.ROLE_MISSING: "to the page only: the person does not have the role for it",
     RejectCode.NOT_AT_A_PANEL: "to the page only: what may move the cell needs a panel at the cell",
-    RejectCode.OTHER_MODE: "to terminal and page only: needs another mode, which is to be set first",
+    RejectCode.OTHER_MODE: "to terminal and page only: it needs another mode, to be set before",
 }

@@ -39,7 +39,7 @@ class UnitCommand:
 
     source: Source
     person: str = ""
-    """Who asks, as the interface knows them; empty for the line PLC, which knows no persons."""
+    """Who asks, as the interface knows them: a user, a person at a page, the line's address."""
     cntrl_cmd: int = Command.UNDEFINED
     """Number of a ``Command``: CntrlCmd of the PackTags."""
     unit_mode: int = 0
@@ -54,7 +54,7 @@ class UnitCommand:
     mate_serial: str = ""
     """Serial number of the part that it is joined to; empty where nobody names it."""
     order: str = ""
-    """Operator or order, as the line names it."""
+    """Operator or order, as the caller names it; never who has asked."""
     alarm_ack_id: int = 0
     """Fault number of the alarm to acknowledge."""
     arrived_s: float = field(default_factory=now_s, compare=False)
@@ -62,10 +62,8 @@ class UnitCommand:
 
     @property
     def who(self) -> str:
-        """Who asks, for the audit log; never empty."""
-        if self.source is Source.LINE:
-            return self.order or "line"
-        return f"{self.source}:{self.person}"
+        """Who asks, for the audit log; never empty, and never what the caller has typed."""
+        return f"{self.source}:{self.person}" if self.person else str(self.source)
 
     @property
     def operator(self) -> str:

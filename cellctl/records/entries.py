@@ -20,6 +20,8 @@ Matrix = tuple[tuple[float | None, ...], ...]
 
 PRODUCTION = "production"
 """Mode of the runs that make parts."""
+DRY_RUN = "dry run"
+"""Mode of a run that ends before the first contact, and makes none."""
 
 
 class RunResult(StrEnum):

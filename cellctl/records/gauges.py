@@ -7,7 +7,7 @@ A process records the document ``GAUGE_HOLES`` in each run whose part can be gau
 from collections.abc import Mapping
 
 from cellctl.errors.records import GaugeRefused, ValueRefused
-from cellctl.records.entries import Gauge, RunRecord, RunResult, Verdict
+from cellctl.records.entries import DRY_RUN, Gauge, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
 
 GAUGE_HOLES = "gauge_holes"
@@ -64,6 +64,8 @@ def require_gauge(record: RunRecord, hole: str) -> None:
     head = record.head
     if head.result in _NO_PART:
         raise GaugeRefused(f"run {head.number} is {head.result}: it has no finished part")
+    if head.mode == DRY_RUN:
+        raise GaugeRefused(f"run {head.number} is a dry run: its part was never joined")
     known = record.document(GAUGE_HOLES)
     # Runs of earlier versions do not name their holes: any hole is taken then.
     if known and hole not in known:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from cellctl.errors.records import ValueRefused
 from cellctl.records.entries import AuditEntry
 from cellctl.records.figures import Limit
+from cellctl.records.said_by import BY
 
 if TYPE_CHECKING:
     # The list of runs, which loads this module too, does not wait for the database.
@@ -56,7 +57,8 @@ class SurroundingReading:
 def add_note(
     store: "RunStore",
     run: int,
-    who: str,
+    actor: str,
+    by: str,
     values: Mapping[str, float],
     *,
     instrument: str = "",
@@ -64,9 +66,10 @@ def add_note(
 ) -> None:
     """Keep values by the keys of ``SURROUNDINGS``, a remark, or both.
 
+    ``actor`` is the user as the system knows them, ``by`` the name that they typed.
     Raises ``RunUnknown``, and ``ValueRefused`` for what cannot be so or says nothing.
     """
-    if not who or not (values or remark):
+    if not by or not (values or remark):
         raise ValueRefused("a note needs who made it, and a value or a remark")
     by_key = {one.key: one for one in SURROUNDINGS}
     for key, value in values.items():
@@ -77,7 +80,8 @@ def add_note(
             raise ValueRefused(f"{by_key[key].label} {value:g} {unit}, {allowed}")
     store.run(run)
     texts = {_INSTRUMENT: instrument, _REMARK: remark}
-    store.audit(who, NOTE, {_RUN: run, **values, **{k: v for k, v in texts.items() if v}})
+    given = {name: text for name, text in texts.items() if text}
+    store.audit(actor, NOTE, {_RUN: run, BY: by, **values, **given})
 
 
 def notes_of(run: int, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, ...]:

@@ -164,24 +164,21 @@ class RunStore:
 
     def set_gauge(
         self, run: int, hole: str, diameter_mm: float, source: str, gauge_id: str = ""
-    ) -> None:
-        """A plug-gauge result, also after the run was closed. A later one counts, both stay.
+    ) -> datetime:
+        """A plug-gauge result, also after the run was closed, and its time; the last one counts.
 
         Raises ``ValueRefused``, ``GaugeRefused`` or ``RunUnknown``.
         """
         require_plausible(hole, diameter_mm, source)
+        now, mm = utc_now(), round(diameter_mm, 3)
         row = schema.GaugeRow(
-            run=run,
-            time=utc_now(),
-            hole=hole,
-            diameter_mm=round(diameter_mm, 3),
-            source=source,
-            gauge_id=gauge_id,
+            run=run, time=now, hole=hole, diameter_mm=mm, source=source, gauge_id=gauge_id
         )
         with self._database.write() as session:
             require_gauge(reading.read_run(session, run), hole)
             session.add(row)
-            ledger.seal(session, sealed.GAUGE, row, row.time)
+            ledger.seal(session, sealed.GAUGE, row, now)
+        return now
 
     def add_alarm(self, run: int | None, number: int, text: str) -> int:
         """A fault or warning; stays active until acknowledged, over restarts too."""

@@ -12,7 +12,7 @@ _REMEDIES: Mapping[RejectCode, str] = {
     RejectCode.STATE_NOT_IN_MODE: "leave Manual first: `cellctl mode production` or `maintenance`",
     RejectCode.SERIAL_INVALID: "give a serial number of capital letters, digits and . _ -",
     RejectCode.ORDER_INVALID: "give an order of capital letters, digits and . _ -",
-    RejectCode.CALIBRATION_INVALID: f"{_STATUS} beside the calibration, and its procedure renews it",
+    RejectCode.CALIBRATION_INVALID: f"{_STATUS} beside the calibration; its procedure renews it",
     RejectCode.DEVICE_NOT_READY: f"{_STATUS} under links",
     RejectCode.RECORDS_NOT_READY: f"{_STATUS} under records",
     RejectCode.ALARM_UNKNOWN: "`cellctl alarms` lists the active ones",

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from functools import partial
 from importlib.metadata import version
 from typing import Any
@@ -145,7 +146,9 @@ class PlcInterface:
         committed = self._latch.commit(self._registers.holding)
         if committed is not None:
             seq, command = committed
-            dropped = self._queue.add(self._submission(seq, command, client))
+            # Modbus knows no persons: the line is known by the address that it writes from.
+            named = replace(command, person=client)
+            dropped = self._queue.add(self._submission(seq, named, client))
             if dropped is not None:
                 self._supersede(dropped)
         self._refresh()

@@ -9,9 +9,11 @@ import typer
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cli.nearest_cell import SERVICE_CELL
+from cellctl.cli.os_user import terminal_user
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.records import StoreUnavailable
+from cellctl.records.said_by import BY
 from cellctl.records.store import RunStore
 from cellctl.runtime.process import calibration_kinds
 
@@ -65,5 +67,5 @@ def _record(
     with closing(store):
         for stored in found:
             store.invalidate_calibration(stored, reason)
-        detail = {"items": [stored.kind for stored in found], "reason": reason}
-        store.audit(by, "calibrations invalidated", detail)
+        detail = {BY: by, "items": [stored.kind for stored in found], "reason": reason}
+        store.audit(terminal_user(), "calibrations invalidated", detail)

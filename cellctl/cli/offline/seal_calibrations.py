@@ -8,8 +8,10 @@ import typer
 
 from cellctl.calibration.store.old_form import seal_old_files
 from cellctl.cli.nearest_cell import SERVICE_CELL
+from cellctl.cli.os_user import terminal_user
 from cellctl.config import load_cell
 from cellctl.errors.records import StoreUnavailable
+from cellctl.records.said_by import BY
 from cellctl.records.store import RunStore
 
 
@@ -44,4 +46,5 @@ def seal(
         typer.echo(f"not in the audit log: {error}", err=True)
         return
     with closing(store):
-        store.audit(by, "calibrations sealed", {"ids": {one.kind: one.id for one in found}})
+        detail = {BY: by, "ids": {one.kind: one.id for one in found}}
+        store.audit(terminal_user(), "calibrations sealed", detail)

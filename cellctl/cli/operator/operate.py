@@ -86,7 +86,7 @@ def start(
     wait: Wait = False,
     socket: SocketOption = None,
 ) -> None:
-    """Assemble a part; refused unless the mode is Production."""
+    """Assemble a part; only in Production mode."""
     request = made(
         StartCommand,
         serial=serial,
@@ -106,7 +106,7 @@ def procedure(
     wait: Wait = False,
     socket: SocketOption = None,
 ) -> None:
-    """Calibrate, identify or verify; refused unless the mode is Maintenance."""
+    """Calibrate, identify or verify; only in Maintenance mode."""
     request = made(ProcedureCommand, number=number, serial=serial or f"PROCEDURE-{number}")
     _begin(DaemonClient(socket), request, wait=wait)
 

@@ -14,6 +14,7 @@ from cellctl.api.local_socket.report import (
     StatusReport,
 )
 from cellctl.errors import CellError
+from cellctl.records.outcome import outcome
 
 _COLOURS = {
     "ABORTED": "bold red",
@@ -31,8 +32,8 @@ _NEXT = {
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
 _NEXT_IN_IDLE = {
-    "PRODUCTION": "`cellctl start --serial SERIAL`; for procedures `cellctl mode maintenance` first",
-    "MAINTENANCE": "`cellctl procedure NUMBER`; for parts `cellctl mode production` first",
+    "PRODUCTION": "`cellctl start --serial SERIAL`; before a procedure `cellctl mode maintenance`",
+    "MAINTENANCE": "`cellctl procedure NUMBER`; before a part `cellctl mode production`",
     "MANUAL": "`cellctl mode production` or `maintenance`: in Manual nothing is started",
 }
 _BEGINS = {"PRODUCTION": "start", "MAINTENANCE": "procedure"}
@@ -152,7 +153,7 @@ def _last_run(report: StatusReport) -> str:
         return "–"
     return (
         f"{run.number}, {run.serial}, {run.recipe}, {run.mode}, {run.started:%Y-%m-%d %H:%M} UTC: "
-        f"{run.result or 'open'}; good parts {report.good_parts}"
+        f"{outcome(run.mode, run.result or None)}; good parts {report.good_parts}"
     )
 
 

@@ -4,8 +4,10 @@ from typing import Annotated
 
 import typer
 
+from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.notes import add_note, note_words, notes_of
+from cellctl.records.said_by import said_by
 
 
 def note(
@@ -27,8 +29,8 @@ def note(
     }
     values = {key: value for key, value in given.items() if value is not None}
     with opened_store(data_dir) as store:
-        add_note(store, run, by, values, instrument=instrument, remark=remark)
+        add_note(store, run, terminal_user(), by, values, instrument=instrument, remark=remark)
         notes = notes_of(run, store.audit_log())
     for entry in notes:
         words = note_words(entry)
-        typer.echo(f"run {run}: {words} ({entry.actor}, {entry.time:%Y-%m-%d %H:%M} UTC)")
+        typer.echo(f"run {run}: {words} ({said_by(entry)}, {entry.time:%Y-%m-%d %H:%M} UTC)")

@@ -9,17 +9,20 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_note import note
 from cellctl.cli.records.run_report import report
 from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
 from cellctl.cli.records.trend import trend
-from cellctl.records.entries import Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.notes import note_words, notes_of
+from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.run_list import listed_runs
+from cellctl.records.said_by import BY, ENTERED, GAUGE, gauge_entries, measured_by, said_by
 from cellctl.records.seals import LedgerHead
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
@@ -28,7 +31,9 @@ AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 Run = Annotated[int, typer.Argument(help="Number of the run.", min=1)]
 
 HASH_DIGITS = 64
-_COLOURS = {"good": "green", None: "yellow"}
+WIDE = 100
+"""Columns from which on the list has the name of the process."""
+_COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
 
 
 app.command("trend")(trend)
@@ -51,7 +56,8 @@ def list_runs(
         typer.echo("no runs")
         return
     spoilt = {one.head.number for one in found if one.spoilt}
-    Console().print(_table([one.head for one in found], spoilt))
+    console = Console()
+    console.print(_table([one.head for one in found], spoilt, wide=console.width >= WIDE))
 
 
 @app.command()
@@ -59,12 +65,13 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
     """One run in figures."""
     with opened_store(data_dir) as store:
         record = store.run(run)
-        notes = notes_of(run, store.audit_log())
+        audit = store.audit_log()
+    notes, entered = notes_of(run, audit), gauge_entries(run, audit)
     if as_json:
         typer.echo(as_plain(asdict(record) | {"notes": [asdict(note) for note in notes]}))
         return
     console = Console()
-    console.print(_table([record.head]))
+    console.print(_table([record.head], wide=console.width >= WIDE))
     if record.head.fault:
         console.print(record.head.fault, style="red", markup=False)
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
@@ -73,13 +80,13 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
     if judged:
         console.print(_figures(judged))
     for gauge in record.gauge_history:
-        console.print(_gauge_line(record, gauge), markup=False)
+        console.print(_gauge_line(record, gauge, entered), markup=False)
     if part_verdict(record) != record.head.result:
         console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
     for alarm in record.alarms:
         console.print(f"alarm {alarm.text}", markup=False)
     for entry in notes:
-        console.print(f"note of {entry.actor}: {note_words(entry)}", markup=False)
+        console.print(f"note of {said_by(entry)}: {note_words(entry)}", markup=False)
 
 
 @app.command()
@@ -120,15 +127,17 @@ def gauge(
 ) -> None:
     """Enter a plug-gauge result of a run; a later one of the same hole counts, all are kept."""
     with opened_store(data_dir) as store:
-        # A gauge result comes after the run was sealed, so it has a seal of its own, and the audit
-        # log names whoever measured.
-        store.set_gauge(run, hole, mm, source, gauge_id)
+        # A gauge result comes after the run was sealed, so it has a seal of its own. Whoever types
+        # can type any name: the audit log has the user beside it.
+        entered = store.set_gauge(run, hole, mm, source, gauge_id)
         detail = {"run": run, "hole": hole, "diameter_mm": mm, "gauge_id": gauge_id}
-        store.audit(source, "gauge", detail)
+        detail |= {BY: source, ENTERED: entered.isoformat()}
+        store.audit(terminal_user(), GAUGE, detail)
         record = store.run(run)
+        entries = gauge_entries(run, store.audit_log())
     for entry in record.gauge_history:
         if entry.hole == hole:
-            typer.echo(f"run {run}, {_gauge_line(record, entry)}")
+            typer.echo(f"run {run}, {_gauge_line(record, entry, entries)}")
 
 
 @app.command()
@@ -163,7 +172,7 @@ def _printed(head: str) -> LedgerHead | None:
     return LedgerHead(int(length), found)
 
 
-def _gauge_line(record: RunRecord, entry: Gauge) -> str:
+def _gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -> str:
     """One entry with who, when, with which gauge, and what it says."""
     verdict = judge_gauge(record, entry)
     least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
@@ -171,33 +180,35 @@ def _gauge_line(record: RunRecord, entry: Gauge) -> str:
     with_gauge = f", gauge {entry.gauge_id}" if entry.gauge_id else ""
     replaced = "" if entry in record.gauges else ", replaced by a later entry"
     return (
-        f"pin hole {entry.hole}: gauge {entry.diameter_mm:.2f} mm ({entry.source})"
+        f"pin hole {entry.hole}: gauge {entry.diameter_mm:.2f} mm ({measured_by(entry, entered)})"
         f"{limit}{with_gauge}, {entry.time:%Y-%m-%d %H:%M}{replaced}"
     )
 
 
-def _table(runs: Sequence[RunHead], spoilt: Set[int] = frozenset()) -> Table:
+def _table(runs: Sequence[RunHead], spoilt: Set[int] = frozenset(), *, wide: bool = True) -> Table:
     """One line a run; ``spoilt``: runs with a good result and a gauge beyond its limit."""
     table = Table(box=None)
-    names = ("run", "serial", "process", "recipe", "mode", "started (UTC)", "duration", "result")
-    for name in names:
-        table.add_column(name, no_wrap=name in {"run", "mode", "duration", "result"})
+    for name in ("run", "serial", "recipe", *(("process",) if wide else ())):
+        # Folded and not cut: a number that is cut is another one.
+        table.add_column(name, no_wrap=name == "run", overflow="fold")
+    for name in ("mode", "started (UTC)", "duration", "result"):
+        table.add_column(name, no_wrap=True)
     for head in runs:
-        table.add_row(*_row(head, spoilt=head.number in spoilt))
+        table.add_row(*_row(head, spoilt=head.number in spoilt, wide=wide))
     return table
 
 
-def _row(head: RunHead, *, spoilt: bool) -> tuple[str, ...]:
-    result = "good, bad by gauge" if spoilt else head.result or "open"
-    colour = "red" if spoilt else _COLOURS.get(head.result, "red")
+def _row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str, ...]:
+    result = outcome(head.mode, head.result, spoilt=spoilt)
+    colour = _COLOURS.get(result, "red")
     mark = " (sim)" if head.simulated else ""
     return (
         str(head.number),
         head.serial + mark,
-        head.process,
         head.recipe_name,
+        *((head.process,) if wide else ()),
         head.mode.lower(),
-        f"{head.started:%Y-%m-%d %H:%M:%S}",
+        f"{head.started:%Y-%m-%d %H:%M}",
         duration(head.started, head.ended),
         f"[{colour}]{result}[/]",
     )

@@ -7,7 +7,7 @@ from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.records import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
-from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.entries import DRY_RUN, PRODUCTION, RunResult
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.interruption import Interruption
@@ -18,9 +18,6 @@ from cellctl.runtime.process import Process, RunContext
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint, StepRunner
 
 _log = log.get(__name__)
-
-DRY_RUN = "dry run"
-"""Mode of a run that ends before the first contact."""
 
 
 class ProductionJob(Job):

@@ -203,7 +203,7 @@ async def test_alarms_live_until_they_are_acknowledged(rig: DaemonRig) -> None:
     assert await rig.archive.do(RunStore.active_alarms) == []
     await rig.unit.background.drain()
     last = await rig.archive.do(audit)
-    assert last[-1][0] == "OP-3"
+    assert (last[-1][0], last[-1][2]["order"]) == ("line", "OP-3")
     assert last[-1][2]["acknowledged"] == 202
 
 
@@ -252,6 +252,7 @@ async def test_what_was_commanded_is_in_the_audit_log(rig: DaemonRig) -> None:
     entries = await rig.archive.do(audit)
     assert [(actor, action) for actor, action, _ in entries] == [
         ("line", "reset"),
-        ("OP-3", "start"),
+        ("line", "start"),
     ]
+    assert entries[1][2]["order"] == "OP-3", "an order is no person"
     assert entries[1][2]["serial"] == "SAT-9"

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import GaugeRefused
 from cellctl.records import RunResult, RunStore
-from cellctl.records.entries import Document
+from cellctl.records.entries import DRY_RUN, Document
 from cellctl.records.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
@@ -97,10 +98,18 @@ def test_a_run_without_a_part_is_refused(store: RunStore, result: RunResult) -> 
         store.set_gauge(number, "P1", 5.95, "OP-7")
 
 
+def test_a_dry_run_has_no_part_to_gauge(store: RunStore) -> None:
+    number = start(store, mode=DRY_RUN)
+    store.close_run(number, RunResult.BAD)
+    with pytest.raises(GaugeRefused, match="is a dry run: its part was never joined"):
+        store.set_gauge(number, "P1", 5.95, "OP-7")
+
+
 def test_the_command_tells_of_the_entry_before(store: RunStore, run: int) -> None:
     where = ["--data-dir", str(store.path)]
     options = ["--hole", "P5", "--source", "OP-7", "--gauge-id", "PG-3"]
     CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.70", *options, *where])
     told = CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.99", *options, *where]).stdout
-    assert "5.70 mm (OP-7), at least 5.80 mm: fail, gauge PG-3" in told
-    assert "5.99 mm (OP-7), at least 5.80 mm: pass" in told
+    by = f"OP-7, typed by {terminal_user()}"
+    assert f"5.70 mm ({by}), at least 5.80 mm: fail, gauge PG-3" in told
+    assert f"5.99 mm ({by}), at least 5.80 mm: pass" in told

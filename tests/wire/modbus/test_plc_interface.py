@@ -132,6 +132,7 @@ async def test_a_command_is_acknowledged_and_later_done(line: Line) -> None:
     assert (block[DONE], block[RESULT], block[REJECT]) == (0, 0, 0)
     assert block[STATUS] & 0b10
     assert line.commands[0].command.serial == "SAT-0042"
+    assert line.commands[0].command.who == "line:127.0.0.1"
     port.finish(1, Result.GOOD)
     block = await inputs(client)
     assert (block[DONE], block[RESULT]) == (1, Result.GOOD)

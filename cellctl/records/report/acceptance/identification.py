@@ -14,6 +14,7 @@ from cellctl.records.report.sections import (
     TableRow,
 )
 from cellctl.records.report.text import MISSING, duration, number, when, with_unit
+from cellctl.records.said_by import said_by
 from cellctl.records.units import words
 
 UNKNOWN = "not recorded"
@@ -37,7 +38,7 @@ def identification(
     started = next((entry.actor for entry in audit if entry.action == "start"), UNKNOWN)
     facts = (
         *((f"serial number, {part.role}", part.serial or UNKNOWN) for part in named),
-        ("order or operator, as the line names it", head.operator or UNKNOWN),
+        ("order or operator, as named with Start", head.operator or UNKNOWN),
         ("started by", started),
         ("run", str(head.number)),
         ("process", head.process),
@@ -57,7 +58,7 @@ def _surroundings(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:
     """Each known quantity with who read it and from what; the others in one line."""
     known = surroundings(notes)
     for found in known.values():
-        source = ", ".join(filter(None, (found.entry.actor, found.instrument)))
+        source = ", ".join(filter(None, (said_by(found.entry), found.instrument)))
         value = with_unit(number(found.value), found.surrounding.unit)
         yield found.surrounding.label, f"{value} ({source})"
     missing = [one.label for one in SURROUNDINGS if one.key not in known]

@@ -8,12 +8,13 @@ from cellctl.records.entries import AuditEntry, RunRecord
 from cellctl.records.notes import NOTE, note_words
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
 from cellctl.records.report.text import MISSING, duration, facts, fixed, when
+from cellctl.records.said_by import BY, GAUGE, measured_by, said_by
 
 _BEFORE = timedelta(seconds=30)
 """The command that starts a run is written down before its record is opened, which may wait as long
 as this for the disk."""
 _CELL = "cell"
-_OWN_LINE = frozenset({"gauge", NOTE})
+_OWN_LINE = frozenset({GAUGE, NOTE})
 """Entries of the audit log that have a line of their own, with more in it."""
 Event = tuple[datetime, str, str]
 """Time, what happened, who did it."""
@@ -32,28 +33,35 @@ def during(record: RunRecord, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, 
 
 
 def timeline(
-    record: RunRecord, audit: Sequence[AuditEntry], notes: Sequence[AuditEntry] = ()
+    record: RunRecord,
+    audit: Sequence[AuditEntry],
+    notes: Sequence[AuditEntry] = (),
+    gauges: Sequence[AuditEntry] = (),
 ) -> ReportSection:
     """Commands, steps, alarms, gauges and notes as one table; ``audit`` is that of the run's time,
-    ``notes`` are those on the run, also later ones."""
-    events = sorted(_events(record, audit, notes), key=lambda event: event[0])
+    ``notes`` and ``gauges`` are those on the run, also later ones."""
+    events = sorted(_events(record, audit, notes, gauges), key=lambda event: event[0])
     rows = tuple(
         TableRow((TableCell(when(time)), TableCell(what), TableCell(who or MISSING)))
         for time, what, who in events
     )
     table = ReportTable(("time", "what", "who"), rows, numbers=False)
-    note = Note("The line PLC names an order or an operator, or nobody; people at the terminal and "
-                "on the operator page are named as they have signed in.")  # fmt: skip
+    note = Note("The line PLC is named by its network address, people at the terminal and on the "
+                "operator page as they have signed in. A name that was typed stands beside the "
+                "user who typed it.")  # fmt: skip
     return ReportSection("Timeline", (table, note))
 
 
 def _events(
-    record: RunRecord, audit: Sequence[AuditEntry], notes: Sequence[AuditEntry]
+    record: RunRecord,
+    audit: Sequence[AuditEntry],
+    notes: Sequence[AuditEntry],
+    gauges: Sequence[AuditEntry],
 ) -> Iterator[Event]:
     head = record.head
     for entry in audit:
         if entry.action not in _OWN_LINE:
-            yield entry.time, f"command {entry.action}{_details(entry.detail)}", entry.actor
+            yield entry.time, f"command {entry.action}{_details(entry.detail)}", said_by(entry)
     yield head.started, "record opened", _CELL
     for phase in record.phases:
         lasted = duration(phase.began, phase.ended)
@@ -66,12 +74,13 @@ def _events(
     if head.ended is not None:
         yield head.ended, f"run closed: {head.result}", _CELL
     for entry in notes:
-        yield entry.time, f"note: {note_words(entry)}", entry.actor
+        yield entry.time, f"note: {note_words(entry)}", said_by(entry)
     for gauge in record.gauge_history:
         what = f"plug gauge {gauge.gauge_id or ''} through {gauge.hole}: "
-        yield gauge.time, f"{what}{fixed(gauge.diameter_mm, 2)} mm", gauge.source
+        yield gauge.time, f"{what}{fixed(gauge.diameter_mm, 2)} mm", measured_by(gauge, gauges)
 
 
 def _details(detail: Mapping[str, Any]) -> str:
-    texts = [f"{name} {value}" for name, value in facts(detail) if value not in ("", MISSING)]
+    said = {name: value for name, value in detail.items() if name != BY}
+    texts = [f"{name} {value}" for name, value in facts(said) if value not in ("", MISSING)]
     return f" ({', '.join(texts)})" if texts else ""

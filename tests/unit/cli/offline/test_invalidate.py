@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from cellctl.calibration.store.marker import require_not_invalidated
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cli.commands import whole_app
+from cellctl.cli.os_user import terminal_user
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
 from cellctl.records.store import RunStore
@@ -46,7 +47,9 @@ def test_production_is_refused_and_the_store_knows_who_said_so(cell: Path) -> No
     assert "camera knocked (OP-3)" in fault.detail
     store = RunStore(cell.parent / "store", create=False)
     (known,) = store.calibrations()
+    (entry,) = store.audit_log()
     store.close()
+    assert (entry.actor, entry.detail["by"]) == (terminal_user(), "OP-3")
     assert known.kind == "head_1"
 
 

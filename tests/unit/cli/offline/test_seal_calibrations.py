@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.cli.commands import whole_app
+from cellctl.cli.os_user import terminal_user
 from cellctl.records.store import RunStore
 from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.cell.bench import CELL_FILE
@@ -35,6 +36,7 @@ def test_who_sealed_what_is_printed_and_in_the_audit_log(tmp_path: Path) -> None
     store = RunStore(tmp_path / "store", create=False)
     entry = store.audit_log()[-1]
     store.close()
-    assert (entry.actor, entry.action) == ("OP-3", "calibrations sealed")
+    assert (entry.actor, entry.action) == (terminal_user(), "calibrations sealed")
+    assert entry.detail["by"] == "OP-3"
     stored = read_calibration(tmp_path / "calibration", "payload")
     assert entry.detail["ids"] == {"payload": stored.id}

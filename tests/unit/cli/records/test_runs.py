@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import RunUnknown, StoreUnavailable
-from cellctl.records import RunStore
+from cellctl.records import RunResult, RunStore
+from cellctl.records.said_by import gauge_entries, measured_by
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
 
@@ -74,6 +76,29 @@ def test_a_gauge_is_entered(runner: CliRunner, folder: str, store: RunStore) -> 
     assert isinstance(wrong.exception, RunUnknown)
 
 
+def test_who_typed_a_gauge_stands_beside_who_is_said_to_have_measured(
+    runner: CliRunner, folder: str, store: RunStore, tmp_path: Path
+) -> None:
+    options = ["--hole", "P1", "--mm", "5.91", "--source", "anna", "--data-dir", folder]
+    told = runner.invoke(app, ["gauge", "1", *options])
+    anna = f"anna, typed by {terminal_user()}"
+    assert f"gauge 5.91 mm ({anna})" in told.stdout
+    (entry,) = (one for one in store.audit_log() if one.action == "gauge")
+    assert (entry.actor, entry.detail["by"]) == (terminal_user(), "anna")
+    assert f"({anna})" in runner.invoke(app, ["show", "1", "--data-dir", folder]).stdout
+    runner.invoke(app, ["export", "1", "--out", str(tmp_path / "out"), "--data-dir", folder])
+    assert anna in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert store.verify() == []
+
+
+def test_a_gauge_that_an_earlier_version_entered_shows_its_name_alone(store: RunStore) -> None:
+    run = good_run(store)
+    store.set_gauge(run, "P1", 5.91, "OP-7")
+    store.audit("OP-7", "gauge", {"run": run, "hole": "P1", "diameter_mm": 5.91})
+    gauge = store.run(run).gauge_history[-1]
+    assert measured_by(gauge, gauge_entries(run, store.audit_log())) == "OP-7"
+
+
 def test_a_changed_file_is_found(runner: CliRunner, folder: str, store: RunStore) -> None:
     good = runner.invoke(app, ["verify", "--data-dir", folder])
     assert good.exit_code == 0
@@ -97,7 +122,25 @@ def test_a_note_is_told_and_shown(runner: CliRunner, folder: str) -> None:
     told = runner.invoke(app, words)
     assert told.exit_code == 0, told.output
     said = "temperature 21.3 °C, relative humidity 45 %, instrument TH-3, door was open"
-    assert f"run 1: {said} (anna, 20" in told.stdout
-    assert f"note of anna: {said}" in runner.invoke(app, ["show", "1", "--data-dir", folder]).stdout
+    anna = f"anna, typed by {terminal_user()}"
+    assert f"run 1: {said} ({anna}, 20" in told.stdout
+    assert (
+        f"note of {anna}: {said}" in runner.invoke(app, ["show", "1", "--data-dir", folder]).stdout
+    )
     shown = json.loads(runner.invoke(app, ["show", "1", "--json", "--data-dir", folder]).stdout)
     assert [note["detail"]["temperature_deg_c"] for note in shown["notes"]] == [21.3]
+
+
+def test_a_list_in_80_columns_cuts_nothing(
+    runner: CliRunner, folder: str, store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    start(store, "PROCEDURE-10801", mode="MAINTENANCE")
+    dry = start(store, "SAT-0042", mode="dry run")
+    store.close_run(dry, RunResult.BAD)
+    monkeypatch.setenv("COLUMNS", "80")
+    for words in (["list"], ["show", str(dry)]):
+        listed = runner.invoke(app, [*words, "--data-dir", folder]).stdout
+        assert "…" not in listed
+        assert f"{store.run(dry).head.started:%Y-%m-%d %H:%M}" in listed
+        assert "done, no part" in listed
+    assert "PROCEDURE-10801" in runner.invoke(app, ["list", "--data-dir", folder]).stdout

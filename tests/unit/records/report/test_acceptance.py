@@ -32,6 +32,8 @@ from tests.unit.records.conftest import start
 from tests.unit.records.page import text_of
 from tests.unit.records.sample import good_run
 
+ROOT = "terminal:root"
+
 
 def rows_of(record: RunRecord, *groups: RequirementGroup) -> list[tuple[str, ...]]:
     table = acceptance(record, groups).blocks[0]
@@ -174,22 +176,23 @@ def test_what_somebody_noted_stands_on_the_first_page_and_in_the_timeline(
     run = good_run(store)
     other = good_run(store)
     values = {"temperature_deg_c": 12.0, "humidity_percent": 44.0}
-    add_note(store, run, "anna", values, instrument="TH-3")
-    add_note(store, run, "bo", {"temperature_deg_c": 21.3}, remark="door was open")
-    add_note(store, other, "cy", {"pressure_hpa": 990.0})
+    add_note(store, run, ROOT, "anna", values, instrument="TH-3")
+    add_note(store, run, ROOT, "bo", {"temperature_deg_c": 21.3}, remark="door was open")
+    add_note(store, other, ROOT, "cy", {"pressure_hpa": 990.0})
     report = export_run(store, run, tmp_path)
     page = " ".join(text_of(report).split())
+    typed = f"typed by {ROOT}"
     for expected in (
-        "temperature 21.3 °C (bo)",
-        "relative humidity 44 % (anna, TH-3)",
+        f"temperature 21.3 °C (bo, {typed})",
+        f"relative humidity 44 % (anna, {typed}, TH-3)",
         "air pressure not recorded",
-        "note: temperature 12 °C, relative humidity 44 %, instrument TH-3 anna",
-        "note: temperature 21.3 °C, door was open bo",
+        f"note: temperature 12 °C, relative humidity 44 %, instrument TH-3 anna, {typed}",
+        f"note: temperature 21.3 °C, door was open bo, {typed}",
     ):
         assert expected in page, expected
     assert "990" not in page, "that is the note of another run"
     plain = json.loads((tmp_path / "run.json").read_text())
-    assert [note["actor"] for note in plain["notes"]] == ["anna", "bo"]
+    assert [note["actor"] for note in plain["notes"]] == [ROOT, ROOT]
     assert store.verify() == []
 
 
@@ -204,7 +207,7 @@ def test_parts_and_surroundings_that_nobody_recorded_say_so(
         "serial number, deck SAT-0001",
         "serial number, frame not recorded",
         "temperature, relative humidity, air pressure not recorded",
-        "order or operator, as the line names it OP-7",
+        "order or operator, as named with Start OP-7",
         "started by not recorded",
         "performed by",
         "accepted by",
