@@ -8,9 +8,9 @@ from pathlib import Path
 from cellctl.calibration.store.envelope import StoredCalibration, read_stored, write_stored
 from cellctl.calibration.store.marker import mark_invalid, marker
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document
 from cellctl.records.figures import figure
-from cellctl.records.gauges import GAUGE_HOLES
 
 _MADE = datetime(2026, 1, 1, tzinfo=UTC)
 

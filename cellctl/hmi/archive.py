@@ -8,8 +8,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cellctl.records.entered.gauges import judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
-from cellctl.records.gauges import judge_gauge, part_verdict
 from cellctl.records.store import RunStore
 
 T = TypeVar("T")

@@ -15,8 +15,8 @@ from typing import Any
 
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
+from cellctl.records.entered.gauges import GAUGE_HOLES, beyond_limit, hole_limits
 from cellctl.records.entries import RunHead, RunResult
-from cellctl.records.gauges import GAUGE_HOLES, beyond_limit, hole_limits
 
 _BUSY_TIMEOUT_S = 5.0
 _COLUMNS = tuple(field.name for field in fields(RunHead))

@@ -16,6 +16,7 @@ from cellctl.clock import utc_now
 from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import Database
+from cellctl.records.entered.gauges import require_gauge, require_plausible
 from cellctl.records.entries import (
     Alarm,
     AuditEntry,
@@ -29,7 +30,6 @@ from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.files.mcap_reading import has_messages
 from cellctl.records.files.unfinished import MOTION, UnfinishedRecordings
-from cellctl.records.gauges import require_gauge, require_plausible
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
 from cellctl.records.trend import Sample

@@ -11,7 +11,7 @@ from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.cli.os_user import terminal_user
 from cellctl.config import load_cell
 from cellctl.errors.records import StoreUnavailable
-from cellctl.records.said_by import BY
+from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
 
 

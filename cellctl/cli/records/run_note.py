@@ -6,8 +6,8 @@ import typer
 
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.run_store import DataDir, opened_store
-from cellctl.records.notes import add_note, note_words, notes_of
-from cellctl.records.said_by import said_by
+from cellctl.records.entered.notes import add_note, note_words, notes_of
+from cellctl.records.entered.said_by import said_by
 
 
 def note(

@@ -15,14 +15,14 @@ from cellctl.cli.records.run_note import note
 from cellctl.cli.records.run_report import report
 from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
 from cellctl.cli.records.trend import trend
+from cellctl.records.entered.gauges import gauge_limits, judge_gauge, part_verdict
+from cellctl.records.entered.notes import note_words, notes_of
+from cellctl.records.entered.said_by import BY, ENTERED, GAUGE, gauge_entries, measured_by, said_by
 from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT
-from cellctl.records.gauges import gauge_limits, judge_gauge, part_verdict
-from cellctl.records.notes import note_words, notes_of
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.run_list import listed_runs
-from cellctl.records.said_by import BY, ENTERED, GAUGE, gauge_entries, measured_by, said_by
 from cellctl.records.seals import LedgerHead
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)

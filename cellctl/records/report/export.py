@@ -9,10 +9,10 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.records import RecordNotWritten, ValueRefused
+from cellctl.records.entered.gauges import part_verdict
+from cellctl.records.entered.notes import notes_of
 from cellctl.records.entries import RunRecord
 from cellctl.records.files.artefacts import CELL_FILE
-from cellctl.records.gauges import part_verdict
-from cellctl.records.notes import notes_of
 from cellctl.records.report.pdf import to_pdf
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages

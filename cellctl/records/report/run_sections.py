@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
+from cellctl.records.entered.gauges import GAUGE_HOLES, gauge_limits, judge_gauge
 from cellctl.records.entries import (
     Gauge,
     LoopPass,
@@ -11,7 +12,6 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.figures import NO_LIMIT
-from cellctl.records.gauges import GAUGE_HOLES, gauge_limits, judge_gauge
 from cellctl.records.parts import PARTS
 from cellctl.records.report.sections import (
     FactList,

@@ -4,6 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from cellctl.records.entered.gauges import part_verdict
+from cellctl.records.entered.notes import notes_of
+from cellctl.records.entered.said_by import gauge_entries
 from cellctl.records.entries import (
     DRY_RUN,
     PRODUCTION,
@@ -14,8 +17,6 @@ from cellctl.records.entries import (
     RunResult,
     Verdict,
 )
-from cellctl.records.gauges import part_verdict
-from cellctl.records.notes import notes_of
 from cellctl.records.report import run_sections
 from cellctl.records.report.acceptance.faults import (
     AlarmLine,
@@ -38,7 +39,6 @@ from cellctl.records.report.exposures import exposures
 from cellctl.records.report.pictures import PictureGroup, picture_groups
 from cellctl.records.report.sections import ProcessPages, ReportSection, Tile
 from cellctl.records.report.text import quantity
-from cellctl.records.said_by import gauge_entries
 from cellctl.records.seals import LedgerHead
 
 MOST_TILES = 6

@@ -9,8 +9,8 @@ import pytest
 from cellctl.errors.records import StoreTooNew, StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.schema_version import FILE
+from cellctl.records.entered.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.entries import Document
-from cellctl.records.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.run_list import listed_runs
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run

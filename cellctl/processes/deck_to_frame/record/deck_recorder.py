@@ -47,11 +47,11 @@ from cellctl.processes.deck_to_frame.record.mating_record import (
     result_record,
 )
 from cellctl.processes.deck_to_frame.record.sources import exposures, measured_from, raw_images
+from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, split_document
 from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
-from cellctl.records.gauges import GAUGE_HOLES
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement

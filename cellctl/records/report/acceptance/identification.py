@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from cellctl.records.entered.notes import SURROUNDINGS, surroundings
+from cellctl.records.entered.said_by import said_by
 from cellctl.records.entries import AuditEntry, RunHead
-from cellctl.records.notes import SURROUNDINGS, surroundings
 from cellctl.records.report.sections import (
     FactList,
     Part,
@@ -14,7 +15,6 @@ from cellctl.records.report.sections import (
     TableRow,
 )
 from cellctl.records.report.text import MISSING, duration, number, when, with_unit
-from cellctl.records.said_by import said_by
 from cellctl.records.units import words
 
 UNKNOWN = "not recorded"

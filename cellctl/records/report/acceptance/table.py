@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from cellctl.geometry.coverage import COVERAGE_FACTOR
+from cellctl.records.entered.gauges import gauge_limits, judge_gauge
 from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
-from cellctl.records.gauges import gauge_limits, judge_gauge
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,

@@ -4,11 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime, timedelta
 from typing import Any
 
+from cellctl.records.entered.notes import NOTE, note_words
+from cellctl.records.entered.said_by import BY, GAUGE, measured_by, said_by
 from cellctl.records.entries import AuditEntry, RunRecord
-from cellctl.records.notes import NOTE, note_words
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
 from cellctl.records.report.text import MISSING, duration, facts, fixed, when
-from cellctl.records.said_by import BY, GAUGE, measured_by, said_by
 
 _BEFORE = timedelta(seconds=30)
 """The command that starts a run is written down before its record is opened, which may wait as long

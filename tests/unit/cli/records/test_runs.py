@@ -12,7 +12,7 @@ from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import RunUnknown, StoreUnavailable
 from cellctl.records import RunResult, RunStore
-from cellctl.records.said_by import gauge_entries, measured_by
+from cellctl.records.entered.said_by import gauge_entries, measured_by
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entered.gauges import GAUGE_HOLES
+from cellctl.records.entered.notes import add_note
 from cellctl.records.entries import Document, RunRecord
 from cellctl.records.figures import NO_LIMIT, Limit, figure
-from cellctl.records.gauges import GAUGE_HOLES
-from cellctl.records.notes import add_note
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,

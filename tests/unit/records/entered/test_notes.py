@@ -4,8 +4,8 @@ import pytest
 
 from cellctl.errors.records import RunUnknown, ValueRefused
 from cellctl.records import RunStore
-from cellctl.records.notes import add_note, note_words, notes_of, surroundings
-from cellctl.records.said_by import said_by
+from cellctl.records.entered.notes import add_note, note_words, notes_of, surroundings
+from cellctl.records.entered.said_by import said_by
 from tests.unit.records.conftest import start
 
 ROOT = "terminal:root"

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from cellctl.errors.records import ValueRefused
+from cellctl.records.entered.said_by import BY
 from cellctl.records.entries import AuditEntry
 from cellctl.records.figures import Limit
-from cellctl.records.said_by import BY
 
 if TYPE_CHECKING:
     # The list of runs, which loads this module too, does not wait for the database.

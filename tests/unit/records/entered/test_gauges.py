@@ -10,8 +10,8 @@ from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import GaugeRefused
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entered.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.entries import DRY_RUN, Document
-from cellctl.records.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read

@@ -1,0 +1,1 @@
+"""What people enter into the record of a run: plug gauges and notes, and who entered them."""
