@@ -12,8 +12,9 @@ from rich.console import Console
 from cellctl.atomic_files import may_write
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
-from cellctl.config import CellConfig, load_cell, problems_before_commissioning
+from cellctl.config import CellConfig
 from cellctl.config.checks.zones import taught_in_zone
+from cellctl.config.commissioning import examine_before_commissioning
 from cellctl.config.document.lines import FILL_IN, left_open
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
@@ -39,13 +40,18 @@ def check(
     With --connect every device of a good file is asked, and the exit code is 1 also when one is
     silent or another one than the file says. Nothing is asked while a daemon has the cell.
     """
-    found = [*problems_before_commissioning(cell_file), *_left_open(cell_file)]
+    examined = examine_before_commissioning(cell_file)
+    found = [*examined.errors, *_left_open(cell_file)]
+    remarks = [] if found else examined.remarks
+    cell = None if found else examined.cell
     console = Console(soft_wrap=True, highlight=False)
     if not as_json:
-        _show_file(console, cell_file, found)
-    answers = _asked(cell_file, socket) if connect and not found else []
+        _show_findings(console, cell_file, found)
+        if cell is not None:
+            _show_cell(console, cell_file, cell, remarks)
+    answers = _asked(cell, cell_file, socket) if connect and cell is not None else []
     if as_json:
-        typer.echo(as_plain(_as_json(cell_file, found, answers)))
+        typer.echo(as_plain(_as_json(cell_file, found, remarks, answers)))
     elif answers:
         from cellctl.cli.connecting.connect import show
 
@@ -54,41 +60,51 @@ def check(
         raise typer.Exit(1)
 
 
-def _asked(cell_file: Path, socket: Path | None) -> "list[Answer]":
+def _asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> "list[Answer]":
     # Loaded when it is asked for: a file alone is checked in a fraction of the time that drivers,
     # calibrations and processes take to load.
     from cellctl.cli.connecting.connect import asked
 
     try:
-        return asked(load_cell(cell_file), cell_file, socket)
+        return asked(cell, cell_file, socket)
     except KeyboardInterrupt:
         typer.echo("ended by Ctrl-C: the links are dropped, nothing was moved", err=True)
         raise typer.Exit(130) from None
 
 
 def _as_json(
-    cell_file: Path, found: Sequence[ConfigIssue], answers: "Sequence[Answer]"
+    cell_file: Path,
+    found: Sequence[ConfigIssue],
+    remarks: Sequence[ConfigIssue],
+    answers: "Sequence[Answer]",
 ) -> dict[str, Any]:
     return {
         "cell_file": str(cell_file),
         "good": not found and all(answer.good for answer in answers),
         "errors": [asdict(problem) for problem in found],
+        "remarks": [asdict(remark) for remark in remarks],
         "devices": [answer.as_json() for answer in answers],
     }
 
 
-def _show_file(console: Console, cell_file: Path, found: Sequence[ConfigIssue]) -> None:
-    if found:
-        errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
-        console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
-        for problem in found:
-            place = "" if problem.line is None else f"line {problem.line}: "
-            text = f"F{problem.number} {place}{problem.key} = {problem.value}"
-            console.print(text, markup=False)
-            console.print(f"     {problem.allowed}", markup=False)
+def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssue]) -> None:
+    if not found:
         return
-    # Read a second time, as the daemon would: what is printed below is what it will use.
-    cell = load_cell(cell_file)
+    errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
+    console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
+    for problem in found:
+        console.print(f"F{problem.number} {_where(problem)}", markup=False)
+        console.print(f"     {problem.allowed}", markup=False)
+
+
+def _where(issue: ConfigIssue) -> str:
+    place = "" if issue.line is None else f"line {issue.line}: "
+    return f"{place}{issue.key} = {issue.value}"
+
+
+def _show_cell(
+    console: Console, cell_file: Path, cell: CellConfig, remarks: Sequence[ConfigIssue]
+) -> None:
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
         console.print(f"  {key:32} {device.driver}", markup=False)
@@ -103,6 +119,12 @@ def _show_file(console: Console, cell_file: Path, found: Sequence[ConfigIssue]) 
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
+    if remarks:
+        # Last, where they are read.
+        console.print("Look at these again; each may be meant as it stands:", style="yellow")
+    for remark in remarks:
+        console.print(f"  {_where(remark)}", style="yellow", markup=False)
+        console.print(f"     {remark.allowed}", style="yellow", markup=False)
 
 
 def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
@@ -164,13 +186,18 @@ def _is_group(name: str) -> bool:
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:
-    """Processes that are installed and have no recipe here: could this cell run them?"""
+    """Processes that are installed and have no recipe here: could this cell run them?
+
+    A cell that has recipes is what it is; what it lacks for others is said of one that has none.
+    """
     used = {recipe.process for recipe in cell.recipes}
     for name in installed_processes():
         if name in used:
             continue
         definition = process_definition(name)
         lacks = list(lacking_roles(cell, definition.roles))
+        if lacks and used:
+            continue
         text = (
             "no recipe; for one this cell is not complete:"
             if lacks

@@ -5,7 +5,8 @@ and are checked by the model that this process brings.
 """
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.commissioning import problems_before_commissioning
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.load import load_cell, problems, problems_before_commissioning
+from cellctl.config.load import load_cell, problems
 
 __all__ = ["CellConfig", "ConfigIssue", "load_cell", "problems", "problems_before_commissioning"]

@@ -1,7 +1,7 @@
 """Read a cell file and say everything that is wrong with it."""
 
 import tomllib
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol, cast
@@ -12,8 +12,7 @@ from cellctl import plugins
 from cellctl.config.base import Section
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.addresses import address_issues
-from cellctl.config.checks.cross_checks import cross_issues, unpermitted
-from cellctl.config.checks.plausible.findings import plausibility_issues
+from cellctl.config.checks.cross_checks import cross_issues
 from cellctl.config.checks.robot_figures import robot_issues
 from cellctl.config.checks.taught_poses import taught_pose_issues
 from cellctl.config.checks.units import unit_issues
@@ -30,21 +29,17 @@ from cellctl.fault_catalogue import misnumbered
 
 def load_cell(path: Path) -> CellConfig:
     """The cell file as a model; raises ``ConfigUnreadable``, ``ConfigInvalid`` or a sibling."""
-    found, cell = _examine(path)
+    found, cell, lines = examine(path)
     if cell is None or found:
-        raise ConfigInvalid(f"{path}: " + "; ".join(str(issue) for issue in found))
+        texts = "; ".join(str(issue) for issue in placed(found, lines))
+        raise ConfigInvalid(f"{path}: {texts}")
     return cell
 
 
 def problems(path: Path) -> list[ConfigIssue]:
     """Every error of a cell file; empty when it is good. Touches no hardware."""
-    return _examine(path)[0]
-
-
-def problems_before_commissioning(path: Path) -> list[ConfigIssue]:
-    """The same, and what a daemon takes that whoever commissions the cell must not leave so."""
-    # A cell that has worked for a year must still start after an update that asks for more.
-    return _examine(path, commissioning=True)[0]
+    found, _, lines = examine(path)
+    return placed(found, lines)
 
 
 def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
@@ -58,23 +53,25 @@ def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
     return cell
 
 
-def _examine(
-    path: Path, *, commissioning: bool = False
-) -> tuple[list[ConfigIssue], CellConfig | None]:
+def examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None, dict[str, int]]:
+    """Every error without its line, the cell where its keys could be read, and the line of every
+    key."""
     text, raw = _read_toml(path)
     lines = key_lines(text)
     found, cell = _issues(raw, path.parent)
-    if commissioning and cell is not None:
-        found += unpermitted(cell, _bad_devices(found))
-        found += _unless_named(found, list(_implausible(cell, path.parent, found)))
-    return [replace(issue, line=line_of(issue.key, lines)) for issue in found], cell
+    return found, cell, lines
+
+
+def placed(found: Iterable[ConfigIssue], lines: dict[str, int]) -> list[ConfigIssue]:
+    """The same findings with the lines in which they stand."""
+    return [replace(issue, line=line_of(issue.key, lines)) for issue in found]
 
 
 def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellConfig | None]:
     units = list(unit_issues(raw))
     found, cell = _parse(raw)
     found += _fault_number_issues()
-    found += _unless_named(found, units)
+    found += unless_named(found, units)
     if cell is None:
         return found, None
     # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
@@ -83,29 +80,15 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
         *taught_pose_issues(cell, found),
         *zone_issues(cell, found),
         *cross_issues(cell, found),
-        *robot_issues(cell, _bad_devices(found)),
+        *robot_issues(cell, bad_devices(found)),
     ]
     # Faults of devices are reported once, where they are, and not again by every recipe that uses
     # them.
-    bad = _bad_devices(found)
+    bad = bad_devices(found)
     for index, recipe in enumerate(cell.recipes):
         found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
     # Last: a device at a wrong address still belongs where the process wants it or not.
     return [*found, *address_issues(cell)], cell
-
-
-def _implausible(cell: CellConfig, folder: Path, found: list[ConfigIssue]) -> Iterator[ConfigIssue]:
-    """What is possible and in all likelihood a slip."""
-    bad = _bad_devices(found)
-    yield from plausibility_issues(cell, folder, bad)
-    # A device or a recipe that is wrong itself would be named a second time, by all that use it.
-    if bad & {".".join(path.split(".")[:2]) for path in cell.devices()}:
-        return
-    for index, recipe in enumerate(cell.recipes):
-        key = f"recipes.{index}"
-        if not bad & {key, f"processes.{recipe.process}"}:
-            definition = process_definition(recipe.process)
-            yield from definition.check_plausible(cell, recipe, key, folder)
 
 
 def _fault_number_issues() -> list[ConfigIssue]:
@@ -116,11 +99,12 @@ def _fault_number_issues() -> list[ConfigIssue]:
     ]
 
 
-def _bad_devices(found: list[ConfigIssue]) -> set[str]:
+def bad_devices(found: Iterable[ConfigIssue]) -> set[str]:
+    """Paths of devices and recipes that have findings."""
     return {".".join(issue.key.split(".")[:2]) for issue in found}
 
 
-def _unless_named(found: list[ConfigIssue], more: list[ConfigIssue]) -> list[ConfigIssue]:
+def unless_named(found: list[ConfigIssue], more: list[ConfigIssue]) -> list[ConfigIssue]:
     """Further findings of keys that are not reported yet: one mistake, one message."""
     known = {issue.key for issue in found}
     return [issue for issue in more if issue.key not in known]

@@ -1,7 +1,7 @@
 """The part of a process that a cell file needs: models of its keys, its roles, its checks."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import ClassVar
 
@@ -53,6 +53,36 @@ class ProcessDefinition(ABC):
         """What could be meant as it stands, and in all likelihood is a slip; by default nothing.
 
         Asked by ``cellctl check`` alone, after ``check`` has found nothing: a daemon takes it.
+        """
+        return ()
+
+    @classmethod
+    def check_placed(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        key: str,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+        bases: Mapping[str, Sequence[float]],  # noqa: ARG003
+    ) -> Iterable[ConfigIssue]:
+        """The same for what depends on where the arms stand, as whether a camera sees its part.
+
+        ``bases`` holds ``cell_T_base`` in its written form by robot, as the model of the cell has
+        it; empty where there is no model. Asked after ``check_plausible`` has found nothing.
+        """
+        return ()
+
+    @classmethod
+    def remarks(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        key: str,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+    ) -> Iterable[ConfigIssue]:
+        """What may well be meant as it stands and is worth a second look; by default nothing.
+
+        Shown by ``cellctl check`` beside a file that is good.
         """
         return ()
 

@@ -4,7 +4,7 @@ import ipaddress
 from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.addresses import is_address, written_hosts
+from cellctl.config.checks.hosts import is_address, written_hosts
 from cellctl.config.service_limits import drop_in, service_limits
 from cellctl.doctor.finding import Finding, bad, doubtful, good
 from cellctl.doctor.pc import Pc

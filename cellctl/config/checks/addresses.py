@@ -5,8 +5,6 @@ Drivers name such settings alike (docs/writing-a-driver.md): ``host`` is where a
 ``robot_name``, ``robot_address`` and ``serial_number`` tell one device from another.
 """
 
-import ipaddress
-import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -14,9 +12,9 @@ from typing import Any
 
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.hosts import host_issues
 from cellctl.config.issue import ConfigIssue
 
-_HOSTS = ("host", "listen_host", "robot_address")
 _NAMES = ("robot_name", "robot_address", "serial_number")
 _CONTROLLER = (
     "robot_name",
@@ -50,38 +48,11 @@ class _Place:
 
 def address_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
     """Addresses that are none, and those or names that two devices have."""
-    yield from _not_addresses(cell)
+    yield from host_issues(cell)
     yield from _shared_places(cell)
     yield from _shared_names(cell)
     yield from _stop_channels(cell)
     yield from _on_a_controller(cell)
-
-
-def _not_addresses(cell: CellConfig) -> Iterator[ConfigIssue]:
-    for key, host in written_hosts(cell).items():
-        # Digits and dots alone are meant as an address; a host name may be anything else.
-        if re.fullmatch(r"[\d.]+", host) and not is_address(host):
-            allowed = "an IPv4 address has four numbers from 0 to 255, such as 192.168.20.11"
-            yield ConfigIssue(key, repr(host), allowed)
-
-
-def written_hosts(cell: CellConfig) -> dict[str, str]:
-    """Addresses and host names of the line and of all devices, by their keys."""
-    written = {"plc.host": cell.plc.host}
-    for path, (_, device) in cell.devices().items():
-        for name in _HOSTS:
-            if isinstance(value := device.settings.get(name), str):
-                written[f"{path}.settings.{name}"] = value
-    return written
-
-
-def is_address(text: str) -> bool:
-    """True for an IPv4 or IPv6 address, in contrast to a host name."""
-    try:
-        ipaddress.ip_address(text)
-    except ValueError:
-        return False
-    return True
 
 
 def _shared_places(cell: CellConfig) -> Iterator[ConfigIssue]:

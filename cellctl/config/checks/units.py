@@ -18,6 +18,8 @@ _LEAST_PLACE_MM = 20.0
 """A place in a robot's base, or a corner of its box, is farther from the base than this."""
 _LEAST_OFFSET_MM = 1.0
 """What is mounted on a flange is farther from it than this, or at zero."""
+_LEAST_COM_MM = 5.0
+"""The middle of what hangs on a flange or a sensor is farther from it than this."""
 _LONGEST_WAIT_S = 100.0
 _RADIANS = "degrees; these look like radians"
 _METRES = "millimetres; these look like metres"
@@ -45,6 +47,8 @@ def _list(key: str, name: str, numbers: Sequence[float]) -> str:
         return _pose(name, numbers)
     if len(numbers) == 6 and ("_deg" in name or ".poses_deg." in key):
         return _RADIANS if 0.0 < largest <= _LARGEST_RAD else ""
+    if len(numbers) == 3 and name.startswith("com_"):
+        return _METRES if 0.0 < largest < _LEAST_COM_MM else ""
     box = name.endswith(("min_mm", "max_mm"))
     return _METRES if box and 0.0 < largest < _LEAST_PLACE_MM else ""
 

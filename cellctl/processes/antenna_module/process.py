@@ -53,9 +53,22 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
     ) -> Iterable[ConfigIssue]:
         """Drawings, and devices that must be on the same arm."""
-        from cellctl.processes.antenna_module.checks import recipe_issues
+        from cellctl.processes.antenna_module.checks.recipe import recipe_issues
 
         return recipe_issues(cell, cast(AntennaRecipe, recipe), key, folder)
+
+    @classmethod
+    def check_plausible(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        key: str,
+        folder: Path,  # noqa: ARG003 - no files
+    ) -> Iterable[ConfigIssue]:
+        """Tray and socket within the reach of the arm."""
+        from cellctl.processes.antenna_module.checks.plausible import plausible_issues
+
+        return plausible_issues(cell, cast(AntennaRecipe, recipe), key)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

@@ -15,10 +15,14 @@ from cellctl.errors.force import ForceLimitExceeded, SensorSaturated
 from cellctl.errors.robot import ArmOffReference, ControllerFault
 from cellctl.errors.vision import HeadsMoved
 from cellctl.processes.deck_to_frame.faults import CorrectionDiverging, MatingOverforce
+from cellctl.processes.deck_to_frame.record_names import (
+    BOARD_TRANSFER_NAME,
+    CONTACT_STIFFNESS_NAME,
+    HEAD_JOINTS,
+    PAYLOAD_NAME,
+    STOP_LATENCY_NAME,
+)
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2
-
-HEAD_JOINTS = "head_joints_deg"
-"""Key of the board transfer's record: taught joints of each head's robot, by head."""
 
 # A fault stands in ``invalidated_by`` when what caused it may have moved or bent something that
 # the calibration holds for, or when the fault has proved a figure wrong. Faults with a likelier
@@ -63,7 +67,7 @@ BASE_FRAME = CalibrationKind(
 """Base of the main robot in the large-field head."""
 
 BOARD_TRANSFER = CalibrationKind(
-    name="board_transfer",
+    name=BOARD_TRANSFER_NAME,
     parse=TransferResult.from_record,
     register="board_transfer",
     invalidated_by=frozenset(
@@ -86,7 +90,7 @@ BOARD_TRANSFER = CalibrationKind(
 """Both heads, at their measuring poses, in the base of the main robot."""
 
 PAYLOAD = CalibrationKind(
-    name="payload",
+    name=PAYLOAD_NAME,
     parse=IdentifiedPayload.from_record,
     register="payload",
     invalidated_by=frozenset(
@@ -106,7 +110,7 @@ PAYLOAD = CalibrationKind(
 """Gripper and deck on the force sensor."""
 
 STOP_LATENCY = CalibrationKind(
-    name="stop_latency",
+    name=STOP_LATENCY_NAME,
     parse=_latency_s,
     invalidated_by=frozenset({MatingOverforce}),
     procedures=(107,),
@@ -115,7 +119,7 @@ STOP_LATENCY = CalibrationKind(
 """Upper bound in s of the time that the main robot takes to stop."""
 
 CONTACT_STIFFNESS = CalibrationKind(
-    name="contact_stiffness",
+    name=CONTACT_STIFFNESS_NAME,
     parse=_stiffness_n_m,
     invalidated_by=frozenset({MatingOverforce}),
     procedures=(108,),

@@ -65,9 +65,32 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
     ) -> Iterable[ConfigIssue]:
         """Figures and poses that fit their own keys and not each other."""
-        from cellctl.processes.deck_to_frame.checks.plausible import plausible_issues
+        from cellctl.processes.deck_to_frame.checks.plausible.findings import plausible_issues
 
         return plausible_issues(cell, cast(DeckRecipe, recipe), key, folder)
+
+    @classmethod
+    def check_placed(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        key: str,
+        folder: Path,
+        bases: Mapping[str, Sequence[float]],
+    ) -> Iterable[ConfigIssue]:
+        """Whether the heads see the holes that they are to measure."""
+        from cellctl.processes.deck_to_frame.checks.plausible.seen_holes import sight_issues
+
+        return sight_issues(cell, cast(DeckRecipe, recipe), key, folder, bases)
+
+    @classmethod
+    def remarks(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """Holes of a head on one line, another board or load than in the stored calibrations."""
+        from cellctl.processes.deck_to_frame.checks.plausible.remarks import recipe_remarks
+
+        return recipe_remarks(cell, cast(DeckRecipe, recipe), key, folder)
 
     @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:

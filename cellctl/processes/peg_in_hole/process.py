@@ -56,6 +56,19 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         return recipe_issues(cell, cast(PegRecipe, recipe), key)
 
     @classmethod
+    def check_plausible(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        key: str,
+        folder: Path,  # noqa: ARG003 - no files
+    ) -> Iterable[ConfigIssue]:
+        """A hole within the reach of the arm, and touches beside it."""
+        from cellctl.processes.peg_in_hole.plausible import plausible_issues
+
+        return plausible_issues(cell, cast(PegRecipe, recipe), key)
+
+    @classmethod
     def calibration_kinds(cls) -> "Kinds":
         """The measured loop; without it the bounds of the settings count."""
         from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS

@@ -18,7 +18,8 @@ from cellctl.processes.peg_in_hole.roles import FORCE
 from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.settings import PegSettings
 
-_OVER = Rotation.from_rotvec([np.pi, 0.0, 0.0])
+OVER = Rotation.from_rotvec([np.pi, 0.0, 0.0])
+"""From the frame of a hole, z out of its face, to that of a tip, z into it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +53,7 @@ def peg_recipes(config: CellConfig) -> tuple[PegRecipe, ...]:
 
 def believed_frames(recipe: PegRecipe, base_T_flange: RigidTransform) -> ContactFrames:
     """Frame A at the believed place, z into the hole; the attitude is the flange's present one."""
-    base_T_task = pose_from_xyzabc(recipe.base_T_hole.pose) * RigidTransform.from_rotation(_OVER)
+    base_T_task = pose_from_xyzabc(recipe.base_T_hole.pose) * RigidTransform.from_rotation(OVER)
     flange_T_tip = pose_from_xyzabc(recipe.flange_T_tip)
     task_T_tip = base_T_task.inv() * base_T_flange * flange_T_tip
     return ContactFrames(base_T_task, flange_T_tip, task_T_tip.rotation)

@@ -79,6 +79,8 @@ def _head(data: Mapping[str, Any], key: str, names: list[str]) -> tuple[str, ...
     listed = data.get(key, [])
     if not isinstance(listed, list) or not set(listed) <= set(names):
         raise ValueError(f"{key} must list names of holes")
+    if twice := next((name for name in listed if listed.count(name) > 1), None):
+        raise ValueError(f"{key} lists {twice} twice")
     return tuple(listed)
 
 

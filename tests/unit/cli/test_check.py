@@ -35,8 +35,14 @@ def test_poses_of_one_robot_make_one_line() -> None:
 
 
 def test_a_device_that_is_not_there_is_named_by_its_role_and_table() -> None:
-    lines = said_of("peg-in-hole", "deck.toml")
-    assert any("arm: the cell lacks [robots.arm]" in line for line in lines)
+    lines = said_of("antenna-module", "small.toml")
+    assert any("gripper: the cell lacks [grippers.gripper]" in line for line in lines)
+
+
+def test_a_cell_with_recipes_is_not_told_what_it_lacks_for_others() -> None:
+    done = CliRunner().invoke(whole_app(), ["check", str(CONFIG / "deck.toml")])
+    assert done.exit_code == 0
+    assert "process " not in done.stdout
 
 
 def test_what_the_daemon_needs_of_its_pc_is_a_hint(tmp_path: Path) -> None:

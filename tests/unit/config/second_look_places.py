@@ -30,23 +30,23 @@ PLACES = (
         "robots.main.poses_deg.deck_measure",
         "another place than home",
     ),
-    deck_elsewhere(
+    deck(
         "flange_T_deck = [0.0, 0.0, 502.0, 0.0, 0.0, 180.0]",
         "flange_T_deck = [0.0, 0.0, 502.0, 0.0, 0.0, 0.0]",
-        "recipes.0.base_T_frame",
-        "outside the box",
+        "recipes.0.flange_T_deck",
+        "did you mean [0.0, 0.0, 502.0, 0.0, 0.0, 180.0]? ",
     ),
-    deck_elsewhere(
+    deck(
         "flange_T_deck = [0.0, 0.0, 502.0",
         "flange_T_deck = [0.0, 0.0, -502.0",
-        "recipes.0.base_T_frame",
-        "outside the box",
+        "recipes.0.flange_T_deck",
+        "did you mean [0.0, 0.0, 502.0, 0.0, 0.0, 180.0]? ",
     ),
-    deck_elsewhere(
+    deck(
         "flange_T_deck = [0.0, 0.0, 502.0",
         "flange_T_deck = [0.0, 0.0, 50.2",
-        "recipes.0.base_T_frame",
-        "outside the box",
+        "recipes.0.flange_T_deck",
+        "did you mean [0.0, 0.0, 502.0, 0.0, 0.0, 180.0]? ",
     ),
     deck(
         "flange_T_camera = [-89.5, 0.0, 120.0, 0.0, 10.0, 0.0]",

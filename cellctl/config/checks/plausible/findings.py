@@ -5,10 +5,14 @@ from pathlib import Path
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.arms import arm_issues
+from cellctl.config.checks.plausible.line import line_issues
+from cellctl.config.checks.plausible.loads import load_issues
 from cellctl.config.checks.plausible.mounted import mounted_issues
 from cellctl.config.checks.plausible.places import place_issues
+from cellctl.config.checks.plausible.recipes import recipe_issues
 from cellctl.config.checks.plausible.sensors import sensor_issues
 from cellctl.config.checks.plausible.waits import wait_issues
+from cellctl.config.checks.plausible.ways_out import way_out_issues
 from cellctl.config.issue import ConfigIssue
 
 
@@ -20,6 +24,10 @@ def plausibility_issues(cell: CellConfig, folder: Path, bad: Set[str]) -> Iterat
     """
     yield from arm_issues(cell, bad)
     yield from mounted_issues(cell)
+    yield from load_issues(cell)
+    yield from way_out_issues(cell, bad)
+    yield from line_issues(cell)
     yield from sensor_issues(cell, bad)
+    yield from recipe_issues(cell)
     yield from wait_issues(cell)
     yield from place_issues(cell, folder)

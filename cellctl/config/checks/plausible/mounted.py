@@ -1,4 +1,4 @@
-"""What is mounted on flanges: too far away, or turned back to the arm."""
+"""What is mounted on flanges: too far away, turned back to the arm, or lying on its side."""
 
 from collections.abc import Iterator
 
@@ -14,11 +14,14 @@ _FARTHEST_MM = 3000.0
 _BACK = -0.2
 """Cosine between optical axis and flange axis: a camera that looks across the flange is near zero,
 one that is turned half round near -1."""
+_ALONG = 0.9
+"""Of the axes of a force sensor and its flange, either way: a disc between flange and gripper."""
 
 
 def mounted_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Poses on a flange that are farther from it than any tool, and cameras that see the arm."""
-    far = set()
+    """Poses on a flange that are farther from it than any tool, cameras that see the arm, force
+    sensors across the flange."""
+    far: set[str] = set()
     for key, value in leaves(cell.model_dump()):
         is_pose = isinstance(value, list | tuple) and len(value) == 6
         if is_pose and key.rsplit(".", 1)[-1].startswith("flange_T_"):
@@ -37,3 +40,16 @@ def mounted_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
             if axis[2] < _BACK:
                 allowed = "a camera that looks away from the arm; its axis points back at it"
                 yield ConfigIssue(key, str(list(written)), allowed)
+    yield from _sensors(cell, far)
+
+
+def _sensors(cell: CellConfig, far: set[str]) -> Iterator[ConfigIssue]:
+    for name, sensor in cell.force_sensors.items():
+        key = f"force_sensors.{name}.flange_T_sensor"
+        axis = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()[:, 2]
+        if key not in far and abs(axis[2]) < _ALONG:
+            allowed = (
+                "a sensor whose z points along that of the flange, or back: it is bolted between "
+                "flange and gripper; B and C near 0 or 180 deg"
+            )
+            yield ConfigIssue(key, str(list(sensor.flange_T_sensor)), allowed)

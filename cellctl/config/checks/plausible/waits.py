@@ -1,4 +1,4 @@
-"""Time limits so short that every answer is late."""
+"""Time limits so short that every answer is late, exposures so long that nothing stands still."""
 
 from collections.abc import Iterator
 
@@ -8,6 +8,7 @@ from cellctl.config.issue import ConfigIssue
 
 _LEAST_S = 0.02
 """Twice the pause that an ordinary Linux PC under load takes now and then."""
+_LONGEST_EXPOSURE_S = 1.0
 _NAMES = ("silence_s", "stale_s", "max_deadman_s")
 
 
@@ -20,4 +21,7 @@ def wait_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
             continue
         if (name in _NAMES or name.endswith("timeout_s")) and 0.0 < value < _LEAST_S:
             allowed = f"at least {_LEAST_S:g} seconds: a PC that pauses for less is in order"
+            yield ConfigIssue(key, f"{value:g}", allowed)
+        if name == "exposure_s" and value > _LONGEST_EXPOSURE_S:
+            allowed = f"at most {_LONGEST_EXPOSURE_S:g} second; this looks like milliseconds"
             yield ConfigIssue(key, f"{value:g}", allowed)

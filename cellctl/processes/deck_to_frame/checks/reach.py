@@ -2,13 +2,23 @@
 
 from collections.abc import Iterator
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.driver_settings import motion_bounds
+from cellctl.config.driver_settings import motion_bounds, robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.geometry.box import Box
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.processes.deck_to_frame.checks.meant_pose import meant_pose
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
+
+BESIDE_MM = 100.0
+TURNED_DEG = 8.0
+"""The heads measure deck and frame from one place. In a field of view of 0.3 m the holes of a head
+leave 0.1 m to either side; a deck tilted by more has its holes at other distances than the frame,
+by a tenth of its length."""
 
 
 def reach_issues(
@@ -16,19 +26,81 @@ def reach_issues(
 ) -> Iterator[ConfigIssue]:
     """The nominal flange poses at the stand-off and at the seat, against the driver's bounds."""
     box = motion_bounds(cell.robots[main]).flange_box
-    if box is None:
+    if box is None or (outside := _outside(recipe, box)) is None:
         return
+    what, place_m = outside
+    kinematics = _measured_at(cell, main)
+    meant = meant_pose(
+        recipe,
+        lambda other: (
+            _outside(other, box) is None
+            and (kinematics is None or not is_beside(frame_T_deck(other, kinematics)))
+        ),
+    )
+    x, y, z = place_m / MM
+    allowed = (
+        f"{meant.said}with the deck {what} the flange is at x {x:.0f}, y {y:.0f}, z {z:.0f} mm, "
+        f"outside the box that robots.{main}.settings give it"
+    )
+    yield ConfigIssue(f"{key}.{meant.name}", str(list(meant.written)), allowed)
+
+
+def above_issues(
+    cell: CellConfig, main: str, recipe: DeckRecipe, key: str
+) -> Iterator[ConfigIssue]:
+    """A frame that is not below the deck at its taught pose."""
+    base_T_flange = _measured_at(cell, main)
+    if base_T_flange is None:
+        return
+    place = frame_T_deck(recipe, base_T_flange)
+    x_mm, y_mm, z_mm = place.translation / MM
+    if is_beside(place):
+        meant = meant_pose(recipe, lambda other: not is_beside(frame_T_deck(other, base_T_flange)))
+        turned_deg = np.degrees(place.rotation.magnitude())
+        allowed = (
+            f"{meant.said}below the deck at the taught pose {DECK_MEASURE}, within {BESIDE_MM:g} "
+            f"mm and {TURNED_DEG:g} deg; the deck is at x {x_mm:.0f}, y {y_mm:.0f} mm of the "
+            f"frame, turned by {turned_deg:.0f} deg. Or teach {DECK_MEASURE} again"
+        )
+        yield ConfigIssue(f"{key}.{meant.name}", str(list(meant.written)), allowed)
+    elif z_mm < recipe.deck_thickness_mm + recipe.stand_off_mm:
+        allowed = (
+            f"at most {z_mm - recipe.stand_off_mm:.0f}: at the taught pose {DECK_MEASURE} the "
+            f"outer face of the deck is {z_mm:.0f} mm above the frame, and the stand-off stays free"
+        )
+        thickness = f"{recipe.deck_thickness_mm:g}"
+        yield ConfigIssue(f"{key}.deck_thickness_mm", thickness, allowed)
+
+
+def frame_T_deck(recipe: DeckRecipe, base_T_flange: RigidTransform) -> RigidTransform:
+    """The deck in the nominal frame, with the flange at a pose."""
+    base_T_deck = base_T_flange * pose_from_xyzabc(recipe.flange_T_deck)
+    return pose_from_xyzabc(recipe.base_T_frame).inv() * base_T_deck
+
+
+def is_beside(place: RigidTransform) -> bool:
+    """Whether a deck, seen from the frame, is where the heads cannot see both."""
+    x_mm, y_mm, _ = place.translation / MM
+    turned_deg = np.degrees(place.rotation.magnitude())
+    return bool(np.hypot(x_mm, y_mm) > BESIDE_MM or turned_deg > TURNED_DEG)
+
+
+def _measured_at(cell: CellConfig, main: str) -> RigidTransform | None:
+    """The flange at the taught pose over the station; None where the arm is not described."""
+    robot = cell.robots[main]
+    driver, settings = robot_driver(robot)
+    kinematics = driver.forward_kinematics(settings)
+    return None if kinematics is None else kinematics(np.radians(robot.poses_deg[DECK_MEASURE]))
+
+
+def _outside(recipe: DeckRecipe, box: Box) -> tuple[str, Array] | None:
+    """Where the flange would have to be outside of its box, in words and in m."""
     base_T_frame = pose_from_xyzabc(recipe.base_T_frame)
     deck_T_flange = pose_from_xyzabc(recipe.flange_T_deck).inv()
     for what, above_mm in (("seated", 0.0), ("at the stand-off", recipe.stand_off_mm)):
         height_m = (recipe.deck_thickness_mm + above_mm) * MM
-        frame_T_deck = RigidTransform.from_translation([0.0, 0.0, height_m])
-        place_m = (base_T_frame * frame_T_deck * deck_T_flange).translation
+        seat_T_deck = RigidTransform.from_translation([0.0, 0.0, height_m])
+        place_m = (base_T_frame * seat_T_deck * deck_T_flange).translation
         if not box.holds(place_m):
-            x, y, z = place_m / MM
-            allowed = (
-                f"with the deck {what} the flange is at x {x:.0f}, y {y:.0f}, z {z:.0f} mm, "
-                f"outside the box that robots.{main}.settings give it"
-            )
-            yield ConfigIssue(f"{key}.base_T_frame", str(list(recipe.base_T_frame)), allowed)
-            return
+            return what, place_m
+    return None

@@ -14,10 +14,10 @@ from cellctl.procedures.target_board import place_board
 from cellctl.processes.deck_to_frame.calibrations import (
     BASE_FRAME,
     BOARD_TRANSFER,
-    HEAD_JOINTS,
     STEREO_HEAD_1,
     STEREO_HEAD_2,
 )
+from cellctl.processes.deck_to_frame.record_names import HEAD_JOINTS
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MEASURING
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome

@@ -31,12 +31,12 @@ from cellctl.processes.deck_to_frame.calibrations import (
     BOARD_TRANSFER,
     CALIBRATIONS,
     CONTACT_STIFFNESS,
-    HEAD_JOINTS,
     PAYLOAD,
     STEREO_HEAD_1,
     STEREO_HEAD_2,
     STOP_LATENCY,
 )
+from cellctl.processes.deck_to_frame.record_names import HEAD_JOINTS
 from tests.unit.calibration.store.shipped import CELL_FILE, REQUIRED, renew_calibrations, spoil
 
 HOUR = timedelta(hours=1)

@@ -7,7 +7,7 @@ import pytest
 
 from cellctl.config.load import problems
 
-CONFIG = Path(__file__).parents[4] / "config"
+CONFIG = Path(__file__).parents[5] / "config"
 
 
 @pytest.fixture

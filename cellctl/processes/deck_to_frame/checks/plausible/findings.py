@@ -7,7 +7,13 @@ from typing import cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
-from cellctl.processes.deck_to_frame.checks.station import station_issues
+from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
+from cellctl.processes.deck_to_frame.checks.plausible.drawings import drawing_issues
+from cellctl.processes.deck_to_frame.checks.plausible.limits import limit_issues
+from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
+from cellctl.processes.deck_to_frame.checks.plausible.station import station_issues
+from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_issues
+from cellctl.processes.deck_to_frame.checks.plausible.zones import zone_use_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.features.feature_file import read_features
@@ -29,7 +35,15 @@ def plausible_issues(
     yield from _mating(recipe, key)
     yield from _thresholds(recipe, key)
     yield from _thickness(recipe, key, folder)
+    yield from limit_issues(recipe, key)
+    loads = list(load_issues(cell, recipe, key))
+    yield from loads
     yield from station_issues(cell, recipe, key)
+    yield from zone_use_issues(cell, recipe, settings)
+    named = {issue.key for issue in loads}
+    yield from (one for one in stored_issues(cell, recipe, key, folder) if one.key not in named)
+    deck, frame = read_drawings(recipe, key, folder)
+    yield from drawing_issues(deck, frame, recipe)
 
 
 def _board(settings: DeckSettings, path: str) -> Iterator[ConfigIssue]:

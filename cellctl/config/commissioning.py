@@ -1,0 +1,77 @@
+"""What `cellctl check` asks of a cell file beyond what a daemon asks.
+
+A cell that has worked for a year must still start after an update that asks for more. Whoever
+commissions one must not leave it so.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.cross_checks import unpermitted
+from cellctl.config.checks.plausible.findings import plausibility_issues
+from cellctl.config.checks.remarks import cell_remarks
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.load import bad_devices, examine, placed, unless_named
+from cellctl.config.model_file import stated_bases
+from cellctl.config.process_definition import process_definition
+from cellctl.config.recipe import Recipe
+
+
+@dataclass(frozen=True, slots=True)
+class Examination:
+    """Everything that is to be said of a cell file."""
+
+    errors: tuple[ConfigIssue, ...]
+    remarks: tuple[ConfigIssue, ...]
+    """What may be meant as it stands; none of a file that has errors."""
+    cell: CellConfig | None
+    """None where its keys cannot be read."""
+
+
+def examine_before_commissioning(path: Path) -> Examination:
+    """Errors and remarks of a cell file; touches no hardware. Raises ``ConfigUnreadable``."""
+    found, cell, lines = examine(path)
+    if cell is not None:
+        found += unpermitted(cell, bad_devices(found))
+        found += unless_named(found, list(_implausible(cell, path, found)))
+    remarks = [] if cell is None or found else list(_remarks(cell, path))
+    return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), cell)
+
+
+def problems_before_commissioning(path: Path) -> list[ConfigIssue]:
+    """The errors alone."""
+    return list(examine_before_commissioning(path).errors)
+
+
+def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iterator[ConfigIssue]:
+    """What is possible and in all likelihood a slip."""
+    bad = bad_devices(found)
+    of_cell = list(plausibility_issues(cell, path.parent, bad))
+    yield from of_cell
+    bad |= bad_devices(of_cell)
+    # A device or a recipe that is wrong itself would be named a second time, by all that use it.
+    if bad & {".".join(device.split(".")[:2]) for device in cell.devices()}:
+        return
+    for index, recipe in enumerate(cell.recipes):
+        key = f"recipes.{index}"
+        if not bad & {key, f"processes.{recipe.process}"}:
+            yield from _implausible_recipe(cell, recipe, key, path)
+
+
+def _implausible_recipe(
+    cell: CellConfig, recipe: Recipe, key: str, path: Path
+) -> list[ConfigIssue]:
+    definition = process_definition(recipe.process)
+    found = list(definition.check_plausible(cell, recipe, key, path.parent))
+    if found:
+        return found  # a pose that is wrong itself would be named again, as one that sees nothing
+    return list(definition.check_placed(cell, recipe, key, path.parent, stated_bases(path)))
+
+
+def _remarks(cell: CellConfig, path: Path) -> Iterator[ConfigIssue]:
+    yield from cell_remarks(cell)
+    for index, recipe in enumerate(cell.recipes):
+        definition = process_definition(recipe.process)
+        yield from definition.remarks(cell, recipe, f"recipes.{index}", path.parent)

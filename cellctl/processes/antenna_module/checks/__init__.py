@@ -1,0 +1,1 @@
+"""What `cellctl check` asks of a recipe beyond its own keys; nothing here touches hardware."""

@@ -1,0 +1,129 @@
+"""Figures in the two feature files of a recipe that no part has, or that do not go together."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from cellctl.config.issue import ConfigIssue
+from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+
+_MOST_HOLE_MM = 50.0
+"""A wider one leaves no face round it in a field of view of 0.3 m."""
+_LEAST_MM, _LEAST_HOLE_MM = 5.0, 0.5
+"""Holes of a part are spread wider, and are wider, than this: else they stand there in metres."""
+_OUTWARD = 0.9
+"""Cosine: the heads see both parts from above, and the deck comes from there (mission A3)."""
+_PIN_MM = 0.5
+"""A pin fits both holes with a few hundredths."""
+_BORE = (0.8, 2.0)
+"""Of a deck's bore over the thread below it: a core hole and a generous clearance hole."""
+_ABOVE_MM = 1.0
+_SHARE_OF_THRESHOLD = 3.0
+"""A measured pose counts when its standard deviation is a third of the threshold."""
+
+
+def drawing_issues(
+    deck: PartDrawing, frame: PartDrawing, recipe: DeckRecipe
+) -> Iterator[ConfigIssue]:
+    """Called with files that can be read and from which poses follow."""
+    for drawing in (deck, frame):
+        in_metres = list(_in_metres(drawing))
+        yield from in_metres
+        if not in_metres:
+            yield from _outward(drawing)
+            yield from _overlapping(drawing)
+            yield from _heights(drawing, recipe)
+            yield from _uncertain(drawing, recipe)
+    yield from _pairs(deck, frame)
+    yield from _heads(deck, frame)
+
+
+def _in_metres(drawing: PartDrawing) -> Iterator[ConfigIssue]:
+    places_mm = np.array([drawing.position_mm(name) for name in drawing.holes])
+    first = next(iter(drawing.holes))
+    if np.ptp(places_mm, axis=0).max() < _LEAST_MM:
+        value = str(drawing.position_mm(first).tolist())
+        allowed = "millimetres; all holes within 5 mm look like metres"
+        yield drawing.hole_issue(first, "position_mm", value, allowed)
+    for hole in drawing.features.holes:
+        diameter_mm = hole.diameter_m / MM
+        if not _LEAST_HOLE_MM <= diameter_mm <= _MOST_HOLE_MM:
+            value = f"{diameter_mm:g}"
+            allowed = f"{_LEAST_HOLE_MM:g} to {_MOST_HOLE_MM:g} mm"
+            yield drawing.hole_issue(hole.name, "diameter_mm", value, allowed)
+            return
+
+
+def _outward(drawing: PartDrawing) -> Iterator[ConfigIssue]:
+    outward = drawing.features.holes[0].outward
+    if outward is not None and outward[2] < _OUTWARD:
+        allowed = "[0.0, 0.0, 1.0]: the heads look down on the face, and z is up out of it"
+        yield drawing.issue("outward_axis", str(outward.tolist()), allowed)
+
+
+def _overlapping(drawing: PartDrawing) -> Iterator[ConfigIssue]:
+    for one, other in combinations(drawing.features.holes, 2):
+        apart_m = float(np.linalg.norm(np.subtract(one.position_m, other.position_m)))
+        if apart_m < (one.diameter_m + other.diameter_m) / 2.0:
+            value = str(drawing.position_mm(other.name).tolist())
+            allowed = f"another place than that of hole {one.name}, {apart_m / MM:g} mm away"
+            yield drawing.hole_issue(other.name, "position_mm", value, allowed)
+            return
+
+
+def _heights(drawing: PartDrawing, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
+    deep_mm = recipe.deck_thickness_mm if drawing.part == "deck" else np.inf
+    for name in drawing.holes:
+        place_mm = drawing.position_mm(name)
+        if not -deep_mm <= place_mm[2] <= _ABOVE_MM:
+            allowed = f"z from -{deep_mm:g} to {_ABOVE_MM:g}: z = 0 is the face that the heads see"
+            yield drawing.hole_issue(name, "position_mm", str(place_mm.tolist()), allowed)
+            return
+
+
+def _uncertain(drawing: PartDrawing, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
+    holes = {*drawing.features.head_1, *drawing.features.head_2}
+    threshold_mm = recipe.pose_correction.threshold_mm
+    most_mm = threshold_mm / _SHARE_OF_THRESHOLD * float(np.sqrt(len(holes)))
+    sigma_mm = drawing.features.holes[0].position_sigma_m / MM
+    if sigma_mm > most_mm:
+        allowed = (
+            f"at most {most_mm:.3f}: {len(holes)} such holes do not give a pose to a third of "
+            f"threshold_mm = {threshold_mm:g}"
+        )
+        yield drawing.issue("position_sigma_mm", f"{sigma_mm:g}", allowed)
+
+
+def _pairs(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
+    """Holes of one name are in line, and one screw or one pin goes through both."""
+    for name, hole in deck.holes.items():
+        below = frame.holes.get(name)
+        if below is None:
+            continue
+        if (hole.kind == "pin") != (below.kind == "pin"):
+            allowed = f"as hole {name} of {frame.written}, which is a {below.kind}"
+            yield deck.hole_issue(name, "kind", repr(hole.kind), allowed)
+            continue
+        above_mm, below_mm = hole.diameter_m / MM, below.diameter_m / MM
+        if hole.kind == "pin":
+            wrong = abs(above_mm - below_mm) > _PIN_MM
+            wanted = f"{below_mm:g}"
+        else:
+            wrong = not _BORE[0] * below_mm <= above_mm <= _BORE[1] * below_mm
+            wanted = f"{_BORE[0] * below_mm:g} to {_BORE[1] * below_mm:g}"
+        if wrong:
+            allowed = f"{wanted}; hole {name} of {frame.written} has {below_mm:g}"
+            yield deck.hole_issue(name, "diameter_mm", f"{above_mm:g}", allowed)
+
+
+def _heads(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
+    """The heads measure both parts from one place, so each sees the same holes of both."""
+    for key, other_key in (("head_1", "head_2"), ("head_2", "head_1")):
+        of_deck, of_other = getattr(deck.features, key), getattr(frame.features, other_key)
+        if strange := [name for name in of_deck if name in of_other]:
+            allowed = f"without {strange[0]}, which {other_key} sees in {frame.written}"
+            yield deck.issue(key, str(list(of_deck)), allowed)
+            return

@@ -1,0 +1,43 @@
+"""Holds the forces and stiffnesses of a recipe against the load that hangs on the arm."""
+
+from collections.abc import Iterator
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.config.issue import ConfigIssue
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import MAIN
+
+_MOST_SAG_MM = 10.0
+"""Of an arm under its load. The same as a lowest natural frequency of 5 Hz, sqrt(g / sag) / 2 pi,
+which every industrial arm exceeds with its rated load."""
+_MOST_LEFT = 0.2
+"""Of the weight: what gravity compensation may leave, of which 4 % is usual."""
+
+
+def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """Stiffnesses that are no upper bound, and a plausible force that any payload meets."""
+    robot = recipe.device(MAIN)
+    load, mating = cell.robots[robot].load, recipe.mating
+    if load is None:
+        return
+    weight_n = load.mass_kg * G_M_S2
+    least_n_per_mm = weight_n / _MOST_SAG_MM
+    stiffnesses = {"stiffness_n_per_mm": mating.stiffness_n_per_mm}
+    if mating.pins is not None and mating.pins.lateral_stiffness_n_per_mm is not None:
+        stiffnesses["pins.lateral_stiffness_n_per_mm"] = mating.pins.lateral_stiffness_n_per_mm
+    for name, stiffness in stiffnesses.items():
+        if stiffness < least_n_per_mm:
+            allowed = (
+                f"an upper bound, at least {least_n_per_mm:.0f}: under its load of "
+                f"{load.mass_kg:g} kg robots.{robot} would sag by {weight_n / stiffness:.0f} mm"
+            )
+            yield ConfigIssue(f"{key}.mating.{name}", f"{stiffness:g}", allowed)
+    if mating.max_untared_force_n > _MOST_LEFT * weight_n:
+        left_n = mating.max_untared_force_n
+        allowed = (
+            f"at least {left_n / _MOST_LEFT / G_M_S2:.0f} kg with {key}.mating.max_untared_force_n "
+            f"= {left_n:g}, which is {left_n / weight_n:.0%} of this weight and 4 % of the usual; "
+            f"or that force at most {_MOST_LEFT * weight_n:.0f} N"
+        )
+        yield ConfigIssue(f"robots.{robot}.load.mass_kg", f"{load.mass_kg:g}", allowed)

@@ -1,0 +1,80 @@
+"""What may be meant as it stands in a recipe, and is worth a second look."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
+from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_record
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.record_names import PAYLOAD_NAME
+from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN
+from cellctl.processes.deck_to_frame.settings import DeckSettings
+from cellctl.vision.registration.rigid_fit import on_a_line
+
+
+def recipe_remarks(
+    cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    """Called with a file that is good."""
+    for drawing in read_drawings(recipe, key, folder):
+        yield from _lines(drawing)
+    yield from _board(cell, recipe, folder)
+    yield from _payload(cell, recipe, folder)
+
+
+def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
+    # The pose follows from the holes of both heads, so that a line of three is allowed. It is also
+    # what a coordinate that was copied from the hole above looks like.
+    for name in ("head_1", "head_2"):
+        holes = getattr(drawing.features, name)
+        places_m = np.array([drawing.position_mm(hole) for hole in holes]) * MM
+        if len(holes) >= 3 and on_a_line(places_m):
+            said = "these holes lie on one line; right if the drawing has them so"
+            yield drawing.issue(name, str(list(holes)), said)
+
+
+def _board(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
+    """Another board than the one with which a head was calibrated."""
+    settings = cast(DeckSettings, cell.processes[recipe.process])
+    written = (*(int(side) for side in settings.board.split("x")), settings.square_mm)
+    for role in (HEAD_1, HEAD_2):
+        board = (stored_record(cell, folder, role) or {}).get("board", {})
+        corners, square_mm = board.get("inner_corners"), board.get("square_mm")
+        if corners is not None and (*corners, square_mm) != written:
+            said = (
+                f"the stored calibration of {role} was made with {corners[0]}x{corners[1]}, "
+                f"squares of {square_mm:g} mm; right if there is another board now"
+            )
+            value = f"{settings.board!r}, square_mm = {settings.square_mm:g}"
+            yield ConfigIssue(f"processes.{recipe.process}.board", value, said)
+            return
+
+
+def _payload(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
+    """Another load, or a sensor mounted otherwise, than when the payload was identified."""
+    record, main = stored_record(cell, folder, PAYLOAD_NAME), recipe.device(MAIN)
+    load = cell.robots[main].load
+    weighed = (record or {}).get("rigid12", {})
+    com_mm, weighed_kg = weighed.get("centre_of_mass_mm"), weighed.get("mass_kg")
+    if load is None or com_mm is None or weighed_kg is None:
+        return
+    # As procedure 106 compares them (cellctl.cell.arm_loads), before anything is connected.
+    from cellctl.cell.arm_loads import weighed_checks
+
+    sensor = cell.force_sensors[recipe.device(FORCE)]
+    checks = weighed_checks(
+        load, weighed_kg, np.array(com_mm) * MM, pose_from_xyzabc(sensor.flange_T_sensor)
+    )
+    if failed := [str(check) for check in checks if not check.passed]:
+        said = (
+            f"the stored {PAYLOAD_NAME} differs: {'; '.join(failed)}; flange_T_sensor may be "
+            "turned, or identify the new load by procedure 106"
+        )
+        value = f"{load.mass_kg:g} kg at {list(load.com_mm)} mm"
+        yield ConfigIssue(f"robots.{main}.load", value, said)

@@ -1,0 +1,131 @@
+"""Edits that no check can call wrong, each with its reason."""
+
+from tests.unit.config.mistake import Mistake, Undecided, deck, drawn
+
+_BOTH = ("deck.toml", "frame.toml")
+
+
+def _real(old: str, new: str, key: str, said: str) -> Mistake:
+    return Mistake("cell.toml", f"{old}", new, key, said)
+
+
+UNDECIDED = (
+    Undecided(
+        drawn(
+            _BOTH,
+            "position_mm = [-300.0, -230.0, 0.0]",
+            "position_mm = [-480.0, -230.0, 0.0]",
+            "lie on one line",
+        ),
+        "three holes of a head on a line: the pose follows from all six",
+    ),
+    Undecided(
+        deck('board = "9x6"', 'board = "10x7"', "processes.deck-to-frame.board", "made with 9x6"),
+        "another board than the calibration's: it may be a new one",
+    ),
+    Undecided(
+        deck(
+            "flange_T_sensor = [0.0, 0.0, 60.0, 0.0, 0.0, 0.0]",
+            "flange_T_sensor = [0.0, 0.0, 60.0, 90.0, 0.0, 0.0]",
+            "robots.main.load",
+            "flange_T_sensor may be turned",
+        ),
+        "a sensor turned about its axis: only a weighing shows it, or the load is another one",
+    ),
+    Undecided(
+        deck(
+            "com_mm = [30.0, 20.0, 460.0]",
+            "com_mm = [30.0, 20.0, 390.0]",
+            "robots.main.load",
+            "payload differs",
+        ),
+        "a load that differs from the weighed one: the gripper may be new",
+    ),
+    Undecided(
+        _real(
+            '"192.168.20.22", port = 7102',
+            '"192.168.20.21", port = 7102',
+            "stereo_cameras.head_2.settings.host",
+            "one server serves both",
+        ),
+        "two heads at one address: one server may serve both",
+    ),
+    Undecided(
+        _real(
+            'robot_address = "192.168.20.12"',
+            'robot_address = "192.168.2.12"',
+            "robots.aux_1.settings.robot_address",
+            "not in 192.168.20.0/24",
+        ),
+        "a controller in another network: it may be routed, or the network wider",
+    ),
+    Undecided(
+        _real('data_dir = "/var/lib/cellctl"', 'data_dir = "runs"', "data_dir", "relative to"),
+        "a relative data_dir: started by hand it is found",
+    ),
+    Undecided(
+        _real('host = "192.168.10.1"', 'host = "0.0.0.0"', "plc.host", "every network"),
+        "the line at every address of this PC: allowed_clients lets in who is listed",
+    ),
+    Undecided(
+        deck("over_travel_mm = 10.0", "over_travel_mm = 1.0", "recipes.0.over_travel_mm", ""),
+        "a hard end of travel of 1 mm: it is never a target, and behind every target that is",
+    ),
+    Undecided(
+        deck(
+            "command_port = 7001\nstate_port = 7002",
+            "command_port = 7002\nstate_port = 7001",
+            "robots.main.settings.command_port",
+            "",
+        ),
+        "two ports of one controller exchanged: which program listens where only --connect finds",
+    ),
+    Undecided(
+        deck(
+            'retreat = ["main", "aux_1"]',
+            'retreat = ["aux_1", "main"]',
+            "zones.beside_head_1.retreat",
+            "",
+        ),
+        "another order of leaving a zone: the cell decides who can go first",
+    ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "module_mass_kg = 0.25",
+            "module_mass_kg = 2.5",
+            "recipes.0.module_mass_kg",
+            "",
+        ),
+        "another mass of a module: it is weighed when it was picked, and refused then",
+    ),
+    Undecided(
+        Mistake(
+            "insertion-pin.toml",
+            "clearance_mm = 0.05",
+            "clearance_mm = 0.5",
+            "recipes.0.fit.clearance_mm",
+            "",
+        ),
+        "a wider clearance: such parts exist, and the seat is judged by force",
+    ),
+    Undecided(
+        Mistake(
+            "insertion-pin.toml",
+            "stiffness_n_mm = 120.0",
+            "stiffness_n_mm = 12.0",
+            "processes.peg-in-hole.stiffness_n_mm",
+            "",
+        ),
+        "a soft small arm: there are such arms; procedure 301 measures it before anything else",
+    ),
+    Undecided(
+        deck('data_dir = "runs/cell"', 'data_dir = "demo-calibration"', "data_dir", ""),
+        "one folder for runs and calibrations: their files have different names",
+    ),
+)
+"""``said`` of a mistake is part of the remark that `cellctl check` makes, where it makes one.
+
+Besides these: with neither a model of the cell nor stored calibrations nothing says where heads
+stand, so that arms, heads or lists of holes exchanged with each other remain unseen.
+"""
