@@ -10,12 +10,13 @@ from typing import Any, TypeVar
 
 from cellctl.records.entered.gauges import judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
+from cellctl.records.outcome import outcome
+from cellctl.records.run_filter import RunFilter
+from cellctl.records.run_list import ListedRun, listed_runs
 from cellctl.records.store import RunStore
 
 T = TypeVar("T")
 READERS = 4
-SEARCHED = 20_000
-"""Runs that a search looks through, the newest first."""
 
 
 class ArchiveReader:
@@ -25,34 +26,14 @@ class ArchiveReader:
         self.data_dir = data_dir
         self._readers = asyncio.Semaphore(READERS)
 
-    async def runs(
-        self,
-        *,
-        limit: int,
-        before: int | None = None,
-        serial: str = "",
-        result: str = "",
-        calibration: str = "",
-    ) -> list[dict[str, Any]]:
-        """Heads of the newest runs, newest first; the serial number by its beginning.
+    async def runs(self, wanted: RunFilter, limit: int) -> list[dict[str, Any]]:
+        """Heads of the newest of the wanted runs, newest first; ``ended_as`` in words of lists.
 
-        ``before``: only runs with a lower number. ``calibration``: identity of a calibration that
-        they used. Raises ``StoreUnavailable``.
+        Raises ``StoreUnavailable``.
         """
-
-        def wanted(head: RunHead) -> bool:
-            return (
-                (before is None or head.number < before)
-                and head.serial.startswith(serial)
-                and result in ("", head.result or "open")
-                and (not calibration or calibration in head.calibration_ids.values())
-            )
-
-        def read(store: RunStore) -> list[dict[str, Any]]:
-            found = [head for head in store.runs(SEARCHED) if wanted(head)]
-            return [_head(head) for head in found[:limit]]
-
-        return await self._ask(read)
+        async with self._readers:
+            found = await asyncio.to_thread(listed_runs, self.data_dir, limit, wanted)
+        return [_head(one.head) | {"ended_as": _ended_as(one)} for one in found]
 
     async def run(self, number: int) -> dict[str, Any]:
         """One run with figures, passes, phases, alarms, gauges and names of its files.
@@ -108,6 +89,10 @@ class ArchiveReader:
 
         async with self._readers:
             return await asyncio.to_thread(work)
+
+
+def _ended_as(run: ListedRun) -> str:
+    return outcome(run.head.mode, run.head.result, spoilt=run.spoilt)
 
 
 def _head(head: RunHead) -> dict[str, Any]:

@@ -17,7 +17,9 @@ from cellctl.errors.records import StoreUnavailable
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.entered.gauges import GAUGE_HOLES, beyond_limit, hole_limits
 from cellctl.records.entries import RunHead, RunResult
+from cellctl.records.run_filter import RunFilter
 
+ALL = RunFilter()
 _BUSY_TIMEOUT_S = 5.0
 _COLUMNS = tuple(field.name for field in fields(RunHead))
 _TIMES, _JSON, _TRUTHS = frozenset({"started", "ended"}), "calibration_ids", "simulated"
@@ -33,8 +35,8 @@ class ListedRun:
     """A gauge has turned its good part into a bad one."""
 
 
-def listed_runs(folder: Path, limit: int, serial: str | None = None) -> list[ListedRun]:
-    """The newest runs of the store in a folder, newest first; of one serial number if given.
+def listed_runs(folder: Path, limit: int, wanted: RunFilter = ALL) -> list[ListedRun]:
+    """The newest of the wanted runs of the store in a folder, newest first.
 
     A store of an earlier version is migrated first. Raises ``StoreUnavailable``, ``StoreTooNew``.
     """
@@ -42,18 +44,18 @@ def listed_runs(folder: Path, limit: int, serial: str | None = None) -> list[Lis
     # SQLite would make an empty one.
     if not file.exists():
         raise StoreUnavailable(f"there is no {file}")
-    found = _read(file, limit, serial)
+    found = _read(file, limit, wanted)
     if found is None:
         from cellctl.records.store import RunStore
 
         RunStore(folder, create=False).close()
-        found = _read(file, limit, serial)
+        found = _read(file, limit, wanted)
     if found is None:
         raise StoreUnavailable(f"{file} was not migrated")
     return found
 
 
-def _read(file: Path, limit: int, serial: str | None) -> list[ListedRun] | None:
+def _read(file: Path, limit: int, wanted: RunFilter) -> list[ListedRun] | None:
     """None for a store of another version."""
     try:
         with closing(sqlite3.connect(file, timeout=_BUSY_TIMEOUT_S)) as connection:
@@ -63,7 +65,7 @@ def _read(file: Path, limit: int, serial: str | None) -> list[ListedRun] | None:
             (version,) = connection.execute("PRAGMA user_version").fetchone()
             if version != SCHEMA_VERSION:
                 return None
-            heads = [_head(row) for row in _rows(connection, limit, serial)]
+            heads = [_head(row) for row in _rows(connection, limit, wanted)]
             good = [head.number for head in heads if head.result == RunResult.GOOD]
             spoilt = set(_spoilt(connection, good))
     except sqlite3.Error as error:
@@ -71,12 +73,11 @@ def _read(file: Path, limit: int, serial: str | None) -> list[ListedRun] | None:
     return [ListedRun(head, head.number in spoilt) for head in heads]
 
 
-def _rows(connection: sqlite3.Connection, limit: int, serial: str | None) -> list[sqlite3.Row]:
-    query = f"SELECT {', '.join(_COLUMNS)} FROM runs"
-    if serial is not None:
-        query += " WHERE serial = :serial"
+def _rows(connection: sqlite3.Connection, limit: int, wanted: RunFilter) -> list[sqlite3.Row]:
+    condition, values = wanted.sql()
+    query = f"SELECT {', '.join(_COLUMNS)} FROM runs WHERE {condition}"
     query += " ORDER BY number DESC LIMIT :limit"
-    return connection.execute(query, {"serial": serial, "limit": limit}).fetchall()
+    return connection.execute(query, values | {"limit": limit}).fetchall()
 
 
 def _head(row: sqlite3.Row) -> RunHead:

@@ -53,6 +53,8 @@ class CalibrationReport(StrictModel):
     valid_until: datetime | None = None
     problem: str = ""
     """Why production cannot use it; empty when it can."""
+    identity: str = ""
+    """By which runs name it."""
 
 
 class RunReport(StrictModel):

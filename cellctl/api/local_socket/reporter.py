@@ -133,6 +133,7 @@ class Reporter:
                 made=entry.made,
                 valid_until=entry.valid_until,
                 problem=entry.problem,
+                identity=entry.identity,
             )
             for entry in inventory(self._unit.calibrations, utc_now())
         )

@@ -20,6 +20,8 @@ class InventoryEntry:
     valid_until: datetime | None
     problem: str
     """Why it may not be used; empty when it may."""
+    identity: str = ""
+    """By which runs name it; empty when it cannot be read."""
 
 
 def inventory(store: CalibrationStore, now: datetime) -> tuple[InventoryEntry, ...]:
@@ -42,7 +44,8 @@ def _entry(store: CalibrationStore, kind: CalibrationKind[Any], now: datetime) -
         stored = read_calibration(store.path, kind.name)
     except CellError as error:
         return InventoryEntry(kind.name, None, None, str(error))
-    return InventoryEntry(kind.name, stored.made, stored.valid_until, _problem(kind, stored, now))
+    problem = _problem(kind, stored, now)
+    return InventoryEntry(kind.name, stored.made, stored.valid_until, problem, stored.id)
 
 
 def _problem(kind: CalibrationKind[Any], stored: StoredCalibration, now: datetime) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence, Set
 from dataclasses import asdict
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Annotated
 
@@ -22,6 +23,7 @@ from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+from cellctl.records.run_filter import RunFilter
 from cellctl.records.run_list import listed_runs
 from cellctl.records.seals import LedgerHead
 
@@ -30,6 +32,7 @@ app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 Run = Annotated[int, typer.Argument(help="Number of the run.", min=1)]
 
+DAY = ["%Y-%m-%d"]
 HASH_DIGITS = 64
 WIDE = 100
 """Columns from which on the list has the name of the process."""
@@ -42,13 +45,33 @@ app.command("trend")(trend)
 @app.command("list")
 def list_runs(
     data_dir: DataDir = None,
-    serial: Annotated[str | None, typer.Option(help="Only this serial number.")] = None,
     limit: Annotated[int, typer.Option(help="How many, newest first.", min=1)] = 20,
     *,
+    serial: Annotated[str, typer.Option(help="Only this serial number.")] = "",
+    recipe: Annotated[str, typer.Option(help="Only of the recipe with this name.")] = "",
+    operator: Annotated[str, typer.Option(help="Only this operator's.")] = "",
+    result: Annotated[
+        str, typer.Option(help="good, bad, stopped, aborted, interrupted, open.")
+    ] = "",
+    fault: Annotated[int | None, typer.Option(help="Only where it came up.", min=1)] = None,
+    calibration: Annotated[str, typer.Option(help="Only what used it; its identity.")] = "",
+    since: Annotated[datetime | None, typer.Option(help="First day.", formats=DAY)] = None,
+    until: Annotated[datetime | None, typer.Option(help="Last day.", formats=DAY)] = None,
     as_json: AsJson = False,
 ) -> None:
-    """The newest runs."""
-    found = listed_runs(store_folder(data_dir), limit, serial)
+    """The newest runs; of all that fulfil every condition that is given."""
+    wanted = RunFilter(
+        serial=serial,
+        recipe=recipe,
+        operator=operator,
+        result=result,
+        fault=fault,
+        calibration=calibration,
+        # A day without a zone is one of this computer's, and the last one counts to its end.
+        since=since and since.astimezone(),
+        until=until and (until + timedelta(days=1)).astimezone(),
+    )
+    found = listed_runs(store_folder(data_dir), limit, wanted)
     if as_json:
         typer.echo(as_plain([asdict(one.head) | {"spoilt": one.spoilt} for one in found]))
         return

@@ -16,6 +16,8 @@ function state(one) {
 
 function until(one) { return one.valid_until?.startsWith("9999") ? t("no_end") : time(one.valid_until); }
 
+function parts(one) { return one.identity ? h("a", { href: `#history/used=${one.identity}` }, t("parts_with_it")) : ""; }
+
 function procedures(d) {
   return d.procedures.map((one) => h("div", { class: "row" },
     longPress(h("button", { type: "button", class: "procedure" }, `${one.number}`), () => give("procedure", { request: "procedure", number: one.number, serial: `PROCEDURE-${one.number}` })),
@@ -36,7 +38,7 @@ export function update(root) {
   const key = JSON.stringify([d, document.documentElement.lang]);
   if (key !== drawn) {
     drawn = key;
-    place.replaceChildren(h("h2", {}, t("calibrations")), table([t("kind"), t("made"), t("valid_until"), t("state")], d.calibrations.map((one) => [one.kind, time(one.made), until(one), state(one)])));
+    place.replaceChildren(h("h2", {}, t("calibrations")), table([t("kind"), t("made"), t("valid_until"), t("state"), ""], d.calibrations.map((one) => [one.kind, time(one.made), until(one), state(one), parts(one)])));
     root.querySelector("#procedures").replaceChildren(h("h2", {}, t("procedures")), h("p", {}, t("does_procedure")), h("p", { id: "why-not", class: "dim" }), ...procedures(d));
   }
   const reason = whyNot("procedure");

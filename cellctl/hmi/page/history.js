@@ -7,7 +7,7 @@ import { t } from "./texts.js";
 const PAGE = 30;
 
 function verdict(word) {
-  const known = { good: "good", pass: "good", bad: "bad", fail: "bad", aborted: "bad", interrupted: "bad" }[word];
+  const known = { good: "good", pass: "good", "done, no part": "good", bad: "bad", fail: "bad", "good, bad by gauge": "bad", aborted: "bad", interrupted: "bad" }[word];
   return h("span", { class: known || "" }, known === "bad" ? "■ " : "", t(`result_${word || "open"}`));
 }
 
@@ -18,21 +18,44 @@ async function search(place, query, before = null) {
   try {
     const { runs } = await ask(`runs?${filter}`);
     const rows = runs.map((run) => [h("a", { href: `#history/${run.number}` }, `${run.number}`), run.serial, run.recipe_name, run.mode,
-      time(run.started), verdict(run.result), run.operator || "—"]);
+      time(run.started), verdict(run.ended_as), run.operator || "—"]);
     const more = runs.length === PAGE ? h("button", { type: "button", onclick: () => search(place, query, runs[runs.length - 1].number) }, t("older")) : null;
     place.replaceChildren(runs.length ? table([t("run_head"), t("serial"), t("recipe"), t("mode"), t("started"), t("result"), t("operator")], rows) : h("p", {}, t("no_runs")), ...(more ? [more] : []));
   } catch (error) { place.replaceChildren(complaint(error)); }
 }
 
-function list(root) {
-  const serial = h("input", { id: "find-serial", maxlength: 24 });
-  const result = h("select", { id: "find-result" }, ["", "good", "bad", "stopped", "aborted", "interrupted", "open"].map((word) => h("option", { value: word }, t(word ? `result_${word}` : "any"))));
-  const calibration = h("input", { id: "find-calibration", maxlength: 80 });
+const RESULTS = ["", "good", "bad", "stopped", "aborted", "interrupted", "open"];
+
+// Days are those of who asks: the last one counts to its end.
+function day(text, after) {
+  if (!text) return "";
+  const [year, month, date] = text.split("-").map(Number);
+  return new Date(year, month - 1, date + after).toISOString();
+}
+
+function list(root, wanted = {}) {
+  const input = (name, more) => h("input", { id: `find-${name}`, maxlength: 80, value: wanted[name], ...more });
+  const field = {
+    serial: input("serial", { maxlength: 24 }), recipe: input("recipe"), operator: input("operator"),
+    result: h("select", { id: "find-result" }, RESULTS.map((word) => h("option", { value: word }, t(word ? `result_${word}` : "any")))),
+    fault: input("fault", { type: "number", min: 1 }), since: input("since", { type: "date" }), until: input("until", { type: "date" }), calibration: input("calibration"),
+  };
+  const label = { serial: "serial_begins", fault: "fault_or_alarm", since: "from_day", until: "to_day", calibration: "used_calibration" };
   const found = h("section", { id: "found" });
-  const go = (event) => { event?.preventDefault(); search(found, { serial: serial.value, result: result.value, calibration: calibration.value }); };
-  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, h("label", {}, t("serial_begins"), serial), h("label", {}, t("result"), result),
-    h("label", {}, t("used_calibration"), calibration), h("button", {}, t("search")))), found);
+  const go = (event) => {
+    event?.preventDefault();
+    const asked = Object.fromEntries(Object.entries(field).map(([name, one]) => [name, one.value]));
+    const query = { ...asked, since: day(asked.since, 0), until: day(asked.until, 1) };
+    search(found, Object.fromEntries(Object.entries(query).filter(([, value]) => value)));
+  };
+  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, Object.entries(field).map(([name, one]) => h("label", {}, t(label[name] || name), one)), h("button", {}, t("search")))), found);
   go();
+}
+
+// What the run used, and from there every other part that may suffer from the same error.
+function used(head) {
+  const rows = Object.entries(head.calibration_ids).map(([name, id]) => [name, h("code", {}, id.slice(0, 12)), h("a", { href: `#history/used=${id}` }, t("parts_with_it"))]);
+  return rows.length ? [h("h2", {}, t("calibrations")), table([t("kind"), t("identity"), ""], rows)] : [];
 }
 
 function figures(run) {
@@ -57,10 +80,16 @@ async function detail(root, number) {
       run.head.fault ? h("p", { class: "bad" }, run.head.fault) : "",
       h("p", {}, h("a", { href: `/api/v1/runs/${number}/report`, download: "" }, t("report"))),
       figures(run), ...passes(run), h("h2", {}, t("steps")), table([t("step"), t("label"), t("began"), t("ended")], run.phases.map((one) => [one.number, one.label, time(one.began), time(one.ended)])),
+      ...used(run.head),
       run.gauges.length ? table([t("hole"), num("mm"), t("source"), t("started"), t("verdict"), ""], run.gauges.map((one) => [one.hole, num(shown(one.diameter_mm, 2)), one.source, time(one.time), verdict(one.verdict), one.counts ? "" : t("superseded")])) : "",
       h("div", { class: "pictures" }, images.map((file) => h("figure", {}, h("img", { loading: "lazy", src: `/api/v1/runs/${number}/artefacts/${file.name}`, alt: file.name }), h("figcaption", {}, file.name)))));
   } catch (error) { place.replaceChildren(complaint(error)); }
 }
 
-export function build(root, number) { if (number) detail(root, number); else list(root); }
+export function build(root, asked) {
+  const [name, id] = (asked || "").split("=");
+  if (id) list(root, { calibration: id });
+  else if (name) detail(root, name);
+  else list(root);
+}
 export function update() {}

@@ -8,11 +8,12 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.records.run_filter import RunFilter
 
 router = APIRouter(tags=["records"])
 REPORT_S = 60.0
@@ -30,10 +31,24 @@ class RunSearch(BaseModel):
     """The last number of the page before."""
     serial: Annotated[str, Field(max_length=24)] = ""
     """Its beginning."""
+    recipe: Annotated[str, Field(max_length=80)] = ""
+    """Its name."""
+    operator: Annotated[str, Field(max_length=80)] = ""
     result: Annotated[str, Field(max_length=16)] = ""
     """Such as ``good``, or ``open``."""
+    fault: Annotated[int | None, Field(ge=1)] = None
+    """Number of a fault that ended the run, or of an alarm that it raised."""
     calibration: Annotated[str, Field(max_length=80)] = ""
     """Identity of a calibration that the runs used."""
+    since: AwareDatetime | None = None
+    """Started then or later."""
+    until: AwareDatetime | None = None
+    """Started before."""
+
+    def wanted(self) -> RunFilter:
+        """The same as the records ask for it."""
+        asked = self.model_dump(exclude={"limit", "serial"})
+        return RunFilter(**asked, serial_begins=self.serial)
 
 
 @router.get("/runs")
@@ -41,7 +56,8 @@ async def runs(
     request: Request, _visitor: Asked, search: Annotated[RunSearch, Query()]
 ) -> dict[str, Any]:
     """The newest runs, newest first."""
-    return {"runs": await request.app.state.parts.archive.runs(**search.model_dump())}
+    archive = request.app.state.parts.archive
+    return {"runs": await archive.runs(search.wanted(), search.limit)}
 
 
 @router.get("/runs/{number}")

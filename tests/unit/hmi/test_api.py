@@ -198,10 +198,15 @@ def test_runs_are_found_by_serial_result_and_calibration(page: Client) -> None:
         "calibration=id-SAT-1": [1],
         "before=2": [1],
         "limit=1": [2],
+        "recipe=a%20part&operator=": [2, 1],
+        "fault=304": [],
+        "since=2000-01-01T00:00:00Z": [2, 1],
+        "until=2000-01-01T00:00:00%2B08:00": [],
     }.items():
         found = [run["number"] for run in page.get(f"runs?{query}").json["runs"]]
         assert found == numbers, query
-    problem(page.get("runs?limit=0"), 422, "invalid")
+    for wrong in ("limit=0", "since=2026-11-24T12:00:00", "fault=x", "order=1"):
+        problem(page.get(f"runs?{wrong}"), 422, "invalid")
     run = page.get("runs/1").json
     assert (run["head"]["serial"], run["part"], run["sealed"]) == ("SAT-1", "good", True)
     assert run["phases"][0]["label"] == "measure"

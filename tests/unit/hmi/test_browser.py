@@ -249,3 +249,18 @@ def test_all_screens_show_what_there_is(screen: Screen) -> None:
     tab.reload()
     expect(tab.locator("main")).to_contain_text("measure")
     expect(tab.locator("#who")).to_contain_text("boris")
+
+
+def test_from_a_run_to_all_others_that_used_the_same_calibration(screen: Screen) -> None:
+    screen.sign_in("boris")
+    tab = screen.tab
+    tab.goto(f"{screen.url}#history")
+    expect(tab.locator("#found tbody tr")).to_have_count(2)
+    tab.fill("#find-until", "2001-02-03")
+    tab.click("form button")
+    expect(tab.locator("#found")).to_contain_text("No runs found.")
+    tab.goto(f"{screen.url}#history/1")
+    tab.click("text=parts made with it")
+    expect(tab.locator("#find-calibration")).to_have_value("id-SAT-1")
+    expect(tab.locator("#found tbody tr")).to_have_count(1)
+    expect(tab.locator("#found")).to_contain_text("SAT-1")
