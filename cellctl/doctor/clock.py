@@ -6,7 +6,8 @@ from cellctl.doctor.finding import Finding, bad, doubtful, good
 from cellctl.doctor.pc import Pc
 
 _BUILT_S = 1_767_225_600
-"""2026-01-01: before that this software was not there."""
+"""2026-01-01 00:00 UTC. No version of this software is older, so that a clock which shows an
+earlier time is wrong for certain, whatever it says of its synchronisation."""
 _RTC_OFF_S = 60.0
 
 

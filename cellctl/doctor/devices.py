@@ -11,8 +11,8 @@ from cellctl.doctor.pc import Pc
 from cellctl.doctor.service import Service
 
 _SLOW_LATENCY_MS = 1
-"""FTDI and similar adapters collect bytes for 16 ms unless told otherwise; a sample a millisecond
-then comes in bunches, and the guard sees each late by that much."""
+"""More is too slow. FTDI and similar adapters collect bytes for 16 ms unless told otherwise; a
+sample a millisecond then comes in bunches, and the guard sees each late by that much."""
 
 
 def device_findings(pc: Pc, service: Service, cell: CellConfig) -> Iterator[Finding]:
@@ -38,6 +38,7 @@ def _serial_line(pc: Pc, service: Service, device: str) -> Iterator[Finding]:
     else:
         remedy = f"give it to the group {service.groups[-1]} by a rule of udev"
         yield bad(device, f"{service.user} may not use it", remedy)
+    # A name below /dev/serial/by-id is a link, and the kernel's files use the name at its end.
     name = Path(device).resolve().name
     latency = pc.read(f"/sys/bus/usb-serial/devices/{name}/latency_timer")
     if latency is not None and int(latency) > _SLOW_LATENCY_MS:

@@ -21,6 +21,8 @@ _ANY = ("0.0.0.0", "::")
 def network_findings(pc: Pc, cell: CellConfig) -> Iterator[Finding]:
     """Own addresses, ways to peers, and what cameras need."""
     for key, host in written_hosts(cell).items():
+        # To look a name up, packets would have to be sent; and nothing can keep this PC from
+        # listening on all of its addresses or from reaching itself.
         if host in _ANY or not is_address(host) or ipaddress.ip_address(host).is_loopback:
             continue
         yield _own(pc, key, host) if key.endswith(_LISTENS) else _way(pc, key, host)
@@ -61,6 +63,7 @@ def _through_gateway(routes: str, host: str) -> bool:
     for line in routes.splitlines()[1:]:
         columns = line.split()
         network, by, mask = (_number(columns[column]) for column in (1, 2, 7))
+        # A mask with more ones, which is a more precise route, is the greater number.
         if int(address) & mask == network and mask > best:
             best, gateway = mask, by != 0
     return gateway
@@ -97,7 +100,12 @@ def _for_cameras(pc: Pc) -> Iterator[Finding]:
             f"{buffer / 1e6:.1f} MB: images of GigE cameras are lost while the PC is busy",
             "sudo sysctl -w net.core.rmem_max=33554432",
         )
-    frames = [int(pc.read(path) or 0) for path in pc.find("/sys/class/net/*/mtu")]
+    # The loopback carries 65536 bytes on every PC, and no camera hangs on it.
+    frames = [
+        int(pc.read(path) or 0)
+        for path in pc.find("/sys/class/net/*/mtu")
+        if path.parent.name != "lo"
+    ]
     if max(frames, default=0) < _JUMBO_BYTES:
         yield doubtful(
             "jumbo frames",

@@ -14,7 +14,8 @@ _TIMEX_BYTES = 512
 """More than ``struct timex`` of any Linux takes (208 on 64 bits)."""
 _TIME_ERROR = 5
 _UNREACHED_PORT = 9
-"""Nothing is sent: a datagram socket only looks up the way."""
+"""Discard. Any port would do, because nothing is sent: connecting a datagram socket only makes the
+kernel look up the route."""
 
 
 def _clock_is_set() -> bool:

@@ -64,6 +64,7 @@ def _reached(pc: Pc, service: Service, subject: str, path: Path) -> Finding:
         return bad(subject, f"{path} is hidden from the service by {hidden} of the unit", _AGAIN)
     if not pc.path(path).exists():
         return bad(subject, f"{path} does not exist", _AGAIN)
+    # From the root on, because only the first folder that is closed says what hinders.
     for folder in reversed(path.parents):
         if not _mode(pc, folder) & stat.S_IXOTH:
             return bad(

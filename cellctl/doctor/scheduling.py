@@ -30,6 +30,7 @@ def scheduling_findings(pc: Pc, service: Service, cell: CellConfig | None) -> It
 
 
 def _priority(service: Service) -> Finding:
+    # Without a line in the unit the service may ask for no real-time priority at all.
     written, asked = service.last("LimitRTPRIO", "0"), GuardSettings().fifo_priority
     if written == "infinity" or (written.isdigit() and int(written) >= asked):
         return good("real-time priority", f"the unit allows {written}")
@@ -38,6 +39,8 @@ def _priority(service: Service) -> Finding:
 
 
 def _locked_memory(service: Service) -> Finding:
+    # 8 MiB is what systemd allows where a unit says nothing; the guard locks about 100 MB
+    # (docs/guard.md).
     if (written := service.last("LimitMEMLOCK", "8M")) == "infinity":
         return good("locked memory", "the unit allows it")
     remedy = "LimitMEMLOCK=infinity in a drop-in of the unit"

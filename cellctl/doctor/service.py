@@ -52,6 +52,8 @@ class Service:
 
 def installed_service(pc: Pc) -> Service | None:
     """The unit with its drop-ins; None when there is none."""
+    # systemd takes the unit below /etc in place of the packaged one, and reads drop-ins after it
+    # (man 5 systemd.unit).
     for unit in (UNIT, PACKAGED_UNIT):
         text = pc.read(unit)
         if text is None:

@@ -10,8 +10,10 @@ from cellctl.doctor.service import Service, hidden_by
 from cellctl.records.files.disk_space import LEAST_FREE_BYTES
 
 _WEEK_BYTES = 20 * LEAST_FREE_BYTES
-"""Some three hundred runs with their raw images."""
+"""Room for some three hundred runs with their raw images, at 0.15 GB each."""
 _FORGETS = {"tmpfs", "ramfs", "overlay"}
+"""File systems whose content does not outlive a restart: the first two are memory, the last one is
+the disk of a container or of a live system."""
 _FAR = {"nfs", "nfs4", "cifs", "smb3", "9p"}
 
 
@@ -41,14 +43,18 @@ def _is_of_the_unit(service: Service, folder: Path) -> bool:
 def _writable(pc: Pc, service: Service, folder: Path) -> Iterator[Finding]:
     account = pc.user(service.user)
     place = pc.path(folder)
-    if service.last("ProtectSystem") == "strict" and str(folder) not in " ".join(
-        service.settings.get("ReadWritePaths", ())
-    ):
+    if service.last("ProtectSystem") == "strict" and not _is_writable_in(service, folder):
         remedy = f"ReadWritePaths={folder} in a drop-in, or a folder below /var/lib/cellctl"
         yield bad("records", f"the unit lets the service write nothing in {folder}", remedy)
     elif account and (not place.exists() or place.stat().st_uid != account.pw_uid):
         remedy = f"sudo install -d -o {service.user} -g {service.groups[0]} {folder}"
         yield bad("records", f"{folder} is not there, or not {service.user}'s", remedy)
+
+
+def _is_writable_in(service: Service, folder: Path) -> bool:
+    written = " ".join(service.settings.get("ReadWritePaths", ())).split()
+    # "-" before a path: it may be missing; "+": below the service's root (man 5 systemd.exec).
+    return any(folder.is_relative_to(path.lstrip("-+")) for path in written)
 
 
 def _kind(pc: Pc, folder: Path) -> Iterator[Finding]:
@@ -69,6 +75,7 @@ def _file_system(mounts: str, folder: Path) -> str:
     for line in mounts.splitlines():
         _, place, kind, *_ = line.split()
         mounted = Path(place.replace("\\040", " "))
+        # Of two mounts on one place the later one hides the earlier one.
         if folder.is_relative_to(mounted) and len(mounted.parts) >= depth:
             found, depth = kind, len(mounted.parts)
     return found
