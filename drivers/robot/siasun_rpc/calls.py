@@ -12,8 +12,11 @@ from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import write_pose
 
 _AT_ONCE = False
-"""The reply is the number of the task and does not wait for its end."""
+"""The reply is the number of the task and does not wait for its end. A call that waited would hold
+its connection, and nobody could ask how far the task is."""
 _NO_BLEND = 0.0
+"""A blended motion ends as interrupted, like one that another client has pushed aside: only without
+blending does "finished" tell a good end (vendor's manual, API V2.9)."""
 _GAINS = (200.0, 25.0)
 """Proportional and differential figure of the controller's servo control, its own defaults."""
 

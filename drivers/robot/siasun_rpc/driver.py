@@ -174,6 +174,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             )
             try:
                 await motion.check_guard()
+                # From here on a setpoint may be on its way to the controller.
                 motion.over = False
                 end_s = self._config.stop_timeout_s
                 async with followed(stream, end_s, not_taken=SetpointRefused):
@@ -266,7 +267,8 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         if isinstance(error, MotionRejected) and motion.over:
             return
         self._latch = self._latch or NotRearmed(f"{self.name}: a motion ended early")
-        # Without a link there is nobody to tell; missing heartbeats stop the arm then.
+        # Without a link there is nobody to tell; missing heartbeats stop the arm then. Shielded,
+        # because a caller that is cancelled once more may give up waiting, but not the stop.
         if not motion.over and self._link.up:
             await asyncio.shield(asyncio.ensure_future(self.stop()))
 

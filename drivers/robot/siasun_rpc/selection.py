@@ -11,8 +11,9 @@ from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import read_pose
 
 MOST_LOAD_KG = 35.0
-"""Of any arm with this interface (vendor's manual)."""
+"""Greatest load of any arm with this interface (vendor's manual: ``set_load_data``, 0 to 35 kg)."""
 _AT_THE_FLANGE_M = 1e-6
+_AT_THE_FLANGE_RAD = 1e-6
 
 
 async def selection(link: RpcLink, euler: EulerOrder) -> PendantSelection:
@@ -37,6 +38,6 @@ def _load(answer: Value, flange_T_tool: RigidTransform | None) -> ArmLoad | None
     at_the_flange = (
         flange_T_tool is not None
         and float(np.linalg.norm(flange_T_tool.translation)) < _AT_THE_FLANGE_M
-        and float(flange_T_tool.rotation.magnitude()) < _AT_THE_FLANGE_M
+        and float(flange_T_tool.rotation.magnitude()) < _AT_THE_FLANGE_RAD
     )
     return ArmLoad(mass_kg, np.array(com_m) if at_the_flange else None)

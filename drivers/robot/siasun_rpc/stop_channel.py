@@ -13,7 +13,8 @@ from drivers.robot.siasun_rpc.config import SiasunRpcStopChannelConfig
 from drivers.robot.siasun_rpc.connections.blocking_line import BlockingLine
 
 WORDS = 32_767
-"""Stops are counted from 1 to here and then from 1 again: a word may have a sign."""
+"""Stops are counted from 1 to here and then from 1 again. The manual does not say whether a word
+register has a sign, and up to here both readings are the same number."""
 STOP = packed("stop", False)  # noqa: FBT003 - "block": nobody waits for the reply
 
 
@@ -57,6 +58,8 @@ class SiasunRpcStopChannel(StopChannel):
         try:
             for line in self._lines:
                 line.open(self._config.host, self._config.rpc_port, deadline_s)
+            # Not below the own count: a stop that was sent on the lost connection may reach the
+            # controller after this answer, and the next one needs a number that is still unused.
             self._stops = max(self._count_of_stops(deadline_s), self._stops)
         except OSError as error:
             self.close()

@@ -13,6 +13,8 @@ from cellctl.errors.link import ProtocolViolation
 MAX_MESSAGE_BYTES = 16_384
 """The longest reply of a known call has some hundred bytes; lists of errors are longer."""
 _MAX_DEPTH = 6
+"""Replies that are known have two levels, a structure and a list in it. Without a bound a damaged
+one would exhaust the stack of the interpreter."""
 _VERSION = 0x8001
 _SIZES = {2: 1, 3: 1, 4: 8, 6: 2, 8: 4, 10: 8}
 """Bytes of bool, byte, double, i16, i32, i64 by their number in the protocol."""

@@ -5,7 +5,10 @@ from collections.abc import Coroutine
 
 
 class BackgroundTasks:
-    """Keeps tasks from being forgotten before they end. What they raise is theirs to make known."""
+    """Holds tasks until they end, because the event loop itself only holds weak references to them.
+
+    What a task raises it must make known itself.
+    """
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[None]] = set()
@@ -24,5 +27,6 @@ class BackgroundTasks:
 
     def _forget(self, task: "asyncio.Task[None]") -> None:
         self._tasks.discard(task)
+        # Taken, so that the event loop does not report a fault that is known as one nobody saw.
         if not task.cancelled():
             task.exception()

@@ -59,6 +59,7 @@ class BlockingLine:
         left_s = deadline_s - now_s()
         if left_s <= 0.0 or not select.select([self.fileno()], [], [], left_s)[0]:
             raise TimeoutError
+        # What is there may be a part of a reply, and the read must not wait for the rest.
         self.block(blocking=False)
 
     def send(self, *requests: Request) -> None:

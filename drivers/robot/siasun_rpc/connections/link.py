@@ -19,6 +19,7 @@ from drivers.robot.siasun_rpc.watch import StateWatch
 STOP = request("stop", False)  # noqa: FBT003 - "block": the reply is not to wait for standstill
 VERSION = request("get_robot_version")
 BEATS_PER_DEADMAN = 4
+"""Heartbeats in the time after which the controller stops the arm: two in a row may be late."""
 RECONNECT_S = 0.3
 REPEAT_STOP_S = 0.3
 
@@ -56,6 +57,8 @@ class RpcLink:
         if self.up or self._reopening is not None:
             return
         await self._open()
+        # Only now: a first connection that fails is told to the caller and not tried again behind
+        # its back.
         self._wanted = True
 
     def _new_session(self) -> None:
@@ -72,6 +75,8 @@ class RpcLink:
         self._new_session()
         self.watch.follow(self._asking, self._frames)
         self._down = asyncio.get_running_loop().create_future()
+        # Before the first connection stands, because ``drop`` ignores the faults of a link that is
+        # not up, and one that breaks while the others are opened must end them all.
         self.up = True
         try:
             async with asyncio.timeout(config.connect_timeout_s):
@@ -154,7 +159,11 @@ class RpcLink:
         self._frames.close()
 
     async def renew_motion(self) -> None:
-        """Replace the motion connection by a new one; replies to the old one are not awaited."""
+        """Replace the motion connection by a new one; replies to the old one are not awaited.
+
+        The controller answers the calls of a connection in their order, so that the next motion
+        would wait behind those that it has not answered.
+        """
         self.motion.close()
         if not self.up:
             return
