@@ -145,7 +145,10 @@ class Robot(Device):
 
     @abstractmethod
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
-        """Joint motion to shape (6,) at a ratio (0, 1] of the rated speed."""
+        """Joint motion to shape (6,) at a ratio (0, 1] of the rated speed.
+
+        A ratio and not rad/s, because controllers take the speed of a joint move as a percentage.
+        """
 
     @abstractmethod
     async def move_linear(
@@ -155,7 +158,12 @@ class Robot(Device):
 
     @abstractmethod
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """A short, never blended move; the controller itself refuses more than its step limit."""
+        """A short, never blended move; more than the step limit of controller or driver is refused.
+
+        Contact is approached by steps, because the force is judged at standstill between them: a
+        step that has ended cannot run on, however late a stop would take effect, so that the way
+        beyond a contact is at most one step.
+        """
 
     @abstractmethod
     async def stop(self) -> None:

@@ -49,4 +49,7 @@ class StopChannel(BlockingDevice):
 
     @abstractmethod
     def poll(self) -> FlangeState | None:
-        """Read what has arrived without blocking; the newest report, or None."""
+        """Read what has arrived without blocking; the newest report, or None.
+
+        The guard calls it in the loop that judges every sample, which must never wait for a robot.
+        """

@@ -25,7 +25,10 @@ class Shape(ABC):
     @property
     @abstractmethod
     def radius_m(self) -> float:
-        """Of the ball about the origin that holds it."""
+        """Radius of a ball about the origin that holds the shape.
+
+        Comparing balls is so quick that only near pairs are measured by the collision library.
+        """
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +86,7 @@ class MeshShape(Shape):
     def geometry(self) -> Any:
         """The convex hull."""
         hull = self.surface.convex_hull
+        # FCL takes the faces as one row of numbers, each face with the count of its corners before.
         triangles = np.column_stack([np.full(len(hull.faces), 3), hull.faces])
         return fcl.Convex(np.array(hull.vertices), len(hull.faces), triangles.ravel())
 

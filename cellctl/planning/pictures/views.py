@@ -25,6 +25,7 @@ def three_views(scene: CellScene) -> bytes:
     """A PNG; fixtures grey, arms blue, stand-ins of arms orange, other taught poses as ghosts."""
     figure = Figure(figsize=(13.0, 4.6), layout="constrained")
     bodies = list(drawn_bodies(scene))
+    # The frame of a picture is that of what moves: a floor or a fence may be many times larger.
     moved = [body.mesh.bounds for body in bodies if body.solid.arm is not None]
     lower, upper = np.min(moved, axis=(0, 1)) - _ROOM_M, np.max(moved, axis=(0, 1)) + _ROOM_M
     for axes, view in zip(figure.subplots(1, 3), _VIEWS, strict=True):

@@ -27,14 +27,14 @@ class PlannedArm:
     """Shape (6,), at 100 %."""
     driver: type[Robot]
     settings: Any
-    """Of the driver, as it has checked them."""
+    """The settings of the driver as an instance of its ``Config``."""
 
     def link_frames(self, joints_rad: Array) -> Array:
         """``cell_T_link`` of base and all six links, shape (7, 4, 4), at joints of shape (6,)."""
         return self.cell_T_base.as_matrix() @ self.chain.link_frames(joints_rad)
 
     def base_T_flange(self, joints_rad: Array) -> RigidTransform:
-        """By the table, at joints of shape (6,)."""
+        """Pose of the flange by the D-H table, at joints of shape (6,)."""
         return self.chain.base_T_flange(joints_rad)
 
     def refusal(self, joints_rad: Array) -> str | None:

@@ -50,6 +50,7 @@ class CellScene:
             for solid in self.solids
             if solid.arm is None
         ]
+        # Of these frames only the base's is used below, which no joint moves: any joints will do.
         own = self.arms[robot].link_frames(np.zeros(6))
         for solid in self._of(robot):
             if solid.still:

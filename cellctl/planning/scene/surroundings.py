@@ -117,6 +117,7 @@ class Surroundings:
 
     def _distance_m(self, pair: int, result: fcl.DistanceResult) -> float:
         first, second = self._object(self._first[pair]), self._object(self._second[pair])
+        # FCL gives -1 for bodies that meet, which says nothing of how deep they are in each other.
         return max(0.0, float(fcl.distance(first, second, _WITH_POINTS, result)))
 
     def _place_m(self, pair: int, result: fcl.DistanceResult, *, touching: bool) -> Array:
@@ -150,6 +151,7 @@ def _pairs(
 ) -> list[tuple[int, int, float]]:
     """Indices of both bodies, over the moving ones and then the standing ones, and what has to stay
     free between them in m."""
+    # The base is added, because its bodies stand still and are not among the moving ones.
     links = sorted({solid.link for solid in moving} | {0})
     found = []
     for index, solid in enumerate(moving):
@@ -169,5 +171,8 @@ def _pairs(
 
 
 def _may_meet(link: int, other: int, links: Sequence[int]) -> bool:
-    """Two links of one arm that follow each other are joined and touch always."""
+    """Two links of one arm that follow each other are joined, so that their bodies always touch.
+
+    ``links`` are those that have bodies: where one between has none, its neighbours follow.
+    """
     return abs(links.index(link) - links.index(other)) > 1

@@ -35,7 +35,7 @@ class CheckedMove:
 
 
 def stated_moves(cell: CellConfig) -> Iterator[StatedMove]:
-    """Of all recipes, each once."""
+    """The moves of all recipes; one that several recipes share is stated once."""
     seen: set[tuple[str, bytes, bytes]] = set()
     for recipe in cell.recipes:
         for move in process_definition(recipe.process).moves(cell, recipe):

@@ -97,7 +97,10 @@ def _pairs(scene: CellScene) -> list[list[StatedMove]]:
 
 
 def _united(moves: Sequence[StatedMove]) -> StatedMove:
-    """The first move with the other arms wherever any of the moves allows."""
+    """The first move with the other arms wherever any of the moves allows.
+
+    One way serves both directions, so that it has to be free in each of them.
+    """
     others = {
         robot: tuple(place for move in moves for place in move.others.get(robot, ()))
         for robot in {name for move in moves for name in move.others}

@@ -60,6 +60,8 @@ def is_free_way(around: Surroundings, way_rad: Array, extra_m: float = 0.0) -> b
 
 
 def _looks(way_rad: Array) -> Array:
+    # Whether driver and zones allow a place is yes or no, without a distance that one could advance
+    # by; so it is asked at every degree, as drivers ask it for the way of a joint move.
     step_rad = np.radians(1.0)
     lines = [
         np.linspace(start, end, 2 + int(np.abs(end - start).max() / step_rad))

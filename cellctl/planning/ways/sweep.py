@@ -49,6 +49,7 @@ def _sweep_line(
     extra_m: float,
     worst: SweptGap | None,
 ) -> SweptGap:
+    # No point of the arm goes further than this on the whole line.
     way_m = float(np.abs(end_rad - start_rad) @ around.lever_m)
     share = 0.0
     while True:

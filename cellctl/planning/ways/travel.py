@@ -12,7 +12,10 @@ STOP_S = 0.8
 
 
 def travel_s(arm: PlannedArm, way_rad: Array) -> float:
-    """Through joints of shape (n, 6) at the arm's taught speed, with a stop at each of them."""
+    """Time from the first to the last of joints of shape (n, 6), with a stop at each of them.
+
+    At the speed that the cell file states for moves between taught poses.
+    """
     speed_rad_s = arm.rated_rad_s * arm.config.speed_percent / 100
     lines = [np.abs(end - start) / speed_rad_s for start, end in pairwise(way_rad)]
     return float(sum(float(line.max()) + STOP_S for line in lines))
