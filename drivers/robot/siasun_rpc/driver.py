@@ -123,8 +123,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """movel: straight move of the flange, ends at standstill. With a dh table, refused when the
-        arm cannot follow it."""
+        """movel, ends at standstill. With a dh table, refused when the arm cannot follow it."""
         self._bounds.pose(base_T_flange)
         speed_m_s = self._bounds.speed_mm_s(speed_m_s) * MM
         acceleration_m_s2 = self._bounds.acceleration_mm_s2(acceleration_m_s2) * MM
@@ -174,7 +173,6 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             )
             try:
                 await motion.check_guard()
-                # From here on a setpoint may be on its way to the controller.
                 motion.over = False
                 end_s = self._config.stop_timeout_s
                 async with followed(stream, end_s, not_taken=SetpointRefused):
