@@ -14,6 +14,7 @@ from cellctl.hmi.archive import ArchiveReader
 from cellctl.hmi.daemon_link import DaemonLink
 from cellctl.hmi.event_stream import Streams
 from cellctl.hmi.hub import Hub
+from cellctl.hmi.notifying.notifier import Notifier
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import RESPONSES, add_handlers
 from cellctl.hmi.rates import RateLimit
@@ -45,6 +46,7 @@ class Parts:
 def hmi_app(settings: PageSettings) -> ASGIApp:
     """The application; it follows the daemon while it is up."""
     hub = Hub()
+    notifier = Notifier(hub, settings.notify)
     people, sessions = People(settings.people, settings.tokens), Sessions(settings.idle_s)
     parts = Parts(
         hub=hub,
@@ -60,12 +62,16 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
 
     @asynccontextmanager
     async def following(_app: FastAPI) -> AsyncIterator[None]:
-        task = asyncio.create_task(parts.link.follow(), name="follow the daemon")
+        tasks = [
+            asyncio.create_task(parts.link.follow(), name="follow the daemon"),
+            asyncio.create_task(notifier.run(), name="tell what happens"),
+        ]
         try:
             yield
         finally:
-            task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
 
     # The pages that FastAPI makes of the API load scripts from elsewhere; its document stays.
     app = FastAPI(

@@ -4,6 +4,7 @@ import asyncio
 import json
 import socket
 import sys
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,8 @@ from cellctl import log
 from cellctl.errors import CellError
 from cellctl.errors.local import PageCannotServe
 from cellctl.hmi.app import hmi_app
+from cellctl.hmi.notifying.notifier import sender_of
+from cellctl.hmi.notifying.senders import NotTold
 from cellctl.hmi.people import secret_of
 from cellctl.hmi.settings import PageSettings, load_settings
 
@@ -57,6 +60,25 @@ def secret() -> None:
     if len(pin) < PIN_LEAST:
         raise typer.BadParameter(f"at least {PIN_LEAST} characters")
     typer.echo(secret_of(pin))
+
+
+@app.command("try-notify")
+def try_notify(
+    settings: Annotated[Path, typer.Option(help="TOML file; see docs/operator-page.md.")],
+) -> None:
+    """Tell every receiver of the settings once, and say which of them has it."""
+    message = {"event": "trial", "cell": "", "time": datetime.now(UTC).isoformat()}
+    missed = 0
+    for receiver in load_settings(settings).notify:
+        sender = sender_of(receiver)
+        try:
+            asyncio.run(sender.send(message))
+        except NotTold as error:
+            missed += 1
+            typer.echo(f"{sender.name}: not told, {error}")
+        else:
+            typer.echo(f"{sender.name}: told")
+    raise typer.Exit(1 if missed else 0)
 
 
 def run(settings: PageSettings) -> None:

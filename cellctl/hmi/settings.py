@@ -3,12 +3,14 @@
 import tomllib
 from datetime import date
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
+from urllib.parse import urlsplit
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from cellctl.api.local_socket.messages import Role
 from cellctl.errors.local import PageSettingsWrong
+from cellctl.hmi.notifying.events import Event
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,32}$")]
 LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
@@ -40,6 +42,30 @@ class Token(SettingsTable):
     """The last day on which it is accepted, UTC."""
 
 
+class Receiver(SettingsTable):
+    """Who is told what happens: a server by an HTTPS request, or a program that is started."""
+
+    url: str = ""
+    headers: dict[str, str] = Field(default_factory=dict)
+    """Of the request, such as ``Authorization``."""
+    program: tuple[str, ...] = ()
+    """Command and arguments, without a shell; the message comes on its input."""
+    on: Annotated[tuple[Event, ...], Field(min_length=1)] = tuple(Event)
+
+    @model_validator(mode="after")
+    def _is_one_of_both(self) -> Self:
+        if bool(self.url) == bool(self.program):
+            raise ValueError("give either url or program")
+        if self.url:
+            parts = urlsplit(self.url)
+            # What goes beyond this PC names parts and orders, and may carry a secret.
+            if parts.scheme != "https" and not (
+                parts.scheme == "http" and parts.hostname in LOOPBACK
+            ):
+                raise ValueError("url: https:// (http:// on this PC alone)")
+        return self
+
+
 class PageSettings(SettingsTable):
     """Everything the page's process needs to know."""
 
@@ -57,6 +83,7 @@ class PageSettings(SettingsTable):
     """A session that does nothing for this long only shows."""
     people: tuple[Person, ...] = ()
     tokens: tuple[Token, ...] = ()
+    notify: tuple[Receiver, ...] = ()
 
 
 def load_settings(path: Path) -> PageSettings:
