@@ -24,7 +24,11 @@ _FIRST, _SECOND = np.array([[0, 2, 2, 1, 2, 1], [1, 0, 0, 2, 0, 2]])
 
 def _turns() -> tuple[Array, Array, Array]:
     """The turn of each joint is the first, plus its cosine times the second, plus its sine times
-    the third; each of shape (6, 4, 4)."""
+    the third; each of shape (6, 4, 4).
+
+    Constants in place of a rotation for each joint, because the forward kinematics of every arm
+    are computed in every millisecond of its motion.
+    """
     each, fixed = np.arange(6), np.tile(np.eye(4), (6, 1, 1))
     cosine, sine = np.zeros((2, 6, 4, 4))
     fixed[each, _FIRST, _FIRST] = fixed[each, _SECOND, _SECOND] = 0.0

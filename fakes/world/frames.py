@@ -64,7 +64,7 @@ def distance(one: RigidTransform, other: RigidTransform) -> tuple[float, float]:
 
 
 def inverse_matrix(matrix: Array) -> Array:
-    """Of a pose, 4x4."""
+    """Inverse of a pose; both are 4x4 matrices."""
     inverted = np.eye(4)
     inverted[:3, :3] = matrix[:3, :3].T
     inverted[:3, 3] = -matrix[:3, :3].T @ matrix[:3, 3]
@@ -81,6 +81,7 @@ def matrix_distance(one: Array, other: Array) -> tuple[float, float]:
 
 def stream(seed: int, *names: str | int) -> np.random.Generator:
     """A random stream of its own for every thing that is drawn, so that draws stay independent."""
+    # Not ``hash``, which Python salts anew in every process: a seed has to reproduce its cell.
     keys = [name if isinstance(name, int) else crc32(name.encode()) for name in names]
     return np.random.default_rng(np.random.SeedSequence([seed, *keys]))
 

@@ -19,6 +19,7 @@ from fakes.world.truth import RobotTruth
 from fakes.world.wander import Wander, small_displacement
 
 STEP_ANGLE_MAX_RAD = np.deg2rad(0.5)
+"""docs/protocols/sjl-1.md, section 4: ``STEP`` is refused beyond this angle."""
 _STILL_M = 1e-9
 """A setpoint that is no farther away is the present pose; the metres of a step divide by it."""
 _JUMP_RAD = np.deg2rad(45.0)
@@ -48,6 +49,7 @@ class RobotArm:
         self._nominal = nominal_links(settings.chain_mm)
         self._limits = np.deg2rad(np.array(settings.limits_deg))
         self._rated = np.deg2rad(np.array(settings.rated_deg_s))
+        # A data sheet's repeatability is taken as three standard deviations of a coordinate.
         sigma = np.repeat(
             [settings.repeatability_mm * MM / 3, np.deg2rad(settings.repeatability_deg) / 3], 3
         )

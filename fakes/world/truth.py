@@ -25,6 +25,9 @@ from fakes.world.arm import Links, perturbed_links
 from fakes.world.frames import MM, Array, displacement, from_written, stream, stream_seed
 from fakes.world.scene import LensTruth, MonoTruth, StereoTruth
 
+_ASPECT_SPREAD = 5e-4
+"""Half width of the relative difference between the focal lengths along x and y; assumed."""
+
 
 @dataclass(frozen=True, slots=True)
 class RobotTruth:
@@ -75,7 +78,11 @@ class HardwareTruth:
 
 
 def draw(scenario: Scenario, seed: int) -> HardwareTruth:
-    """The devices of a hardware seed; the same seed gives the same devices, bit by bit."""
+    """The devices of a hardware seed; the same seed gives the same devices, bit by bit.
+
+    So the order of the draws of one device may not change either: the calibrations that are shipped
+    would be those of another cell (docs/decisions/0004).
+    """
     sensors, trackers = scenario.force_sensors, scenario.trackers
     return HardwareTruth(
         seed=seed,
@@ -179,7 +186,7 @@ def _stereo(optics: Optics, rig: StereoRig, rng: np.random.Generator) -> StereoT
 
 def _lens(optics: Optics, rng: np.random.Generator) -> LensTruth:
     focal = optics.focal_px + rng.uniform(-1, 1) * optics.focal_spread_px
-    aspect = 1 + rng.uniform(-1, 1) * 5e-4
+    aspect = 1 + rng.uniform(-1, 1) * _ASPECT_SPREAD
     centre = np.array(optics.centre_px) + rng.uniform(-1, 1, 2) * optics.centre_spread_px
     spread = rng.uniform(-1, 1, 5) * np.array(optics.distortion_spread)
     k1, k2, p1, p2, k3 = (np.array(optics.distortion) + spread).tolist()

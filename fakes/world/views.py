@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 _FACING_MIN = 0.6
+"""Cosine of the greatest angle between a face's normal and the line of sight, 53 degrees."""
 _NEAREST_M = 0.15
 _SLOPE_MAX = 0.5
 """Half the field of view of a stereo head is about 0.34 times the distance."""

@@ -60,6 +60,8 @@ def connector_as_made(
         )
         for (contact, place), offset, bright in zip(nominal.items(), offsets, shine, strict=True)
     )
+    # All specks are drawn one after the other from one stream, so that another speck leaves the
+    # first ones where they were.
     specks = tuple(_speck(drawing, rng) for rng in [stream(seed, name, "dirt")] * dirt)
     return SceneConnector(
         name, kind, camera_T_connector, drawing, contacts, housing_m, tip, specks, seed

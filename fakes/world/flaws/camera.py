@@ -13,7 +13,8 @@ from fakes.world.scene import Exposure
 _MOUNT_LEVER_M = 0.5
 """Warmth on one side of a mount turns the camera as if the part, at this distance, moved."""
 _SWAY_RATE = 2 * np.pi * 12.0
-"""Of an arm on its joints, rad/s."""
+"""Rate (rad/s) at which an arm sways on its joints: 12 Hz, as the hum of the force sensor, which
+comes from the same swaying (``fakes.imperfections``, assumed)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,9 +24,9 @@ class CameraFlaws:
     camera: str
     seed: int
     duration_s: float
-    """Of an exposure."""
+    """How long an exposure takes."""
     sway_rad: float
-    """Of the line of sight, root mean square of each axis."""
+    """Root mean square of the angle by which the line of sight sways about each axis."""
     sway_phase: Array
     gain_ratio: float
     """Largest relative difference of brightness."""
@@ -52,7 +53,8 @@ class CameraFlaws:
         angle = _SWAY_RATE * time_s + self.sway_phase
         peak = self.sway_rad * np.sqrt(2)
         sway_x, sway_y = (peak * np.sin(angle)).tolist()
-        # Evenly spread over the way during the exposure, which is short against a period.
+        # Evenly spread over the way during the exposure, which is short against a period: the
+        # standard deviation of such a spread is its length divided by the root of 12.
         way = peak * np.abs(np.cos(angle)) * _SWAY_RATE * self.duration_s
         smear_x, smear_y = (way / np.sqrt(12)).tolist()
         gain = 1.0

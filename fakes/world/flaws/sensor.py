@@ -40,6 +40,8 @@ class SensorFlaws:
         signs = np.where(rng.random(6) < 0.5, -1.0, 1.0)
         self._bend = nonlinearity * _CUBIC * signs * self._range
         self._limit = _STICKING * self._range
+        # Beyond the last of the frictions each branch is off by the sum of all limits, one to
+        # either side: hence the half.
         self._share = np.full(3, 0.5 * hysteresis / float(_STICKING.sum()))
         self._follow = 1.0 - math.exp(-STEP_S / lag_s) if lag_s > 0 else 1.0
         self._load: Array | None = None

@@ -21,6 +21,8 @@ class Transmission:
         of the second joint while the arm is stretched out level."""
         self._phase = rng.uniform(0, 2 * np.pi, 6)
         self._ripple = ripple_rad
+        # Shared between upper arm and forearm by their lengths, so that both together are
+        # ``sag_rad`` where the arm is stretched out.
         self._upper = sag_rad * chain.a2 / (chain.a2 + chain.d4)
         self._fore = sag_rad * chain.d4 / (chain.a2 + chain.d4)
 

@@ -46,6 +46,8 @@ class ContactPoints:
         directions = com_T_body.rotation.apply(self.directions)
         jacobian = np.hstack([directions, np.cross(places, directions)])
         stiffness = self.stiffness_n_m
+        # Rows that carry are closed together and damp as one spring of their sum; of a wedge only
+        # one face pushes at a time, and damps by its own stiffness.
         together = stiffness.copy()
         carrying = np.ones(len(stiffness), dtype=bool)
         carrying[self.wedges] = False

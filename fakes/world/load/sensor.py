@@ -26,6 +26,7 @@ class ForceReading:
         self._sigma = np.repeat([settings.noise_n, settings.noise_nm], 3)
         rng = stream(seed, "force vibration", *keys)
         share = settings.noise_nm / settings.noise_n if settings.noise_n > 0 else 0.0
+        # ``vibration_n`` is a root mean square, and the peak of a sine is higher by the root of 2.
         self._hum = settings.vibration_n * np.array([1, 1, 1, share, share, share]) * np.sqrt(2)
         self._hum_rate = 2 * np.pi * settings.vibration_hz
         self._hum_phase = rng.uniform(0, 2 * np.pi, 6)
@@ -40,6 +41,8 @@ class ForceReading:
         return np.clip(reading, -self._range, self._range)
 
     def _noise(self, time_s: float) -> Array:
+        # Drawn in blocks with a stream for each, so that the noise of a millisecond does not depend
+        # on how often and when somebody has asked before.
         block, place = divmod(max(0, int(time_s * _RATE_HZ)), _BLOCK)
         if block not in self._blocks:
             rng = stream(self._seed, "force noise", *self._keys, block)

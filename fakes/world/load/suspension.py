@@ -65,7 +65,7 @@ class Suspension:
 
     @property
     def spring_wrench(self) -> Array:
-        """Force and torque of the payload on the sensor without gravity, about the CoM."""
+        """Load of the payload on the sensor without gravity, about the centre of mass (N, N·m)."""
         return np.asarray(self.stiffness * self.state[:6] + self.damping * self.state[6:])
 
     def energy(self, gaps: Array) -> float:

@@ -15,7 +15,7 @@ from fakes.world.frames import Array
 from fakes.world.peg.attitude import Pose6
 from fakes.world.peg.contact import Contact
 from fakes.world.peg.fit import Fit
-from fakes.world.peg.friction import Bristles, rub
+from fakes.world.peg.friction import SHARE, Bristles, rub
 from fakes.world.peg.slots import Slots, among_contacts
 
 _ROUNDS: Final = 12
@@ -172,7 +172,8 @@ class _Load:
         if rubbed.slips:
             self._derivative(along, -friction * contact.stiffness_n_m, pressed)
         else:
-            stiffness = stiffness or 0.7 * contact.stiffness_n_m
+            # A bristle that is not bent yet has no force to divide by its length.
+            stiffness = stiffness or SHARE * contact.stiffness_n_m
             self._derivative(along, stiffness, along)
         self._derivative(across, stiffness, across)
 

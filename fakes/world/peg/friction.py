@@ -16,7 +16,11 @@ Bristles = dict[int, Vector3]
 
 @dataclass(slots=True)
 class Rub:
-    """Friction of one contact after the return to Coulomb's limit."""
+    """Friction of one contact in a step of time.
+
+    Its bristle is bent by the motion first, and then brought back to the length that Coulomb's
+    limit allows.
+    """
 
     deflection: Vector3
     force_n: float

@@ -38,7 +38,7 @@ class HeldPeg:
         self.failures = 0
         """Steps in which the peg crept because no equilibrium was found."""
         self.steps = 0
-        """In contact, all of them."""
+        """All steps in contact."""
 
     @property
     def pose(self) -> Pose6:
@@ -52,7 +52,8 @@ class HeldPeg:
 
     @property
     def unsolved_share(self) -> float:
-        """Of the steps in contact: how much of what it tells rests on no equilibrium."""
+        """Share of the steps in contact for which no equilibrium was found: their forces are not to
+        be relied on."""
         return self.failures / max(self.steps, 1)
 
     @property

@@ -19,6 +19,8 @@ _HALF: Final = math.sqrt(0.5)
 _RIM: Final = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _FLAT: Final = 1e-3
 """Tilt (rad) from which the lowest point of the rim carries about half of what it carries later."""
+# First number of each kind of slot, with as many after it as the kind has places; ``edges`` has
+# some between. They must differ, because friction finds the bristle of a contact by its number.
 _FACE, _RIM_ON_FACE, _RINGS = 0, 6, 14
 _RIM_ON_WALL, _FLOOR, _OUTER, _PANEL, _KEYS, _KEY_PLAY, _BURR, _WEDGED = (
     17, 19, 23, 24, 28, 29, 30, 31,
