@@ -39,6 +39,8 @@ def plate_pose(scenario: BenchScenario, cell_T_fixed_camera: RigidTransform) -> 
 def plate_dots(scenario: BenchScenario, camera_T_plate: RigidTransform) -> SceneMarks:
     """The dots as a camera sees them from its side; from below in a mirror."""
     plate = scenario.plate
+    # z of whatever a scene shows points towards the camera: seen from below the strip is turned
+    # over, and its dots are mirrored so that they stay where they are in the cell.
     from_below = camera_T_plate.rotation.as_matrix()[2, 2] > 0
     side = -1.0 if from_below else 1.0
     dots = tuple(
@@ -50,7 +52,7 @@ def plate_dots(scenario: BenchScenario, camera_T_plate: RigidTransform) -> Scene
 
 
 def plate_size_m(scenario: BenchScenario) -> tuple[float, float]:
-    """Of the field with dots."""
+    """Width and height of the field with dots."""
     dots = np.array(scenario.plate.dots_mm)
     width, height = 2 * np.abs(dots).max(axis=0) + scenario.plate.dot_diameter_mm
     return float(width * MM), float(height * MM)

@@ -17,6 +17,8 @@ Place = Literal["tray", "gripper", "socket", "left", "absent"]
 _HOLDING = 0.02
 """Ratio of the travel before the part at which the jaws hold it."""
 _FREE = 0.3
+"""Ratio of the travel by which the jaws have opened from the part when they let it go. Much more
+than ``_HOLDING``, so that jaws that rest on the part cannot grip and let go in turn."""
 
 
 @dataclass(slots=True)

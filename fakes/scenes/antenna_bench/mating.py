@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.world.connector.contact_lot import MatingPair, Mount
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
-from fakes.world.connector.insertion import PlugPlace, Response, outside, respond
+from fakes.world.connector.insertion import PinState, PlugPlace, Response, outside, respond
 from fakes.world.frames import Array
 
 EVERY_MS: Final = 4
@@ -17,11 +17,14 @@ KEPT_M: Final = 1.5e-3
 """Depth from which the socket keeps a plug that is let go."""
 _MATED_PLUG_T_SOCKET: Final = SOCKET_T_MATED_PLUG.inv().as_matrix()
 _NEAR_M: Final = 4e-3
+"""Farther aside than this, the plug is not over its socket."""
 _ABOVE_M: Final = 0.1e-3
+"""Higher than this over the socket, nothing can touch."""
 _RELAXATION: Final = 0.15
 """Part of the way to equilibrium along the axis in each evaluation; fifteen standing pins are five
 times as stiff as the arm, and more would swing."""
 _STILL_M: Final = 1e-8
+"""A shorter way between two evaluations does not turn the friction of the contact springs round."""
 
 
 class PlugAtSocket:
@@ -60,7 +63,8 @@ class PlugAtSocket:
         beside = max(abs(x), abs(y)) > _NEAR_M or -z < -_ABOVE_M
         if beside:
             self.depth_m = self._commanded_m = -np.inf
-            self.states[self.states < 3] = 0
+            # Away from the socket every pin is outside again, except one that has collapsed.
+            self.states[self.states < PinState.COLLAPSED] = PinState.OUTSIDE
             self.response = None
             return np.zeros(6)
         self._follow(-z)

@@ -179,6 +179,8 @@ def placing_offsets_m(pair: MatingPair, socket_T_plug: RigidTransform) -> Array:
     The rest is what single pins and holes are off their own places, which nobody can place away.
     """
     x, y = pair.holes_m.T
+    # The displacement of a pin by x, y and a small turn, as in ``insertion``: linear, so that one
+    # least-squares solution finds all three.
     ones, zeros = np.ones_like(x), np.zeros_like(x)
     design = np.stack(
         [np.column_stack([ones, zeros, -y]), np.column_stack([zeros, ones, x])], axis=1

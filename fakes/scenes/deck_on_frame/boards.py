@@ -11,6 +11,7 @@ from fakes.world.scene import SceneDisc
 _EDGE_PX = 40.0
 """Room for lens distortion and for lenses that differ from the nominal one."""
 _DRAWS = 1000
+"""Views that are tried before the scenario's board is taken for one that fits into no picture."""
 
 
 def board_discs(board: TargetBoard) -> tuple[SceneDisc, ...]:

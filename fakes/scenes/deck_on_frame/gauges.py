@@ -32,4 +32,6 @@ def pin_offsets(parts: PartsTruth, frame_T_deck: RigidTransform) -> dict[str, di
 
 def largest_gauge_mm(opening_mm: float) -> float:
     """Largest gauge not thicker than what both holes leave open, 0 when nothing passes."""
+    # The small addition, because an opening of a whole number of steps may come out a rounding
+    # error below it.
     return max(0.0, round(floor(opening_mm / GAUGE_STEP_MM + 1e-9) * GAUGE_STEP_MM, 2))

@@ -95,7 +95,7 @@ class TargetBoard(Section):
     disc_diameter_mm: float
     pitch_mm: Pair
     height_mm: float
-    """Above the mating face of the frame."""
+    """Height of its face above the mating face of the frame."""
     placement: Spread
 
 
