@@ -10,6 +10,7 @@ from fakes.faults import TRACKER_FAULTS, FaultBoard
 from fakes.world.frames import MM
 from fakes.world.targets import SeenTarget
 
+# docs/protocols/target-server.md.
 _LINE_MAX = 65_536
 _FRAMES_MAX = 200
 

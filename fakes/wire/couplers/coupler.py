@@ -14,6 +14,7 @@ from fakes.wire.couplers.modbus_pdu import ExceptionCode, Request
 from fakes.wire.named_faults import NamedFaults
 
 WATCHDOG_REGISTER: Final = 0x1120
+"""That of Beckhoff's couplers (docs/protocols/modbus-coupler.md, Watchdog)."""
 COUPLER_FAULTS: Final[dict[str, str]] = {
     "silent": "the request is carried out and never answered",
     "half_open": "the connection stands, but nothing more is read or written on it",

@@ -12,8 +12,10 @@ from typing import Protocol
 HEADER = struct.Struct(">HHHB")
 """Transaction, protocol (0), length of what follows the length field, unit."""
 MAX_LENGTH = 254
+"""A PDU of at most 253 bytes, and the unit."""
 READ_COILS, READ_INPUTS, READ_REGISTERS, WRITE_COIL, WRITE_COILS = 1, 2, 3, 5, 15
-_MAX_BITS, _MAX_WRITTEN = 2000, 1968
+_MAX_BITS, _MAX_REGISTERS, _MAX_WRITTEN = 2000, 125, 1968
+"""Most coils or inputs, registers, and written coils of a request (sections 6.1, 6.3, 6.11)."""
 _ON, _OFF = 0xFF00, 0x0000
 
 
@@ -79,7 +81,7 @@ def _answered(function: int, data: bytes, image: Image) -> bytes:
         return bytes([len(packed)]) + packed
     if function == READ_REGISTERS:
         start, count = _pair(data)
-        _check(1 <= count <= 125)
+        _check(1 <= count <= _MAX_REGISTERS)
         values = image.registers(start, count)
         return bytes([2 * count]) + struct.pack(f">{count}H", *values)
     if function == WRITE_COIL:

@@ -13,6 +13,7 @@ from fakes.wire.duco.codec import CallError, Fields, read_call, write_reply, wri
 from fakes.wire.duco.logic import Client, DucoLogic
 
 _TICK_S = 0.004
+"""How often heartbeats, safety and the end of a motion are looked at."""
 _MOTIONS = {"movej", "movel", "servoj_pose"}
 
 

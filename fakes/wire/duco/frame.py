@@ -12,6 +12,8 @@ def pack(logic: DucoLogic) -> bytes:
     """One frame of what the controller knows now; what this fake does not know is zero."""
     frame = bytearray(SIZE)
     wrong = logic.faults.active
+    # Joints and pose stand there twice, as they are (0, 368) and as the controller expects them
+    # (112, 464): this arm follows its own controller without a lag.
     struct.pack_into("<6f", frame, 0, *logic.joints())
     struct.pack_into("<6f", frame, 112, *logic.joints())
     struct.pack_into("<6f", frame, 368, *logic.pose())

@@ -5,7 +5,7 @@ from enum import IntEnum
 
 FIRST_TASK = 100
 _KEPT = 256
-"""States of so many tasks are remembered."""
+"""How many tasks are remembered; a stream makes up to a hundred of them in a second."""
 
 
 class TaskEnd(IntEnum):
@@ -24,7 +24,7 @@ class TaskEnd(IntEnum):
 
 @dataclass(slots=True)
 class Task:
-    """One of them."""
+    """One motion or setpoint."""
 
     number: int
     state: int
@@ -60,6 +60,6 @@ class Tasks:
         return self._current is not None
 
     def state(self, number: int) -> int:
-        """Of a task; one that never was is idle."""
+        """The state of a task; one that never was, or is forgotten, is idle."""
         task = self._tasks.get(number)
         return TaskEnd.IDLE if task is None else task.state

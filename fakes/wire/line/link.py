@@ -11,8 +11,10 @@ from pymodbus.pdu import ModbusPDU
 from fakes.wire.line.register_map import HEARTBEAT_ADDRESS, INPUT_COUNT, Report, read_report
 
 HEARTBEAT_PERIOD_S = 0.25
+"""Twice as often as the cell asks for at least (docs/plc-integration.md, Heartbeats)."""
 POLL_PERIOD_S = 0.05
 CELL_SILENT_S = 3.0
+"""Time without another heartbeat of the cell after which this PLC gives it up."""
 
 
 class CellLost(RuntimeError):

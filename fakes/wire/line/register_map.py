@@ -1,4 +1,4 @@
-"""The register map as the line's programmer read it: docs/register-map.md, version 4."""
+"""The register map as the line's programmer read it: docs/register-map.md, version 6."""
 
 import struct
 from collections.abc import Sequence
@@ -104,9 +104,12 @@ def read_report(block: Sequence[int]) -> Report:
     if block[1] != MAP_VERSION:
         raise MapMismatch(f"map_version is {block[1]}, this program knows {MAP_VERSION}")
     number = struct.unpack(">f", struct.pack(">HH", *block[69:71]))[0]
+    # In a wrong order of words or bytes most fields would still look possible; of these three the
+    # values are known beforehand.
     patterns = (_u32(block, 67), round(number, 3), _text(block, 71, 3))
     if patterns != (0x12345678, 123.456, "ABCDEF"):
         raise MapMismatch(f"test patterns read {patterns}: other word order?")
+    # Equal when the block is of one piece (docs/register-map.md).
     if block[0] != block[124]:
         raise MapMismatch("the block is torn")
     errors = [_i32(block, 31 + 2 * index) for index in range(6)]

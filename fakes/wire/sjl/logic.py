@@ -18,6 +18,9 @@ Outbox = list[tuple[Channel, Record]]
 
 _FIELDS = {"MOVJ": 10, "MOVL": 11, "STEP": 10, "REARM": 3, "STREAM": 8, "SET": 9, "FINISH": 3}
 _EMERGENCY_LATENCY_S = 0.02
+"""An emergency stop and drives without power act past the job program, without its dead time."""
+_STEP_RISE_PER_S = 10.0
+"""A ``STEP`` names no acceleration: it reaches its speed in a tenth of a second."""
 
 
 @dataclass(slots=True)
@@ -55,7 +58,7 @@ class Controller:
     """What is offered for streamed motion; None for a job program that cannot."""
     booted_s: float = 0.0
     contact_closed: Callable[[], bool] = lambda: True
-    """Of the PC's digital output in the permit loop."""
+    """Whether the PC's digital output in the permit loop is closed."""
     links: dict[Channel, Link] = field(default_factory=dict)
     lost: set[Channel] = field(default_factory=set)
     """Channels that were open and have not come back."""
@@ -192,7 +195,7 @@ class Controller:
             target = from_written(values[:6])
             if word == "STEP":
                 self.arm.check_step(time_s, target)
-            acceleration = values[7] if word == "MOVL" else 10 * values[6]
+            acceleration = values[7] if word == "MOVL" else _STEP_RISE_PER_S * values[6]
             self.arm.start_linear(time_s, target, values[6] * MM, acceleration * MM)
         self._motion = _Motion(seq, time_s, stream=stream)
 
@@ -202,8 +205,7 @@ class Controller:
         return Stream(self.arm, self.offer, limits, time_s)
 
     def _streamed(self, fields: Record, session: int) -> None:
-        """SET or FINISH; of another session, or without a stream that goes on, they are passed
-        over."""
+        """SET or FINISH; ignored when of another session, or without a stream that goes on."""
         motion = self._motion
         if motion is None or motion.stream is None or not motion.streaming:
             return

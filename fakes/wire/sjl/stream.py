@@ -10,6 +10,7 @@ from fakes.world.frames import MM, Array, matrix_distance, written_matrix
 from fakes.world.robot import RefusedMotionError, RobotArm
 
 _ROUNDING_MM, _ROUNDING_DEG = 0.0005, 0.0005
+"""More than rounding to the four decimals of a record can add to the difference of two poses."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,8 @@
 """The fake box on CAN: a command byte in, three messages of two floats a sample out.
 
-The layout is that of the M8123B2 as one public project reads it (reference, section 6): command
-id 0x80 with 02 start, 01 one sample, 00 stop; replies 0x291 Fx Fy, 0x292 Fz Mx, 0x293 My Mz as
-little-endian float32. Neither number nor check.
+The layout is that of the M8123B2 as one public project reads it, and has not been compared with a
+device: command id 0x80 with 02 start, 01 one sample, 00 stop; replies 0x291 Fx Fy, 0x292 Fz Mx,
+0x293 My Mz as little-endian float32. There is neither a number nor a check.
 """
 
 import struct

@@ -12,6 +12,9 @@ from fakes.wire.sri.settings import DataFormat, SriSettings
 from fakes.wire.sri.transducer import Transducer, Vector
 
 _FALSE_HEADER = b"\xaa\x55\x00\x1b"
+"""The beginning of a frame with the length of six floats, a number and a sum (27 bytes)."""
+_LONGEST_FILTER = 16
+"""Weights of the mean that SGDM takes at most."""
 
 
 class SriCore:
@@ -29,7 +32,7 @@ class SriCore:
         self.next_number = 0
         self._held: Vector | None = None
         self._points = 0
-        self._history: deque[Vector] = deque(maxlen=16)
+        self._history: deque[Vector] = deque(maxlen=_LONGEST_FILTER)
 
     def frame(self, times_s: Sequence[float], data_format: DataFormat | None = None) -> bytes:
         """The next frame with one point for each time. Advances the package number."""

@@ -2,7 +2,7 @@
 
 AA 55, length (u16 BE, counts everything after itself), package number (u16 BE), data, check.
 The check covers the data only: their sum modulo 256, or their CRC-32 (zlib variant, little-endian;
-the variant is an assumption of the reference, no device has confirmed it).
+the variant is assumed, and no device has confirmed it).
 """
 
 import struct

@@ -11,6 +11,8 @@ class PtyPort:
 
     def __init__(self, on_bytes: Callable[[bytes], None]) -> None:
         self._on_bytes = on_bytes
+        # The far end stays open here too: without anybody on it, reading this end fails with EIO,
+        # and the line would end with its first client.
         self._master, self._slave = os.openpty()
         tty.setraw(self._slave)
         os.set_blocking(self._master, False)

@@ -8,6 +8,7 @@ from fakes.wire.sri.pty import PtyPort
 from fakes.wire.sri.session import SriSession
 
 _BITS_PER_BYTE = 10
+"""Eight bits of data, a start bit and a stop bit."""
 
 
 class SerialLink(Link):

@@ -15,6 +15,7 @@ _FORMAT = re.compile(
     r"(?:;\(WMA:(?P<weights>[0-9.]+(?:,[0-9.]+){0,15})\))?"
 )
 _RATE_LIMIT_HZ = 2000.0
+"""Highest rate that users are known to have set; the maker states no limit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,6 +30,7 @@ _CROSS_TALK = np.array(
 FACTORY_MATRIX = np.diag([_FORCE_PER_MV_V] * 3 + [_MOMENT_PER_MV_V] * 3) @ _CROSS_TALK
 """Rows Fx … Mz in N and N·m, columns the six bridges in mV/V."""
 
+# A converter of 16 bits over 5 V behind the amplifier; signals are in mV for each V of excitation.
 _COUNTS_PER_MV_V = 65535.0 / 5.0 / 1000.0 * GAIN * EXCITATION_V
 _LOWEST_MV_V = -ZERO_COUNTS / _COUNTS_PER_MV_V
 _HIGHEST_MV_V = (65535.0 - ZERO_COUNTS) / _COUNTS_PER_MV_V
