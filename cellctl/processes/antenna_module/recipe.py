@@ -36,7 +36,8 @@ class Insertion(Section):
     """Touch and contact springs may come earlier than drawn by so many standard deviations of the
     heights of plug and socket."""
     pull_n: Annotated[float, Field(gt=0, le=20)] = 2.0
-    """Test after the seat: less than the least force that holds a good plug."""
+    """Test after the seat: less than the least force that holds a good plug. Micro-D contacts to
+    MIL-DTL-83513 hold with 0.2 N at least, fifteen of them with 3 N."""
     pull_travel_mm: Annotated[float, Field(gt=0, le=1)] = 0.2
     """A plug that comes so far before it resists is not held."""
     seat_tolerance_mm: Annotated[float, Field(gt=0, le=1)] = 0.15
@@ -59,7 +60,8 @@ class AntennaRecipe(Recipe):
     scheme: Literal["difference", "golden", "absolute"] = "difference"
     """How the plug's place is found: docs/plugging.md."""
     worst_contact_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
-    """The predicted 99th percentile of the worst contact's offset may be this."""
+    """The predicted 99th percentile of the worst contact's offset may be this: the tolerance of the
+    fit that the paper states."""
     base_T_tray_plug: Place
     """The plug of a module on the tray."""
     base_T_socket: Place

@@ -48,7 +48,8 @@ class PlugTolerance:
     """When a plan is refused."""
 
     worst_contact_m: float = 50e-6
-    """What the predicted 99th percentile of the worst contact may be."""
+    """What the predicted 99th percentile of the worst contact may be: the tolerance of the fit that
+    the paper states."""
     max_age_s: float = 60.0
     """Of a look."""
 

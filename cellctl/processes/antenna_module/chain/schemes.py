@@ -160,6 +160,7 @@ def constant_errors(scheme: Scheme, cell: PlugCell, distance_m: float) -> Mappin
     ``distance_m`` is from the socket to the taught slot; 0 without a correction.
     """
     share = scheme.kinematic_share + _KINEMATIC_PER_M * distance_m
+    # Each of the two cameras has drifted by itself.
     drift_m = cell.cameras.drift_m * np.sqrt(2)
     if scheme.arm_drifts:
         drift_m = float(np.hypot(drift_m, cell.arm.drift_m))

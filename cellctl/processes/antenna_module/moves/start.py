@@ -21,7 +21,7 @@ async def move_to_start(run: PluggingRun) -> GripperEmpty:
     """Gripper empty and open, arm at home. Raises ``ModuleInGripper``."""
     run.say("to the beginning")
     await leave_stations(run.cell)
-    # Only behind the refusal of a gripper that holds something, which would fall.
+    # Only after ``leave_stations`` has refused a gripper that holds something, which would fall.
     await run.cell.gripper.open()
     return GripperEmpty(run)
 

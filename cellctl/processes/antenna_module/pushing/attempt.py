@@ -23,6 +23,7 @@ from cellctl.processes.antenna_module.pushing.way import InsertionWay
 
 _POLL_S = 0.01
 _LATE_S = 1.0
+"""A sensor that is silent for so long beyond the end of a reading counts as lost."""
 _LEAST_MOMENT_N_M = 0.1
 
 

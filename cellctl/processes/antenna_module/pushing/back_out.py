@@ -13,8 +13,8 @@ _log = log.get(__name__)
 SPEED_M_S = 1e-3
 ACCELERATION_M_S2 = 0.01
 PULL_RATIO = 1.7
-"""Contacts need up to so many times the force of mating to come apart (measured on micro
-connectors, docs/plugging.md)."""
+"""Contacts need up to so many times the force of mating to come apart: measured on connectors to
+MIL-DTL-55302G by their makers, 1.07 N against 0.62 N."""
 SIDE_N = 10.0
 MOMENT_N_M = 0.5
 

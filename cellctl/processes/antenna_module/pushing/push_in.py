@@ -19,11 +19,13 @@ from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, Trip
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 
 ACCELERATION_M_S2 = 0.02
+"""So low that gripper and module, 3 kg, make less than a tenth of a newton of it."""
 FINE_M = 0.02e-3
 """Length of a move near the seat: what holds the plug is so stiff that a tenth of a millimetre more
 would be 50 N."""
 _AXIAL = 2
 _FEWEST_SAMPLES = 20
+"""As many as a curve of a file must have; fewer show no features."""
 
 
 async def push_in(attempt: PushAttempt, step_m: float) -> float:

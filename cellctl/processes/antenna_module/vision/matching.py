@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cellctl.geometry.pose import Array
 
 _PAIRS = 6
+_MOST_STARTS = 200
 _LENGTH_TOLERANCE = 0.04
 """Of the distance of two contacts: a wrong scale is judged later, and has to be found for that."""
 
@@ -76,7 +77,7 @@ def _starts(drawing: Array, spots: Array, reach: float) -> list[tuple[float, Arr
     order = np.argsort(-np.array(counts), kind="stable")
     # Dirt makes many spots, and their pairs grow with the square. The true start is among the
     # first by its count, since dirt agrees with a drawing in few places.
-    return [starts[index] for index in order[:200]]
+    return [starts[index] for index in order[:_MOST_STARTS]]
 
 
 def _pairs(drawing: Array) -> list[tuple[int, int]]:

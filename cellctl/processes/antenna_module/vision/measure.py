@@ -40,9 +40,15 @@ from cellctl.vision.camera.single_camera import SingleCamera
 SIGMA_LIMIT_M = 3e-6
 YAW_LIMIT_RAD = float(np.radians(0.02))
 _LEAST_SHARE = 0.6
+"""Share of the contacts that must be found and clean for the connector to count as this one; the
+others may then be named as missing, bent or hidden."""
 _SCALE_LIMIT = 5.0
+"""Deviation of the pattern's scale from that of its plane, in standard deviations of both."""
 _OTHER_SIZES = (2.0, 0.5)
+"""Diameters over the drawn one at which contacts are looked for where none of that size are: the
+fault then says that it is another connector, and not that there is none."""
 _SURPLUS = 2
+"""Contacts more than drawn from which it is another connector."""
 _CONTACT_REACH = 0.35
 """Of the least distance of two contacts: bent ones count, the next one does not."""
 _MARK_REACH = 0.25

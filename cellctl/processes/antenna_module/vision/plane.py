@@ -53,6 +53,7 @@ class MeasuringPlane:
 
     def px_by_m(self, point_m: Array) -> Array:
         """Derivative of the raw pixel by the place in the plane, shape (2, 2), px/m."""
+        # Central differences over less than a pixel, in which every lens is as good as linear.
         step_m = 1e-5
         probe = point_m + step_m * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         pixels = self.to_px(probe)

@@ -136,6 +136,7 @@ def _fit(angles: Array, seen: Array) -> tuple[Array, Array, float, Array]:
     matrix, known = np.concatenate([of_x, of_y]), np.concatenate([seen[:, 0], seen[:, 1]])
     solution = np.linalg.lstsq(matrix, known, rcond=None)[0]
     residuals = known - matrix @ solution
+    # Four unknowns: x and y of the axis, and of the offset.
     spare = max(1, len(known) - 4)
     rms = float(np.sqrt(residuals @ residuals / spare))
     return solution[:2], solution[2:], rms, np.asarray(residuals.reshape(2, -1).T)

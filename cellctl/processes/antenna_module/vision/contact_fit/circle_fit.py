@@ -13,7 +13,10 @@ from cellctl.processes.antenna_module.vision.contact_fit.rim_edges import DIRECT
 
 _ROUNDS = 12
 _TUKEY = 4.7
-"""Residual in standard deviations from which an edge does not count at all."""
+"""Residual in standard deviations from which an edge does not count at all; the usual figure, which
+costs 5 % of the information where all errors are normal."""
+_SIGMA_OVER_MEDIAN = 1.4826
+"""Standard deviation of normal errors over the median of their absolute values."""
 _LEAST_PX = 0.06
 """Residuals are not expected to be smaller than this: on a perfect rim chance would decide which
 edges are left."""
@@ -110,4 +113,4 @@ def _scatter(rest: Array, weight: Array, px_m: float) -> float:
     """Robust standard deviation of the residuals that still count."""
     counted = rest[weight > 0]
     middle = np.median(counted)
-    return max(1.4826 * float(np.median(np.abs(counted - middle))), _LEAST_PX * px_m)
+    return max(_SIGMA_OVER_MEDIAN * float(np.median(np.abs(counted - middle))), _LEAST_PX * px_m)

@@ -23,12 +23,19 @@ _REACH = 1.55
 """Half side of the pixels that are used, of the radius: not as far as the next contact."""
 _ROUNDS = 8
 _HUBER = 2.0
+"""In standard deviations of a pixel; beyond it one weighs less, as those of dirt do."""
 _BLUR_PX = 1.0
 _BLUR_SIGMA = 0.7
+"""Blur that is expected, and its standard deviation, px."""
 _RADIUS_SIGMA = 0.04
+"""Relative standard deviation of the radius that the edges have shown, as between the contacts of
+one image (``vision.pattern``)."""
 _STEPS: Array = np.array([0.02, 0.02, 0.02, 0.02])
+"""Steps of the numerical derivatives by the shape, px."""
 _SHAPE = 4
 """Parameters of the shape, in px: x, y, radius, blur. Brightness follows linearly."""
+_PIXEL_SIGMA = 0.29
+"""Standard deviation of an even spread over the width of a pixel, 1 / sqrt(12)."""
 _MOST_BLUR_PX = 5.0
 _LEAST_BLUR_PX = 0.35
 
@@ -161,7 +168,8 @@ def _basis(pixels: _Pixels, shape: Array) -> Array:
     """Brightness of each surface at every pixel for the level one, shape (pixels, 12)."""
     x, y = pixels.x - shape[0], pixels.y - shape[1]
     distance = np.hypot(x, y)
-    blur = np.hypot(shape[3], 0.29)  # with the pixel's own width
+    # A pixel averages over its own width, which blurs the picture once more.
+    blur = np.hypot(shape[3], _PIXEL_SIGMA)
     tip = _inside(shape[2] - distance, blur)
     flat_x, flat_y = x - pixels.flat_shift[0], y - pixels.flat_shift[1]
     flat = _inside(pixels.flat_radius * shape[2] - np.hypot(flat_x, flat_y), blur)
