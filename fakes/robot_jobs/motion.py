@@ -14,6 +14,7 @@ from fakes.world.robot import RefusedMotionError, RobotArm
 ACCELERATION_MAX_MM_S2 = 1000.0
 """What ``ACC = 100`` means on this controller."""
 _EMERGENCY_LATENCY_S = 0.02
+"""An emergency stop and drives without power act past the job, without the dead time of a stop."""
 
 
 class Motions:

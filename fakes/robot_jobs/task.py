@@ -14,6 +14,8 @@ from fakes.robot_jobs.sockets import JobSocket, Route
 
 _POLL_S = 0.002
 _CATCH_UP_S = 0.01
+"""Lateness beyond this is not made up for: after a long pause of the computer a job would otherwise
+run through many statements at once, which no controller does."""
 _WITHOUT_EFFECT = {"LABEL", "STOP_BG", "SETFRAME", "PAUSE"}
 """Words that change nothing that is modelled."""
 _WAITING = {"DELAY", "WAIT", "MOVJ", "MOVL", "TCPCREATE", "TCPRECV", "TCPCLOSE"}
