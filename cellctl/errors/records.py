@@ -183,3 +183,13 @@ class PdfNotMade(RecordsError):
         "report as HTML needs none of them."
     )
     reaction = Reaction.WARN
+
+
+class ExportFolderTaken(RecordsError):
+    """A run is not exported among the files of another one."""
+
+    number = 824
+    text = "The folder holds the export of another run"
+    cause = "The same --out was given for two runs; files of both would lie under one report."
+    remedy = "Give a folder of its own, or none: `cellctl runs export RUN` makes run-RUN."
+    reaction = Reaction.WARN

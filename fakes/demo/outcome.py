@@ -1,6 +1,7 @@
 """How a demonstration ended: the cell's own result beside the truth of the fake world."""
 
 import json
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass, replace
@@ -40,6 +41,8 @@ def collect(
     if run:
         for arguments in demo.measure(evidence):
             _cellctl(folder, "runs", *arguments)
+        # Of an earlier demonstration in this folder, whose run stays in the store.
+        shutil.rmtree(folder / "report", ignore_errors=True)
         _cellctl(folder, "runs", "export", str(run), "--out", str(folder / "report"))
         record = json.loads((folder / "report" / "run.json").read_text(encoding="utf-8"))
         text = (folder / "report" / "recipe.json").read_text(encoding="utf-8")

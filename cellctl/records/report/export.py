@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from cellctl.errors.records import RecordNotWritten, ValueRefused
+from cellctl.errors.records import ExportFolderTaken, RecordNotWritten, ValueRefused
 from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entered.notes import notes_of
 from cellctl.records.entries import RunRecord
@@ -34,9 +34,11 @@ def export_run(
 
     The folder gets ``report.html``, ``run.json`` and every file of the run under its name; with
     ``single_file`` the pictures are inside the report. ``pages`` is what the process of the run
-    adds to the report. Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten``.
+    adds to the report. Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten``, and
+    ``ExportFolderTaken`` before anything is written.
     """
     record = store.run(number)
+    _require_own(folder, record)
     addresses: dict[str, str] = {}
     for artefact in record.artefacts:
         # Names come from the record of a process: one with ``..`` would be written outside of the
@@ -102,6 +104,19 @@ def document(record: RunRecord) -> Mapping[str, Any]:
     whole = fields.pop("head") | fields | {"part_verdict": part_verdict(record)}
     plain: dict[str, Any] = json.loads(json.dumps(whole, default=_plain))
     return plain
+
+
+def _require_own(folder: Path, record: RunRecord) -> None:
+    """A folder may take the same run again, but not beside the files of another one."""
+    try:
+        known = json.loads((folder / RECORD).read_bytes())
+        found = (known["number"], known["started"])
+    except FileNotFoundError:
+        return
+    except (OSError, ValueError, KeyError, TypeError):
+        found = ("?", "")
+    if found != (record.head.number, record.head.started.isoformat()):
+        raise ExportFolderTaken(f"{folder} has run {found[0]}, not run {record.head.number}")
 
 
 def _safe(name: str) -> PurePosixPath:

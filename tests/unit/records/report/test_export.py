@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import ArtefactDamaged, ValueRefused
+from cellctl.errors.records import ArtefactDamaged, ExportFolderTaken, ValueRefused
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.figures import Limit, figure
@@ -65,6 +65,23 @@ def test_a_run_whose_process_is_not_installed_has_a_whole_report(exported: Path)
     local = [address for address in page.addresses if not address.startswith("#")]
     assert all((exported / address).is_file() for address in local)
     assert len([a for a in local if a.endswith(".png")]) == 8
+
+
+def test_a_folder_takes_no_second_run(store: RunStore, tmp_path: Path) -> None:
+    first, second = good_run(store), start(store)
+    export_run(store, first, tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.glob("*") if path.is_file()}
+    with pytest.raises(ExportFolderTaken, match=f"has run {first}, not run {second}"):
+        export_run(store, second, tmp_path)
+    assert {path: path.read_bytes() for path in before} == before
+    export_run(store, first, tmp_path)  # the same run again, for example after a gauge
+
+
+def test_a_folder_with_another_run_json_is_left_alone(store: RunStore, tmp_path: Path) -> None:
+    (tmp_path / "run.json").write_text("[1, 2]", encoding="utf-8")
+    with pytest.raises(ExportFolderTaken):
+        export_run(store, start(store), tmp_path)
+    assert (tmp_path / "run.json").read_text(encoding="utf-8") == "[1, 2]"
 
 
 def test_the_last_of_several_attempts_is_shown(store: RunStore, tmp_path: Path) -> None:
