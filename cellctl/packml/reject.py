@@ -37,9 +37,9 @@ class RejectCode(IntEnum):
 
 _TEXT = {
     RejectCode.NONE: "not refused",
-    RejectCode.MODE_UNDEFINED: "no such mode",
+    RejectCode.MODE_UNDEFINED: "no such mode: not 1 to 31",
     RejectCode.COMMAND_UNDEFINED: "no such command",
-    RejectCode.MODE_NOT_CONFIGURED: "this cell does not have the mode",
+    RejectCode.MODE_NOT_CONFIGURED: "this cell does not have the mode; others may",
     RejectCode.MODE_CHANGE_NOT_ALLOWED: "mode changes only in Stopped, Idle or Aborted",
     RejectCode.COMMAND_NOT_ALLOWED: "command not allowed in this state",
     RejectCode.STATE_NOT_IN_MODE: "the command leads to a state that this mode does not have",

@@ -38,7 +38,7 @@ class ProgressBoard:
 
     def leave_step(self) -> None:
         """No step is under way any more; what was measured stays to be seen."""
-        self.update(step=0, step_label="", contact=False)
+        self.update(step=0, step_label="", contact=False, iteration=0)
 
     def reset(self) -> None:
         """Back to nothing, at the start of a run."""

@@ -105,7 +105,11 @@ class StepRunner:
             if step.restart is not Restart.NO_WAY_BACK:
                 await obey_hold(self.safe_point, hold=self._wants_hold(step))
             self.board.update(
-                step=step.number, step_label=step.label, contact=step.contact, message=""
+                step=step.number,
+                step_label=step.label,
+                contact=step.contact,
+                iteration=0,
+                message="",
             )
             # On the disk before the step moves anything: after a crash the record names the step in
             # which it happened.

@@ -61,7 +61,7 @@ class Reporter:
         calibrations = await asyncio.to_thread(self._calibrations)
         last_run, records = await self._from_store()
         unit, machine = self._unit, self._unit.machine
-        shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts)
+        shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.shown_result, unit.parts)
         live = self._view.snapshot(shown)
         trips = [guard.trip for guard in self._cell.guards.values() if guard.trip is not None]
         alive = self._arbiter.line_alive

@@ -23,4 +23,4 @@ class StatusPublisher:
     def publish(self) -> None:
         """Show what is going on now."""
         unit = self._unit
-        self._show(unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts))
+        self._show(unit.view.snapshot(unit.jobs.shown, unit.jobs.shown_result, unit.parts))

@@ -42,25 +42,40 @@ class JobRunner:
     def __init__(self, time_limits: TimeLimits) -> None:
         self._limits = time_limits
         self._job: Job | None = None
-        self._shown: Job | EarlierRun | None = None
+        self._newest: Job | EarlierRun | None = None
+        self._before: tuple[Job | EarlierRun | None, Result] = None, Result.NONE
         self._closing: asyncio.Task[None] | None = None
         self._resting = asyncio.Event()
         self._resting.set()
-        self._finished = self._given_up = False
+        self._begun = self._finished = self._given_up = False
         self.result = Result.NONE
-        """Of the run that is shown; NONE while it is open."""
+        """Of the newest job; NONE while it is open."""
 
     @property
     def shown(self) -> Job | EarlierRun | None:
-        """The present job, else the last one, else the last run before this start."""
-        return self._shown
+        """The present job, else the last one, else the last run before this start.
+
+        In Starting it is the run before until the record of the new one is open.
+        """
+        return self._run[0]
+
+    @property
+    def shown_result(self) -> Result:
+        """Of the run that is shown; NONE while it is open."""
+        return self._run[1]
+
+    @property
+    def _run(self) -> tuple[Job | EarlierRun | None, Result]:
+        newest = self._newest
+        unrecorded = newest is not None and not (newest.run_number or self._begun)
+        return self._before if unrecorded else (newest, self.result)
 
     def recall(self, head: RunHead) -> None:
         """Show the last run before this start, until there is another one.
 
         A PLC that was waiting for the end of a run when the daemon died reads it here.
         """
-        self._shown = EarlierRun(head.recipe_id, head.serial, head.number)
+        self._newest = EarlierRun(head.recipe_id, head.serial, head.number)
         self.result = Result.NONE if head.result is None else _TO_THE_LINE[RunResult(head.result)]
 
     @property
@@ -91,10 +106,15 @@ class JobRunner:
         """Do what the job does in Starting; ``RecordSilent`` while the last record is open."""
         if self._closing is not None:
             raise RecordSilent("the record of the run before is still being closed")
-        self._job = self._shown = job
-        self._finished, self._given_up, self.result = False, False, Result.NONE
+        self._before = self._run
+        self._job = self._newest = job
+        self._begun = self._finished = self._given_up = False
+        self.result = Result.NONE
         with self._at_work():
             await job.start()
+            # From here on a job without a run of its own, such as a procedure that opens it later,
+            # is shown all the same.
+            self._begun = True
 
     async def execute(self) -> None:
         """Do what the job does in Execute; ``Unexpected`` when none was started."""

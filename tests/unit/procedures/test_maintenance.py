@@ -64,7 +64,7 @@ async def test_a_result_that_passed_is_kept(rig: ProcedureRig, procedure: list[o
     known = await rig.archive.do(RunStore.calibrations)
     assert [entry.id for entry in known] == [stored.id]
     (who, what, detail), (_, ended, end) = await rig.audit()
-    assert (who, what, detail["item"]) == ("OP-3", "calibration stored", "head_1")
+    assert (who, what, detail["item"]) == ("line", "calibration stored", "head_1")
     assert (ended, end["outcome"]) == ("procedure ended", "good")
     (head,) = await rig.archive.do(RunStore.runs)
     assert (head.mode, head.result, head.recipe_id) == ("maintenance", "good", 101)

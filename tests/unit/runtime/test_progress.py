@@ -13,9 +13,10 @@ def test_observers_are_told_of_every_change() -> None:
     assert board.current.step == 40
     assert (board.current.iteration, board.current.message) == (2, "measuring")
     board.leave_step()
-    assert (board.current.step, board.current.step_label, board.current.iteration) == (0, "", 2)
+    assert (board.current.step, board.current.step_label, board.current.iteration) == (0, "", 0)
+    assert board.current.message, "what was told last stays to be seen"
     board.reset()
-    assert board.current.iteration == 0
+    assert board.current.message == ""
     assert len(told) == 4
 
 

@@ -64,7 +64,7 @@ class Page:
 
     def snapshot(self) -> dict[str, Any]:
         unit = self._rig.unit
-        status = unit.view.snapshot(unit.jobs.shown, unit.jobs.result, unit.parts)
+        status = unit.view.snapshot(unit.jobs.shown, unit.jobs.shown_result, unit.parts)
         parsed: dict[str, Any] = json.loads(as_line(self.view.snapshot(status)))
         return parsed
 

@@ -182,6 +182,15 @@ async def test_a_frame_that_moved_during_a_hold_is_found_where_it_is(rig: Daemon
     assert max(pin_offsets_mm(record)) < 0.05
 
 
+async def test_the_loop_has_a_number_only_while_it_lasts(rig: DaemonRig) -> None:
+    told: list[tuple[int, int]] = []
+    rig.unit.board.observers.append(lambda now: told.append((now.step, now.iteration)))
+    await rig.started()
+    await rig.to(State.COMPLETED)
+    assert {step for step, iteration in told if iteration} == {40}
+    assert rig.shown().iteration == 0
+
+
 async def in_contact(rig: DaemonRig) -> int:
     rig.contact.may_end.clear()
     seq = await rig.started()
