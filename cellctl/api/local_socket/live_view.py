@@ -6,7 +6,7 @@ No number is NaN: a value that is missing is null.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from cellctl.cell.devices import Cell
@@ -16,6 +16,7 @@ from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
 from cellctl.fault_catalogue import known_fault
+from cellctl.packml.state import State
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.unit import UnitController
@@ -23,6 +24,9 @@ from cellctl.runtime.unit import UnitController
 Object = dict[str, Any]
 SLOW_PERIOD_S = 0.5
 """Of what costs more to ask: links of devices and what is permitted."""
+PRESSES_N = 10.0
+"""Above what the zero of a sensor may drift by, below every force of a mating."""
+_STOPPED = frozenset({State.STOPPED, State.ABORTED})
 _POSE = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
 _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N·m"), ("My", "N·m"), ("Mz", "N·m"))
 
@@ -125,16 +129,28 @@ class LiveView:
         sample = guard.newest()
         # A wrench with the part's weight still in it is no contact force: better none than that.
         weighed = sample is not None and guard.gravity_compensated
-        wrench = sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
+        wrench: list[float] = (
+            sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
+        )
         return {
             "sensor": name,
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
             "compensated": weighed,
             "limit_n": number(status.force_limit_n),
+            "presses_n": _pressing_n(status.state, wrench),
             "trip": "" if guard.trip is None else str(guard.trip),
             "wrench": _limited(_WRENCH, wrench),
             "peaks": [number(value) for value in status.force_peaks],
         }
+
+
+def _pressing_n(state: State, wrench: Sequence[float]) -> float | None:
+    """What an arm that was stopped presses with, N; None where it moves or hardly presses.
+
+    Only where nothing moves by itself, but a Reset may: there somebody has to know before.
+    """
+    force_n = math.hypot(*wrench[:3])
+    return force_n if state in _STOPPED and force_n >= PRESSES_N else None
 
 
 def number(value: float) -> float | None:

@@ -42,6 +42,8 @@ class ForceReport(StrictModel):
     compensated: bool
     """Otherwise the weight is still in it, and no wrench is shown."""
     limit_n: float | None
+    presses_n: float | None = None
+    """In Stopped and Aborted, where an arm presses; None where none does."""
     wrench: tuple[AxisReport, ...]
 
 

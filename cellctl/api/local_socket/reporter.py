@@ -165,5 +165,6 @@ def _force(force: Mapping[str, Any]) -> ForceReport:
         age_s=force["age_s"],
         compensated=force["compensated"],
         limit_n=force["limit_n"],
+        presses_n=force["presses_n"],
         wrench=_axes(force["wrench"]),
     )

@@ -129,6 +129,7 @@ def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None
 
 def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wait: bool) -> None:
     """Give the command and wait; interrupting the wait does not end the run."""
+    known = {(alarm.number, alarm.since) for alarm in client.status().alarms}
     client.command(request)
     steps = isinstance(request, StartCommand) and request.single_step
     # "Taken" only means that the command is being executed. Starting may still fail, and the
@@ -139,6 +140,12 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
         goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
         report = _arrived(client.settled(_ENDED, timeout_s=None), goal)
     _tell(report)
+    new = [alarm for alarm in report.alarms if (alarm.number, alarm.since) not in known]
+    for alarm in new:
+        typer.echo(f"alarm {alarm.text}")
+    # An alarm that comes again while it is active has the time of its first one.
+    if older := [f"F{alarm.number:03d}" for alarm in report.alarms if alarm not in new]:
+        typer.echo(f"not yet acknowledged: {', '.join(older)}; see `cellctl alarms`")
     if report.state == "HELD":
         typer.echo(
             "held before the next step: `cellctl unhold` carries it out, `cellctl stop` ends it all"
@@ -172,4 +179,9 @@ def _arrived(report: StatusReport, goal: Collection[str]) -> StatusReport:
 
 
 def _tell(report: StatusReport) -> None:
+    # Loaded when the command has been given: an Abort waits for no screen.
+    from cellctl.cli.operator.status_screen import pressing
+
     typer.echo(f"{report.state.lower()}, mode {report.mode.lower()}")
+    for text in pressing(report):
+        typer.echo(f"an arm presses: {text}")

@@ -26,7 +26,6 @@ _COLOURS = {
     "COMPLETED": "green",
 }
 _NEXT = {
-    "ABORTED": "remove the cause of the fault, then `cellctl clear`",
     "STOPPED": "`cellctl reset`: robots are released, and one that stands in the station lifts off",
     "COMPLETED": "take the part out, then `cellctl reset`",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
@@ -82,6 +81,7 @@ def _rows(report: StatusReport) -> list[tuple[str, Text]]:
         ("mode", Text(report.mode.capitalize())),
         ("control", Text(_CONTROL[report.control])),
         ("step", Text(_step(report))),
+        *(("pressing", Text(text, style="bold red")) for text in pressing(report)),
         ("next", Text(_next(report))),
         ("permitted", Text(", ".join(n for n, why in report.permitted.items() if not why) or "–")),
         *_measured(report),
@@ -90,6 +90,16 @@ def _rows(report: StatusReport) -> list[tuple[str, Text]]:
         ("links", _links(report)),
     ]
     return [*rows, ("records", _well(report.records))] if report.records else rows
+
+
+def pressing(report: StatusReport) -> tuple[str, ...]:
+    """For each sensor whose arm presses: the force, and what has to be done before Reset."""
+    return tuple(
+        f"{force.presses_n:.1f} N at {force.sensor}. Before `cellctl reset`, which lifts off: "
+        "fasten the part and take it out of the gripper, or see that it is loose"
+        for force in report.forces
+        if force.presses_n is not None
+    )
 
 
 def _step(report: StatusReport) -> str:
@@ -102,6 +112,9 @@ def _next(report: StatusReport) -> str:
     """What an operator does now, in words."""
     if report.state != report.state_requested:
         return "wait"
+    if report.state == "ABORTED":
+        cause = "remove the cause of the fault" if report.faults else "look why it was aborted"
+        return f"{cause}, then `cellctl clear`"
     if report.state == "IDLE":
         refused = report.permitted.get(_BEGINS.get(report.mode, ""), "")
         return f"Start is refused: {refused}" if refused else _NEXT_IN_IDLE[report.mode]

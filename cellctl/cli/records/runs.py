@@ -22,6 +22,8 @@ from cellctl.records.entered.said_by import BY, ENTERED, GAUGE, gauge_entries, m
 from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.outcome import GOOD_ENDS, outcome
+from cellctl.records.report.acceptance.faults import fault_box
+from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.run_list import listed_runs
@@ -95,8 +97,10 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
         return
     console = Console()
     console.print(_table([record.head], wide=console.width >= WIDE))
-    if record.head.fault:
-        console.print(record.head.fault, style="red", markup=False)
+    if ended := fault_box(record, during(record, audit)):
+        # Also a run that a command has ended: by whom, and in which step.
+        where = f"step {ended.step}" if record.phases else ended.step
+        console.print(f"{ended.text}; {where}", style="red", markup=False)
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]

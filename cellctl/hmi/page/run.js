@@ -62,6 +62,7 @@ function state(s) {
     h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, s.step.label, s.pass || "—") : t("no_step")),
     h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, s.step.text) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
+    ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
     h("p", { id: "next" }, t(`next_${s.state}`))];
 }
 

@@ -16,7 +16,7 @@ from cellctl.api.local_socket.messages import (
     StatusRequest,
     Taken,
 )
-from cellctl.api.local_socket.report import StatusReport
+from cellctl.api.local_socket.report import FaultReport, StatusReport
 from cellctl.api.local_socket.server import LocalServer
 from cellctl.api.local_socket.socket_file import SocketFile
 
@@ -67,6 +67,8 @@ class Agreeable:
     asked: list[Request] = field(default_factory=list)
     refusal: Refused | None = None
     leads_to: dict[str, str] = field(default_factory=lambda: dict(_LEADS_TO))
+    comes_with: dict[str, tuple[FaultReport, ...]] = field(default_factory=dict)
+    """Alarms that a command leads to."""
     on_its_way_to: str = ""
     """Another state than it shows, where it never arrives."""
 
@@ -80,6 +82,7 @@ class Agreeable:
         if self.refusal is not None:
             return self.refusal
         state = self.leads_to.get(request.request, self.shows["state"])
+        self.shows["alarms"] = self.comes_with.get(request.request, self.shows["alarms"])
         self.shows |= {"state": state, "state_requested": self.on_its_way_to or state}
         return Taken(state=state)
 

@@ -1,5 +1,6 @@
 """Writes down what the steps of one run find out."""
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -40,6 +41,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     LOOP,
     MATING,
     MEASURED_FROM,
+    PEAK_FORCE,
 )
 from cellctl.processes.deck_to_frame.record.mating_record import (
     plan_record,
@@ -49,7 +51,7 @@ from cellctl.processes.deck_to_frame.record.mating_record import (
 from cellctl.processes.deck_to_frame.record.sources import exposures, measured_from, raw_images
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
-from cellctl.records.figures import Limit, split_document
+from cellctl.records.figures import Limit, figure, split_document
 from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.run_recorder import RunRecorder
@@ -165,6 +167,11 @@ class DeckRecorder:
             return (float("nan"),) * 6
         wrenches = np.concatenate([curve.wrench for curve in self.curves])
         return tuple(float(value) for value in np.abs(wrenches).max(axis=0))
+
+    async def peak_of_a_cut_contact(self, limit_n: float) -> None:
+        """How hard a contact has pressed that came to no result, which would say it."""
+        if math.isfinite(peak_n := self.force_peaks()[2]):
+            await self.recorder.add(figure(PEAK_FORCE, peak_n, "N", limit=Limit(upper=limit_n)))
 
     async def force_curves(self) -> None:
         """Keep the curve of every attempt, also of one that failed."""

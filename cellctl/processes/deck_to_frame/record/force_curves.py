@@ -29,6 +29,7 @@ async def curves_kept(run: AssemblyRun) -> AsyncIterator[Callable[[MatingProgres
     except BaseException as reason:
         try:
             await _keep(run)
+            await run.recorder.peak_of_a_cut_contact(run.recipe.mating.limit_force_n)
         except CellError as second:
             reason.add_note(f"force curve not kept: {second}")
             _log.error("force curve not kept", fault=str(second))

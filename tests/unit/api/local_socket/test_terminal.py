@@ -4,9 +4,10 @@ import os
 import pwd
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
-from cellctl.api.local_socket.live_view import LiveView
+from cellctl.api.local_socket.live_view import PRESSES_N, LiveView
 from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
     ModeCommand,
@@ -31,6 +32,7 @@ from cellctl.errors.link import LinkLost, StaleData
 from cellctl.errors.local import MessageMalformed
 from cellctl.errors.records import StoreUnavailable
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
@@ -237,6 +239,26 @@ async def test_the_status_has_forces_and_what_is_permitted(
     assert force.compensated
     assert [axis.axis for axis in force.wrench] == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
     assert report.data_dir == str(rig.archive.path)
+
+
+async def test_an_arm_that_presses_is_said_where_nothing_moves(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    guard = rig.bench.cell.guard
+    guard.raw = np.tile([0.0, 12.0, -32.0, 0.0, 0.0, 0.0], (len(guard.raw), 1))
+    (force,) = (await operator.status()).forces
+    wrench = [axis.value or 0.0 for axis in force.wrench[:3]]
+    assert force.presses_n == pytest.approx(np.linalg.norm(wrench))
+    assert force.presses_n is not None
+    assert force.presses_n > PRESSES_N
+    await rig.unit.machine.command(Command.ABORT)
+    await rig.to(State.ABORTED)
+    assert (await operator.status()).forces[0].presses_n is not None
+    guard.gravity_compensated = False
+    assert (await operator.status()).forces[0].presses_n is None, "with the weight it says nothing"
+    guard.gravity_compensated = True
+    await rig.idle()
+    assert (await operator.status()).forces[0].presses_n is None, "Idle: Reset has lifted off"
 
 
 async def test_an_expired_calibration_is_called_so(rig: DaemonRig, operator: Operator) -> None:

@@ -60,6 +60,10 @@ ALARM = FaultReport(
     remedy="Look.",
     since=datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC),
 )
+EARLIER = FaultReport(number=742, text="F742 SAT-1 was made", cause="It was.", remedy="Look.")
+PRESSING = ForceReport(
+    sensor="force", age_s=0.001, compensated=True, limit_n=50.0, presses_n=34.5, wrench=()
+)
 FAULT = FaultReport(number=202, text="F202 lost: aux_1", cause="Cable.", remedy="Find out why.")
 
 
@@ -151,6 +155,25 @@ def test_a_run_step_by_step_holds_where_it_should(daemon: Agreeable) -> None:
         done = cellctl("start", "--serial", "S", "--single-step", *wait)
         assert done.exit_code == 0, done.output
         assert "`cellctl unhold` carries it out" in done.output
+
+
+def test_alarms_of_a_start_are_told(daemon: Agreeable) -> None:
+    older = ALARM
+    daemon.shows["alarms"] = (older,)
+    daemon.comes_with["start"] = (older, EARLIER)
+    said = cellctl("start", "--serial", "S").output
+    assert f"alarm {EARLIER.text}" in said
+    assert older.text not in said
+    assert "not yet acknowledged: F501; see `cellctl alarms`" in said
+
+
+def test_an_arm_that_presses_is_told_with_what_to_do(daemon: Agreeable) -> None:
+    daemon.shows["forces"] = (PRESSING,)
+    for name in ("abort", "clear"):
+        said = cellctl(name).output
+        assert "an arm presses: 34.5 N at force. Before `cellctl reset`" in said
+    daemon.shows["forces"] = ()
+    assert "presses" not in cellctl("abort").output
 
 
 def test_a_dry_run_ends_as_one(daemon: Agreeable) -> None:
@@ -326,7 +349,10 @@ def test_the_screen_says_what_matters() -> None:
 @pytest.mark.parametrize(
     ("shows", "words"),
     [
-        ({"state": "ABORTED"}, "`cellctl clear`"),
+        ({"state": "ABORTED"}, "look why it was aborted, then `cellctl clear`"),
+        ({"state": "ABORTED", "faults": (FAULT,)}, "remove the cause of the fault, then"),
+        ({"state": "IDLE", "mode": "MAINTENANCE"}, "`cellctl procedure NUMBER`"),
+        ({"state": "IDLE", "mode": "MANUAL"}, "in Manual nothing is started"),
         ({"state": "STOPPED"}, "`cellctl reset`"),
         ({"state": "IDLE", "permitted": {"start": ""}}, "`cellctl start --serial SERIAL`"),
         ({"state": "IDLE", "permitted": {"start": "a calibration"}}, "refused: a calibration"),

@@ -144,3 +144,17 @@ def test_a_list_in_80_columns_cuts_nothing(
         assert f"{store.run(dry).head.started:%Y-%m-%d %H:%M}" in listed
         assert "done, no part" in listed
     assert "PROCEDURE-10801" in runner.invoke(app, ["list", "--data-dir", folder]).stdout
+
+
+def test_a_run_that_a_command_ended_shows_by_whom_and_where(
+    runner: CliRunner, folder: str, store: RunStore
+) -> None:
+    store.audit("terminal:lin", "start", {"serial": "SAT-0044"})
+    run = start(store, "SAT-0044")
+    store.begin_phase(run, 50, "mate")
+    store.audit("terminal:wei", "abort", {})
+    store.close_run(run, RunResult.ABORTED)
+    shown = runner.invoke(app, ["show", str(run), "--data-dir", folder]).stdout
+    said = " ".join(shown.split())
+    assert "Ended by the command abort, by terminal:wei, " in said
+    assert "; step 50, mate" in said

@@ -3,6 +3,7 @@
 import asyncio
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cellctl.errors.calibration import CalibrationNotStored
@@ -22,6 +23,7 @@ from cellctl.records.parts import mate_serial
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
+from tests.unit.processes.deck_to_frame.rig import curve
 
 LIMIT_FORCE_N = 50.0
 GOOD_RUN = [
@@ -218,6 +220,7 @@ async def test_a_run_that_is_cut_short(
     assert record.head.result == result
     assert record.seal is not None
     assert any(a.name == "force-1.mcap" for a in record.artefacts), "the curve came in before"
+    assert record.value("peak_force") == pytest.approx(np.abs(curve().wrench[:, 2]).max())
     assert rig.shown().run_result.name.lower() == result
     assert rig.shown().cycle_counter == 0
     await rig.idle()
