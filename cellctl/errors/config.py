@@ -63,6 +63,15 @@ class FileInvalid(ConfigError):
     remedy = "See the detail for the place in the file."
 
 
+class OutputNotWritten(ConfigError):
+    """A command cannot write the file that it was asked for."""
+
+    number = 107
+    text = "File cannot be written"
+    cause = "No such folder, no permission, or a full disk."
+    remedy = "Name another file, or make the folder; see the detail."
+
+
 class PlanningError(ConfigError):
     """What is planned does not fit the cell; nothing is written then."""
 
@@ -137,3 +146,12 @@ class NoFreeWay(PlanningError):
     text = "No free way was found"
     cause = "The gaps are narrower than the margins, or the search was not long enough."
     remedy = "Look at the model with `cellctl plan show`; search longer; move what is in the way."
+
+
+class NoMovesStated(PlanningError):
+    """The processes of a cell state no move that a model could be held against."""
+
+    number = 129
+    text = "No moves to check"
+    cause = "No recipe's process states its moves yet, or the cell file has no recipe."
+    remedy = "Nothing is known to be free: try every move at low speed. See docs/planning.md."

@@ -6,6 +6,7 @@ import typer
 from rich.console import Console
 
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+from cellctl.errors.config import NoMovesStated
 
 if TYPE_CHECKING:
     from cellctl.planning.scene.cell_scene import CellScene
@@ -28,6 +29,9 @@ def check(cell_file: CellFile, model: ModelFile = None) -> None:
     if bad:
         console.print(f"{bad} of {count} moves are not good", style="bold red", markup=False)
         raise typer.Exit(1)
+    # Nothing checked is not the same as everything free.
+    if count == 0:
+        raise NoMovesStated(f"{cell_file}")
     console.print(f"{count} moves are free", markup=False)
 
 

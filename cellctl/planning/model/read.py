@@ -1,7 +1,8 @@
 """Reads the model of a cell, and says everything that is wrong with it."""
 
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,10 @@ from cellctl.planning.scene.solid import Solid
 
 _FARTHEST_M = 5.0
 """No body of an arm lies farther from the frame of its link."""
+_SMALLEST_M = 5e-3
+"""Nothing that an arm may hit is smaller than this in its greatest dimension."""
+_BASES_APART_M = 0.05
+"""No two arms stand nearer to each other, base to base."""
 
 
 def read_model(cell: CellConfig, path: Path) -> CellScene:
@@ -30,6 +35,7 @@ def read_model(cell: CellConfig, path: Path) -> CellScene:
     """
     document = _document(path)
     arms = {name: _arm(cell, document, name) for name in document.robots}
+    _check_bases(arms)
     solids = tuple(_solids(document, path.parent))
     _check_approaches(document, solids, path)
     approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
@@ -61,6 +67,16 @@ def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:
     )
 
 
+def _check_bases(arms: Mapping[str, PlannedArm]) -> None:
+    for one, other in combinations(arms.values(), 2):
+        apart_m = float(np.linalg.norm(one.cell_T_base.translation - other.cell_T_base.translation))
+        if apart_m < _BASES_APART_M:
+            raise SizeImplausible(
+                f"cell_T_base of {one.name} and {other.name}: {apart_m / MM:.1f} mm apart, "
+                f"expected at least {_BASES_APART_M / MM:g} mm; lengths are in mm"
+            )
+
+
 def _solids(document: ModelDocument, folder: Path) -> Iterator[Solid]:
     for name, fixture in document.fixtures.items():
         yield _solid(name, fixture, None, 0.0, folder)
@@ -73,6 +89,12 @@ def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: 
     shape, pose = _shape(keys, folder)
     link = keys.link if isinstance(keys, LinkBodyKeys) else 0
     solid = Solid(name, arm, link, pose, shape, margin_m, keys.stand_in)
+    # A body in metres would shrink to a grain, and every move past it would be free.
+    if 2 * shape.radius_m < _SMALLEST_M:
+        raise SizeImplausible(
+            f"{name}: {2000 * shape.radius_m:.2g} mm at its greatest, "
+            f"expected at least {_SMALLEST_M / MM:g} mm; lengths are in mm"
+        )
     # Fixtures may be anywhere in the hall; a part of an arm that lies metres from its link was
     # written in another unit.
     reach_m = float(np.linalg.norm(pose[:3, 3])) + shape.radius_m

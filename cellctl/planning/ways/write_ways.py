@@ -1,14 +1,11 @@
 """Writes planned ways into a cell file, whose comments and order stay."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import tomlkit
 
-from cellctl.atomic_files import write_durably
 from cellctl.config.devices import WayConfig
-from cellctl.errors.config import ConfigInvalid
 from cellctl.planning.ways.plan_ways import PlannedWay
 
 
@@ -24,14 +21,6 @@ def with_ways_written(text: str, ways: Sequence[PlannedWay]) -> str:
             for table in tables:
                 robot["ways"].append(table)
     return tomlkit.dumps(document)
-
-
-def write_cell_file(text: str, out: Path) -> None:
-    """Whole or not at all; raises ``ConfigInvalid`` where the disk does not take it."""
-    try:
-        write_durably(out, text.encode())
-    except OSError as error:
-        raise ConfigInvalid(f"{out}: {error}") from error
 
 
 def _table(way: PlannedWay, written: WayConfig) -> Any:

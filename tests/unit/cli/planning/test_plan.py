@@ -7,7 +7,12 @@ from typer.testing import CliRunner
 
 from cellctl.cli.planning.app import app
 from cellctl.cli.planning.opening import open_scene
-from cellctl.errors.config import ConfigUnreadable, PlanningNotInstalled
+from cellctl.errors.config import (
+    ConfigUnreadable,
+    NoMovesStated,
+    OutputNotWritten,
+    PlanningNotInstalled,
+)
 
 DECK = "config/deck.toml"
 
@@ -25,6 +30,20 @@ def test_show_draws_the_shipped_cell(tmp_path: Path) -> None:
     assert code == 0
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert glb.read_bytes().startswith(b"glTF")
+
+
+def test_a_picture_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(OutputNotWritten, match=r"cell\.png: File exists"):
+        run("show", DECK, "--picture", str(tmp_path / "file" / "cell.png"))
+
+
+def test_a_cell_whose_processes_state_no_moves_is_not_free(tmp_path: Path) -> None:
+    text = Path("config/deck.model.toml").read_text(encoding="utf-8")
+    model = tmp_path / "pin.model.toml"
+    model.write_text(text[: text.index("[robots.aux_1]")].replace("robots.main", "robots.arm"))
+    with pytest.raises(NoMovesStated):
+        run("check", "config/insertion-pin.toml", "--model", str(model))
 
 
 @pytest.mark.long

@@ -70,6 +70,29 @@ def test_a_body_far_from_its_link_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("size_mm = [1000.0, 500.0, 15.0]", "size_mm = [1.0, 0.5, 0.1]", r"main\.deck: 1\.1 mm"),
+        (
+            "from_mm = [0.0, 0.0, 350.0], to_mm = [0.0, 0.0, 450.0], radius_mm = 350.0",
+            "from_mm = [0.0, 0.0, 0.35], to_mm = [0.0, 0.0, 0.45], radius_mm = 0.35",
+            r"main\.pedestal: 0\.8 mm",
+        ),
+        (
+            "cell_T_base = [1900.0, -2300.0, 0.0, 90.0, 0.0, 0.0]",
+            "cell_T_base = [1.9, -2.3, 0.0, 90.0, 0.0, 0.0]",
+            r"main and aux_1: 3\.0 mm apart",
+        ),
+    ],
+)
+def test_metres_in_place_of_millimetres_are_refused(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    with pytest.raises(SizeImplausible, match=words):
+        read_model(CELL, write_model(tmp_path, old, new))
+
+
+@pytest.mark.parametrize(
     ("old", "new", "fault"),
     [
         ("[robots.main]", "[robots.none]\n[robots.main]", ConfigInvalid),
