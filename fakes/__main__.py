@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import os
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -105,7 +106,9 @@ def demo(context: typer.Context) -> None:
     """Run a whole demonstration; see ``demo --help``."""
     from fakes.demo import app as orchestrator
 
-    orchestrator.app(args=context.args, prog_name="python -m fakes demo")
+    # Whoever starts it as its own command says how that is called.
+    name = os.environ.get("FAKES_DEMO_NAME", "python -m fakes demo")
+    orchestrator.app(args=context.args, prog_name=name)
 
 
 if __name__ == "__main__":

@@ -4,9 +4,10 @@ Each solver describes its file as a model beside it. Here is what the models sha
 poses and positions as users write them, and words for whatever is wrong, with its place.
 """
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, PlainValidator, ValidationError
@@ -14,6 +15,7 @@ from pydantic_core import ErrorDetails
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.pose_record import covariance_from_written, matrix_mm_to_pose
+from cellctl.calibration.unit_slips import require_usual_units
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, Array
 
@@ -30,6 +32,9 @@ class InputFile(BaseModel):
         allow_inf_nan=False,
         extra="ignore",
     )
+    seen_from_afar: ClassVar[bool] = False
+    """Whether all that it holds is far from the frame in which it is written, so that metres and
+    radians can be told from millimetres and degrees (``unit_slips``)."""
 
 
 M = TypeVar("M", bound=InputFile)
@@ -42,9 +47,12 @@ def read_input(path: Path, model: type[M]) -> M:
     except OSError as error:
         raise FileInvalid(f"{path}: {error.strerror or error}") from error
     try:
-        return model.model_validate_json(content)
+        found = model.model_validate_json(content)
     except ValidationError as error:
         raise FileInvalid(f"{path}: {error_words(error)}") from error
+    if model.seen_from_afar:
+        require_usual_units(str(path), json.loads(content))
+    return found
 
 
 def error_words(error: ValidationError) -> str:

@@ -14,4 +14,6 @@ def demo(context: typer.Context) -> None:
     That program takes the place of this one: a signal must reach it and nobody else.
     """
     # By name and as another program, because the core must not import the fakes.
-    os.execv(sys.executable, [sys.executable, "-m", "fakes", "demo", *context.args])
+    environment = os.environ | {"FAKES_DEMO_NAME": "cellctl demo"}
+    program = [sys.executable, "-m", "fakes", "demo", *context.args]
+    os.execve(sys.executable, program, environment)

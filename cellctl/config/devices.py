@@ -14,7 +14,11 @@ from cellctl.config.base import JointsDeg, Section, WrittenPose
 ComMm = Annotated[float, Field(ge=-3000, le=3000)]
 Pixels = Annotated[float, Field(gt=0, le=5000)]
 Milliseconds = Annotated[float, Field(gt=0, le=60_000)]
-DeviceName = Annotated[str, StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
+DeviceName = Annotated[
+    str,
+    StringConstraints(pattern=r"^[a-z][a-z0-9_]{0,31}$"),
+    Field(examples=["head_1"]),
+]
 
 
 class DeviceConfig(Section):

@@ -19,6 +19,7 @@ from cellctl.config.checks.units import unit_issues
 from cellctl.config.checks.zones import zone_issues
 from cellctl.config.document.findings import model_issues, shorten, validated
 from cellctl.config.document.lines import key_lines, line_of
+from cellctl.config.document.toml_hints import toml_hint
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.process_definition import ProcessDefinition, process_definition
 from cellctl.config.recipe import Recipe
@@ -71,7 +72,7 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
     units = list(unit_issues(raw))
     found, cell = _parse(raw)
     found += _fault_number_issues()
-    found += unless_named(found, units)
+    found = _with_units(found, units)
     if cell is None:
         return found, None
     # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
@@ -104,6 +105,18 @@ def bad_devices(found: Iterable[ConfigIssue]) -> set[str]:
     return {".".join(issue.key.split(".")[:2]) for issue in found}
 
 
+def _with_units(found: list[ConfigIssue], units: list[ConfigIssue]) -> list[ConfigIssue]:
+    """One finding for each key: what a model has against it, after the unit that it looks like."""
+    by_key = {issue.key: issue.allowed for issue in units}
+    both = [
+        replace(issue, allowed=f"{by_key[issue.key]}; {issue.allowed}")
+        if issue.key in by_key
+        else issue
+        for issue in found
+    ]
+    return both + unless_named(found, units)
+
+
 def unless_named(found: list[ConfigIssue], more: list[ConfigIssue]) -> list[ConfigIssue]:
     """Further findings of keys that are not reported yet: one mistake, one message."""
     known = {issue.key for issue in found}
@@ -131,9 +144,12 @@ def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
 def _read_toml(path: Path) -> tuple[str, dict[str, Any]]:
     try:
         text = path.read_text(encoding="utf-8")
-        return text, tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
+    try:
+        return text, tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigUnreadable(f"{path}: {error}{toml_hint(text, str(error))}") from error
 
 
 def _recipes(raw: Any, found: list[ConfigIssue]) -> Iterator[Recipe | None]:

@@ -63,6 +63,10 @@ async def ask_tracker(name: str, config: TrackerConfig) -> Answer:
     return Answer(f"trackers.{name}", config.driver, facts, serial_number=serial_number)
 
 
+_OWN_ZERO_S = 1.0
+"""A difference beyond this is no delay."""
+
+
 def _clock(exposures: tuple[ExposureRecord, ...], time_s: float) -> str:
     """Each camera's clock against the monotonic one of this PC, at the last byte of the image."""
     stamps = [one.device_time_ns for one in exposures if one.device_time_ns is not None]
@@ -70,6 +74,8 @@ def _clock(exposures: tuple[ExposureRecord, ...], time_s: float) -> str:
         return "not told by this camera"
     offsets = ", ".join(f"{stamp * 1e-9 - time_s:+.3f} s" for stamp in stamps)
     text = f"{offsets} to that of this PC, transfer of the image included"
+    if max(abs(stamp * 1e-9 - time_s) for stamp in stamps) > _OWN_ZERO_S:
+        text += " (a camera counts from a zero of its own; only the rate matters)"
     if len(stamps) == 2 and stamps[0] != stamps[1]:
         apart_ms = (stamps[0] - stamps[1]) * 1e-6
         text += f"; left {apart_ms:+.3f} ms to right"

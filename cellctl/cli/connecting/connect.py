@@ -62,8 +62,15 @@ def show(console: Console, answers: list[Answer]) -> None:
     console.print(LEFT_AS_FOUND)
 
 
+def _serial(number: str) -> str:
+    # A sensor whose box does not tell its number, and whose section states none, says so itself.
+    if not number or number.startswith("no serial number"):
+        return f", {number}" if number else ""
+    return f", serial number {number}"
+
+
 def _show_one(console: Console, answer: Answer) -> None:
-    serial = f", serial number {answer.serial_number}" if answer.serial_number else ""
+    serial = _serial(answer.serial_number)
     says = "no answer" if answer.fault is not None else f"answers{serial}"
     if not answer.asked:
         says = "not asked, the PLC calls the daemon"

@@ -10,9 +10,10 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.calibration.output_file import write_file
-from cellctl.errors.force import PayloadFileInvalid
+from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
-from cellctl.force.gravity.pose_file import parse_pose_file
+from cellctl.force.gravity.pose_file import PoseRecord, parse_pose_file
+from cellctl.force.gravity.written_otherwise import scalar_first_hint, unit_hint
 from cellctl.geometry.pose import MM
 from cellctl.procedures.payload_picture import residual_picture
 
@@ -36,8 +37,16 @@ def identify_payload(
 
     Exit code 3 when the result fails its acceptance; it is written all the same.
     """
-    result = evaluate_payload(parse_pose_file(_read(file)), expected_mass_kg=mass_kg)
-    _show(result, Console(soft_wrap=True, highlight=False))
+    record = parse_pose_file(_read(file))
+    try:
+        result = evaluate_payload(record, expected_mass_kg=mass_kg)
+    except PosesDegenerate as fault:
+        if hint := scalar_first_hint(record):
+            raise PayloadFileInvalid(f"{file}: {hint}") from fault
+        raise
+    console = Console(soft_wrap=True, highlight=False)
+    _show(result, console)
+    _say_what_else(result, record, mass_kg, console)
     if out is not None:
         write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:
@@ -80,6 +89,24 @@ def _show(result: PayloadResult, console: Console) -> None:
     for check in result.checks:
         console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
     console.print("accepted" if result.accepted else "NOT accepted")
+
+
+def _say_what_else(
+    result: PayloadResult, record: PoseRecord, mass_kg: float | None, console: Console
+) -> None:
+    """What the tests do not find: another unit, another order, a mass that nobody compared."""
+    hint = unit_hint(result, mass_kg)
+    if not hint and not result.accepted:
+        hint = scalar_first_hint(record)
+    if hint:
+        console.print(f"note: {hint}", style="yellow", markup=False)
+    if mass_kg is None:
+        found_kg = result.identification.rigid.mass_kg
+        text = (
+            f"note: nothing here has checked mass and units: compare {found_kg:.3g} kg with the "
+            "drawing, or give it by --mass-kg"
+        )
+        console.print(text, style="yellow", markup=False)
 
 
 def _numbers(values: object) -> str:

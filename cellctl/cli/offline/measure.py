@@ -20,7 +20,7 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.camera.stereo_head import read_stereo_head
+from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
@@ -54,7 +54,7 @@ def measure(  # noqa: PLR0917 - the options of the command
             typer.echo(f"warning: {note.message}", err=True)
         holes = _holes(read_features(features), head)
         images = read_image(left), read_image(right)
-        result = measure_pair(*images, stereo_head, holes, method=_method(method))
+        result = _measured(images, stereo_head, holes, _method(method))
         text = json.dumps(measurement_to_json(result, _pose(result, holes)), indent=2) + "\n"
         if picture is not None:
             write_file(picture, _picture(images, result))
@@ -70,6 +70,24 @@ def measure(  # noqa: PLR0917 - the options of the command
         raise typer.Exit(EXIT_REFUSED) from fault
     if out is None:
         typer.echo(text, nl=False)
+
+
+def _measured(
+    images: tuple[Image, Image], head: StereoHead, holes: tuple[Hole, ...], method: Method
+) -> PairMeasurement:
+    """The holes of a pair; where they are not found, whether its images were exchanged."""
+    if np.array_equal(*images):
+        raise ImageFileInvalid("left and right are the same image")
+    try:
+        return measure_pair(*images, head, holes, method=method)
+    except VisionError as fault:
+        try:
+            measure_pair(images[1], images[0], head, holes, method=method)
+        except VisionError:
+            raise fault from None
+        raise ImageFileInvalid(
+            "left and right are exchanged: the other way round all holes are found"
+        ) from fault
 
 
 def read_image(path: Path) -> Image:

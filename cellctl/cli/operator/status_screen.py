@@ -41,6 +41,9 @@ _CONTROL = {
     "shared": "terminal and line PLC",
 }
 
+_NO_END_D = 36_500
+"""A century: what is valid for longer was stored as valid for ever."""
+
 
 def screen(report: StatusReport, now: datetime) -> RenderableType:
     """Everything in at most a screen; ``now`` in UTC, for the ages."""
@@ -190,7 +193,7 @@ def _dates(item: CalibrationReport, now: datetime) -> tuple[str, str]:
         return "–", "–"
     # Whole days, rounded down: a calibration lasts at least as long as the screen says.
     left = max(0, (item.valid_until - now).days)
-    return f"{(now - item.made).days} d", f"{left} d"
+    return f"{(now - item.made).days} d", "no end" if left > _NO_END_D else f"{left} d"
 
 
 def _well(problem: str) -> Text:

@@ -13,6 +13,7 @@ from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.clock import utc_now
 from cellctl.records.entries import Calibration
+from cellctl.spelling import nearest
 
 app = typer.Typer(help="Look into the calibrations of the run store.", no_args_is_help=True)
 
@@ -54,9 +55,12 @@ def show(
     data_dir: DataDir = None,
 ) -> None:
     """Every calibration of one kind, oldest first: how its figures move over the years."""
-    found = [one for one in reversed(_kept(data_dir)) if one.kind == kind]
+    kept = _kept(data_dir)
+    found = [one for one in reversed(kept) if one.kind == kind]
     if not found:
-        typer.echo(f"no calibration of the kind {kind!r}", err=True)
+        kinds = sorted({one.kind for one in kept})
+        known = f"kinds here: {', '.join(kinds) or 'none'}"
+        typer.echo(f"no calibration of the kind {kind!r}; {nearest(kind, kinds)}{known}", err=True)
         raise typer.Exit(1)
     if as_json:
         _as_json(found)

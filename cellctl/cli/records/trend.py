@@ -1,5 +1,6 @@
 """`cellctl runs trend`: a figure over the runs, with limits, capability and a control chart."""
 
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Annotated
 
@@ -13,6 +14,7 @@ from cellctl.records.entries import Verdict
 from cellctl.records.figures import Limit
 from cellctl.records.trend import CONFIDENCE, Index, Sample, Trend
 from cellctl.records.trend import trend as trend_of
+from cellctl.spelling import nearest
 
 _WIDTH = 41
 
@@ -33,12 +35,13 @@ def trend(
     sigma, eight on one side of the mean, six that rise or fall.
     """
     with opened_store(data_dir) as store:
+        known = store.figure_keys()
         if not key:
-            typer.echo("\n".join(store.figure_keys()))
+            typer.echo("\n".join(known))
             return
         samples, unit = store.figure_history(key, recipe, limit)
     if len(samples) < 2:
-        typer.echo(f"{len(samples)} runs have the figure {key!r}; a trend needs two", err=True)
+        typer.echo(_too_few(key, known, len(samples)), err=True)
         raise typer.Exit(1)
     found = trend_of(samples)
     if as_json:
@@ -51,6 +54,12 @@ def trend(
         console.print(line, markup=False)
     for signal in found.signals:
         console.print(f"run {signal.run}: {signal.rule}", style="yellow", markup=False)
+
+
+def _too_few(key: str, known: Sequence[str], count: int) -> str:
+    if key in known:
+        return f"{count} runs have the figure {key!r}; a trend needs two"
+    return f"no run has a figure {key!r}; {nearest(key, known)}`cellctl runs trend` lists them"
 
 
 def _chart(samples: list[Sample], found: Trend, title: str) -> Table:

@@ -1,10 +1,12 @@
 """What a model of pydantic has against a section, in the words of whoever wrote the file."""
 
 import json
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
 
 from cellctl.config.issue import ConfigIssue
 from cellctl.spelling import nearest
@@ -44,17 +46,74 @@ def model_issues(
         key = prefix + ".".join(str(part) for part in loc if part != "[key]")
         missing = item["type"] == "missing"
         value = "(missing)" if missing else shorten(repr(_at(raw, loc, item["input"])))
+        key = key.rstrip(".")
         if item["type"] == "extra_forbidden":
             allowed = _other_key(str(loc[-1]), _node(schema, loc[:-1]))
+        elif item["type"] == "value_error":
+            allowed = str(item["ctx"]["error"])
+            inside, value = _named_in(allowed, _at(raw, loc, item["input"]), value)
+            key = f"{key}.{inside}" if key and inside else inside or key
         else:
-            allowed = item["msg"] + _bounds(_node(schema, loc))
-        found.append(ConfigIssue(key.rstrip(".") or "(file)", value, allowed))
+            of_keys = loc[-1:] == ("[key]",)
+            node = (
+                _node(schema, loc[:-2]).get("propertyNames", {}) if of_keys else _node(schema, loc)
+            )
+            allowed = _words(item, node)
+        found.append(ConfigIssue(key or "(file)", value, allowed))
     return found
 
 
 def shorten(text: str) -> str:
     """A value that fits a line."""
     return text if len(text) <= _LONGEST_VALUE else text[: _LONGEST_VALUE - 1] + "…"
+
+
+def _named_in(message: str, section: object, shown: str) -> tuple[str, str]:
+    """Of a table, the keys that a message speaks of: the first of them, and all with their values.
+
+    Else nothing, and ``shown``.
+    """
+    if not isinstance(section, Mapping):
+        return "", shown
+    named = [word for word in re.findall(r"\w+", message) if word in section]
+    if not named:
+        return "", shown
+    first, *others = dict.fromkeys(named)
+    also = "".join(f", {name} = {section[name]!r}" for name in others)
+    return first, shorten(f"{section[first]!r}{also}")
+
+
+def _words(item: ErrorDetails, node: Mapping[str, Any]) -> str:
+    """pydantic's message, or better words where it speaks of patterns, objects and tuples."""
+    kind = item["type"]
+    if kind == "string_pattern_mismatch":
+        return _of_the_form(str(item["input"]), item["ctx"]["pattern"], node.get("examples", ()))
+    if kind == "too_long":
+        length, most = item["ctx"]["actual_length"], item["ctx"]["max_length"]
+        comma = "; a number has a decimal point, no comma" if length == 2 * most else ""
+        return f"at most {most} entries, these are {length}{comma}"
+    if kind in ("model_type", "model_attributes_type", "dict_type"):
+        keys = ", ".join(f"{key} = …" for key in node.get("properties", {})) or "name = …"
+        return f"a table: {{ {keys} }}"
+    return item["msg"] + _bounds(node)
+
+
+def _of_the_form(written: str, pattern: str, examples: Sequence[str]) -> str:
+    """In place of a pattern: an example of it, and what was probably meant."""
+    simple = re.sub(r"[^A-Za-z0-9]+", "_", written).strip("_")
+    slips: tuple[str, ...] = (
+        written.lower(),
+        written.upper(),
+        simple,
+        simple.lower(),
+        simple.upper(),
+    )
+    digits = re.fullmatch(r"(\d+)\D+(\d+)\D*", written)
+    if digits:
+        slips = (*slips, f"{digits[1]}x{digits[2]}")
+    meant = next((f"did you mean {one!r}? " for one in slips if re.match(pattern, one)), "")
+    form = f"a text of the form {examples[0]!r}" if examples else f"a text that fits {pattern}"
+    return f"{meant}{form}"
 
 
 def _other_key(name: str, node: Mapping[str, Any]) -> str:

@@ -64,6 +64,11 @@ def _require_columns(found: object) -> None:
     names = [str(name).strip() for name in found] if isinstance(found, (list, tuple)) else []
     if not names:
         raise PayloadFileInvalid("the file is empty")
+    if len(names) == 1 and ";" in names[0]:
+        raise PayloadFileInvalid(
+            "the columns are separated by ';': save the file with commas between the columns and "
+            "points in the numbers"
+        )
     missing = [name for name in (*QUATERNION, *WRENCH) if name not in names]
     if missing:
         raise PayloadFileInvalid(f"missing column {', '.join(missing)}; found {', '.join(names)}")

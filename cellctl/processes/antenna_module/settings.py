@@ -55,7 +55,7 @@ class AntennaSettings(Section):
 
     arm: ArmSection
     cameras: CamerasSection = CamerasSection()
-    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "9x6"
+    board: Annotated[str, Field(pattern=r"^\d+x\d+$", examples=["9x6"])] = "9x6"
     """Inner corners of the calibration chessboard, columns x rows."""
     square_mm: Annotated[float, Field(gt=0, le=100)] = 4.0
     views: Annotated[int, Field(ge=15, le=100)] = 36

@@ -10,7 +10,7 @@ from cellctl.config.base import JointsDeg, Section, WrittenPose
 class DeckSettings(Section):
     """Settings of the calibration procedures."""
 
-    board: Annotated[str, Field(pattern=r"^\d+x\d+$")] = "9x6"
+    board: Annotated[str, Field(pattern=r"^\d+x\d+$", examples=["9x6"])] = "9x6"
     """Inner corners of the calibration chessboard, columns x rows."""
     square_mm: Annotated[float, Field(gt=0, le=100)] = 25.0
     stereo_views: Annotated[int, Field(ge=8, le=100)] = 24

@@ -25,6 +25,9 @@ class PneumaticGripperConfig(CouplerSettings):
 
     @model_validator(mode="after")
     def _distinct(self) -> Self:
-        check_addresses("valves", (self.open_valve, self.close_valve))
-        check_addresses("sensors", (self.opened_sensor, self.closed_sensor, self.part_sensor))
+        check_addresses("open_valve and close_valve", (self.open_valve, self.close_valve))
+        check_addresses(
+            "opened_sensor, closed_sensor and part_sensor",
+            (self.opened_sensor, self.closed_sensor, self.part_sensor),
+        )
         return self

@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from drivers.modbus.settings import Address, CouplerSettings, check_addresses
 
-SignalName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,31}$")]
+SignalName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,31}$", examples=["lamp_1"])]
 
 
 class ModbusCouplerConfig(CouplerSettings):

@@ -19,7 +19,7 @@ class _Section(BaseModel):
 
     listen_host: str = "127.0.0.1"
     """Address of this PC that the job programs connect to."""
-    robot_name: Annotated[str, Field(pattern=r"^[A-Z0-9_-]{1,16}$")]
+    robot_name: Annotated[str, Field(pattern=r"^[A-Z0-9_-]{1,16}$", examples=["SR500A"])]
     """The name the controller must give in its hello."""
     robot_address: str = ""
     """Address of the controller, or a network; others are refused. Not needed on loopback."""
@@ -89,7 +89,9 @@ class MotionLimits(BaseModel):
         }
         for key, (lower, upper) in pairs.items():
             if not all(low < high for low, high in zip(lower, upper, strict=True)):
-                raise ValueError(f"{key} must lie below its maximum in every component")
+                raise ValueError(
+                    f"{key} must lie below {key.replace('min', 'max')} in every component"
+                )
         return self
 
 

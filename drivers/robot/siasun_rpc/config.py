@@ -10,7 +10,7 @@ from drivers.robot.siasun.controller_errors import ErrorList
 
 Word = Annotated[int, Field(ge=1, le=32)]
 """Number of a word register of the controller."""
-FrameName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$")]
+FrameName = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,32}$", examples=["Tool_1"])]
 
 
 class _Controller(BaseModel):

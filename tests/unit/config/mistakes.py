@@ -1,6 +1,6 @@
 """Mistakes of a first week: what stands in a shipped cell file, and what somebody wrote instead."""
 
-from tests.unit.config.mistake import Mistake, deck
+from tests.unit.config.mistake import Mistake, deck, deck_elsewhere
 
 
 def _antenna(old: str, new: str, key: str, said: str) -> Mistake:
@@ -160,7 +160,9 @@ ADDRESSES = (
         "robots.aux_2.settings.state_port",
         "robots.aux_1.settings.state_port",
     ),
-    deck("state_port = 7002", "state_port = 7001", _MAIN, "must differ"),
+    deck_elsewhere(
+        "state_port = 7002", "state_port = 7001", f"{_MAIN}.command_port", "must differ"
+    ),
     deck("guard_port = 7003", "guard_port = 7002", f"{_STOP}.guard_port", "state_port"),
     deck("port = 7102", "port = 7101", f"{_HEAD_2}.port", "head_1"),
     deck("port = 4008", "port = 7103", "force_sensors.force.settings.port", "trackers.tracker"),
@@ -267,11 +269,11 @@ FIGURES = (
     ),
     deck("d1_mm = 1045.0", "d1_mm = 1054.0", "robots.main.d1_mm", "1045, as the first link"),
     deck("a1_mm = 500.0", "a1_mm = 550.0", "robots.main.a1_mm", "500, as the first link"),
-    deck(
+    deck_elsewhere(
         "workspace_max_mm = [2500.0, 900.0, 2400.0]",
         "workspace_max_mm = [2500.0, -950.0, 2400.0]",
-        _MAIN,
-        "below its maximum",
+        f"{_MAIN}.workspace_min_mm",
+        "must lie below workspace_max_mm",
     ),
 )
 """Figures against each other."""

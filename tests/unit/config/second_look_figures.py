@@ -120,7 +120,12 @@ OTHERS = (
         "corners span 20 mm",
     ),
     deck("square_mm = 25.0", "square_mm = 250.0", "processes.deck-to-frame.square_mm", "0 to 100"),
-    deck('board = "9x6"', 'board = "9*6"', "processes.deck-to-frame.board", "match pattern"),
+    deck(
+        'board = "9x6"',
+        'board = "9*6"',
+        "processes.deck-to-frame.board",
+        "did you mean '9x6'? a text of the form",
+    ),
     deck('board = "9x6"', 'board = "8x8"', "processes.deck-to-frame.board", "turned by 90 deg"),
     deck(
         "stereo_views = 24", "stereo_views = 3", "processes.deck-to-frame.stereo_views", "8 to 100"
@@ -133,7 +138,7 @@ OTHERS = (
     deck_elsewhere(
         'host = "127.0.0.1"\nport = 5020',
         'host = "0.0.0.0"\nport = 502',
-        "plc",
+        "plc.host",
         "allowed_clients must list",
     ),
     deck('data_dir = "runs/cell"', 'data_dir = ""', "data_dir", "a folder"),

@@ -129,7 +129,7 @@ def test_allowed_clients_are_addresses(tmp_path: Path, client: str) -> None:
 def test_a_port_that_others_reach_names_its_clients(tmp_path: Path, host: str) -> None:
     line = 'host = "127.0.0.1"\nport = 5020'
     (problem,) = problems(changed(tmp_path, h=(line, f'host = "{host}"\nport = 5020')))
-    assert problem.key == "plc"
+    assert problem.key == "plc.host"
     assert "0.0.0.0/0" in problem.allowed
 
 

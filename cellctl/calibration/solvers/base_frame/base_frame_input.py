@@ -21,7 +21,7 @@ class TargetEntry(InputFile):
 
     name: str
     position_mm: InputPosition
-    sigma_mm: float = 0.05
+    sigma_mm: Annotated[float, Field(gt=0, le=10)] = 0.05
 
 
 class StopEntry(InputFile):
@@ -41,6 +41,8 @@ class StopEntry(InputFile):
 
 class BaseFrameFile(InputFile):
     """The whole file: two links of the arm, and the stops of axes A1 and A2."""
+
+    seen_from_afar = True
 
     # As in the cell file. The stops fit with any length, so metres would pass unseen.
     d1_mm: Annotated[float, Field(ge=100, le=3000)]

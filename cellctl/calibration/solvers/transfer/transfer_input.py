@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import PlainValidator, model_validator
+from pydantic import Field, PlainValidator, model_validator
 
 from cellctl.calibration.boards.board_pose import BoardPoint, fit_board, target_board_discs
 from cellctl.calibration.input_file import (
@@ -31,7 +31,7 @@ class DiscEntry(InputFile):
     position_mm: InputPosition
     covariance_mm2: Annotated[Array, PlainValidator(_covariance_m2)] | None = None
     """Kept in m²."""
-    sigma_mm: float | None = None
+    sigma_mm: Annotated[float, Field(gt=0, le=10)] | None = None
 
     @model_validator(mode="after")
     def _has_its_uncertainty(self) -> "DiscEntry":
@@ -56,6 +56,8 @@ class PlacementEntry(InputFile):
 
 class TransferFile(InputFile):
     """The whole file."""
+
+    seen_from_afar = True
 
     c_T_base: InputPose
     """Or the object of that name in the result of a base-frame calibration, or a stored one."""

@@ -54,3 +54,62 @@ def test_faults_are_numbered(tmp_path: Path) -> None:
     same.write_text("\n".join([lines[0], *[lines[1]] * 12]), encoding="utf-8")
     degenerate = CliRunner().invoke(app, [str(same)])
     assert isinstance(degenerate.exception, PosesDegenerate)
+
+
+def rewritten(csv_file: Path, factors: dict[str, float], order: str = "xyzw") -> Path:
+    """The file with some columns in another unit, and quaternions in another order."""
+    header, *rows = csv_file.read_text(encoding="utf-8").splitlines()
+    names = header.split(",")
+    lines = [header]
+    for row in rows:
+        fields = dict(zip(names, row.split(","), strict=True))
+        turned = [fields[f"q{axis}"] for axis in order]
+        fields |= dict(zip(("qx", "qy", "qz", "qw"), turned, strict=True))
+        for name, factor in factors.items():
+            fields[name] = repr(float(fields[name]) * factor)
+        lines.append(",".join(fields[name] for name in names))
+    path = csv_file.with_name("rewritten.csv")
+    path.write_text("\n".join(lines), encoding="utf-8")
+    return path
+
+
+FORCES, MOMENTS = ("fx_n", "fy_n", "fz_n"), ("mx_nm", "my_nm", "mz_nm")
+
+
+@pytest.mark.parametrize(
+    ("factors", "options", "said"),
+    [
+        (dict.fromkeys(FORCES, 1e-3), (), "forces look like kN"),
+        (dict.fromkeys(FORCES + MOMENTS, 1e-3), ("--mass-kg", "200"), "forces look like kN"),
+        (dict.fromkeys(FORCES, 1 / 9.80665), ("--mass-kg", "200"), "forces look like kgf"),
+        (dict.fromkeys(MOMENTS, 1e3), (), "moments look like N·mm"),
+        (dict.fromkeys(MOMENTS, 1e-3), (), "moments look like kN·m"),
+    ],
+)
+def test_another_unit_is_named(
+    csv_file: Path, factors: dict[str, float], options: tuple[str, ...], said: str
+) -> None:
+    result = CliRunner().invoke(app, [str(rewritten(csv_file, factors)), *options])
+    assert f"note: {said}" in result.output
+
+
+def test_a_real_part_that_stands_first_is_named(csv_file: Path) -> None:
+    result = CliRunner().invoke(app, [str(rewritten(csv_file, {}, "wxyz"))])
+    assert result.exit_code != 0
+    assert "the real part belongs last" in result.output + str(result.exception)
+
+
+def test_a_mass_that_nobody_compared_is_said(csv_file: Path) -> None:
+    alone = CliRunner().invoke(app, [str(csv_file)])
+    assert "nothing here has checked mass and units" in alone.output
+    assert alone.exit_code == 0
+    compared = CliRunner().invoke(app, [str(csv_file), "--mass-kg", "200"])
+    assert "note: nothing" not in compared.output
+    assert "look like" not in compared.output
+
+
+def test_semicolons_between_the_columns_are_named(csv_file: Path) -> None:
+    csv_file.write_text(csv_file.read_text(encoding="utf-8").replace(",", ";"), encoding="utf-8")
+    result = CliRunner().invoke(app, [str(csv_file)])
+    assert isinstance(result.exception, PayloadFileInvalid)
+    assert "separated by ';'" in str(result.exception)

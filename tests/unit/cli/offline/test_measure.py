@@ -122,3 +122,19 @@ def test_the_command_loads_nothing_that_it_does_not_need() -> None:
     assert "cellctl.vision.measure" in loaded
     heavy = {"matplotlib", "sqlalchemy", "pydantic_settings", "fastapi", "mcap", "harvesters"}
     assert heavy.isdisjoint(loaded)
+
+
+def test_exchanged_images_are_named(folder: Path) -> None:
+    app = typer.Typer()
+    app.command()(measure)
+    arguments = ["--calibration", str(folder / "head.json"), "--features"]
+    arguments += [str(folder / "plate.toml"), "--left", str(folder / "right.png")]
+    result = CliRunner().invoke(app, [*arguments, "--right", str(folder / "left.png")])
+    assert result.exit_code == 1
+    assert "left and right are exchanged" in result.output
+
+
+def test_one_image_for_both_cameras_is_named(folder: Path) -> None:
+    result = run(folder, right="left.png")
+    assert result.exit_code == 1
+    assert "the same image" in result.output

@@ -68,3 +68,11 @@ def test_keys_are_listed_and_what_is_unknown_is_said(store: RunStore) -> None:
     assert done.exit_code == 1
     assert "no.such" in done.stderr
     assert asked(store, KEY, "--recipe", "77").exit_code == 1
+
+
+def test_an_unknown_figure_is_answered_with_the_nearest(store: RunStore) -> None:
+    made(store, 0.01)
+    done = asked(store, "seat.gaps")
+    assert done.exit_code == 1
+    assert f"no run has a figure 'seat.gaps'; did you mean '{KEY}'? " in done.output
+    assert "1 runs have the figure" in asked(store, KEY).output

@@ -22,7 +22,7 @@ def test_a_zone_names_robots_of_the_cell(tmp_path: Path) -> None:
 
 def test_a_zone_has_its_lower_corner_below_its_upper_one(tmp_path: Path) -> None:
     (problem,) = problems(devices_only(tmp_path, AUX, AUX.replace("1450.0", "2450.0")))
-    assert problem.key == "zones.beside_head_1.robots.aux_1"
+    assert problem.key == "zones.beside_head_1.robots.aux_1.min_mm"
     assert "min_mm must lie below max_mm" in problem.allowed
 
 
@@ -57,7 +57,7 @@ def test_check_says_which_taught_poses_a_zone_holds(tmp_path: Path, name: str) -
 @pytest.mark.parametrize(
     ("order", "key", "allowed"),
     [
-        ('["main", "main"]', "zones.beside_head_1", "twice"),
+        ('["main", "main"]', "zones.beside_head_1.retreat", "twice"),
         ('["main", "aux_2"]', "zones.beside_head_1.retreat", "main, aux_1"),
     ],
 )

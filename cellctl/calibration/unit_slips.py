@@ -1,0 +1,70 @@
+"""Input files whose numbers look as if they were written in metres or radians.
+
+For files of what a camera sees or an arm reaches: targets, boards and flanges, which are never all
+within a few millimetres of the frame in which they are written.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from cellctl.errors.config import FileInvalid
+
+_LEAST_MM = 20.0
+_LARGEST_RAD = 2.0 * math.pi
+
+
+def require_usual_units(file: str, content: object) -> None:
+    """Raise ``FileInvalid`` for places that look like metres, and joints that look like radians.
+
+    ``content`` is the file as it was written. Judged is the largest number of all places, or of all
+    joints, of one key: a single small one is none of these.
+    """
+    places: dict[str, float] = defaultdict(float)
+    joints: dict[str, float] = defaultdict(float)
+    for key, numbers in _vectors(content, ""):
+        kept = joints if key == "joints_deg" else places
+        kept[key] = max(kept[key], *(abs(number) for number in numbers))
+    for key, largest in places.items():
+        if 0.0 < largest < _LEAST_MM:
+            raise FileInvalid(f"{file}: {key}: millimetres belong here; these look like metres")
+    for key, largest in joints.items():
+        if 0.0 < largest <= _LARGEST_RAD:
+            raise FileInvalid(f"{file}: {key}: degrees belong here; these look like radians")
+
+
+def _vectors(content: object, key: str) -> Iterator[tuple[str, Sequence[float]]]:
+    """Joints, and the places of points and poses, each by the key under which it stands."""
+    if isinstance(content, Mapping):
+        for name, value in content.items():
+            # A drawing has the names of its points for keys.
+            yield from _vectors(value, key if key == "drawing_mm" else str(name))
+    elif isinstance(content, list):
+        yield from _of_list(content, key)
+
+
+def _of_list(content: list[Any], key: str) -> Iterator[tuple[str, Sequence[float]]]:
+    if _is_matrix(content):
+        if "covariance" not in key:
+            yield key, [float(row[3]) for row in content[:3]]
+    elif _are_numbers(content):
+        if key == "joints_deg":
+            yield key, content
+        elif len(content) == 6 or (len(content) == 3 and key in ("position_mm", "drawing_mm")):
+            yield key, content[:3]
+    else:
+        for one in content:
+            yield from _vectors(one, key)
+
+
+def _is_matrix(rows: list[Any]) -> bool:
+    return len(rows) == 4 and all(
+        isinstance(row, list) and len(row) == 4 and _are_numbers(row) for row in rows
+    )
+
+
+def _are_numbers(values: list[Any]) -> bool:
+    return bool(values) and all(
+        isinstance(value, int | float) and not isinstance(value, bool) for value in values
+    )

@@ -1,0 +1,70 @@
+"""Input files in metres and radians, on the shipped samples."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cellctl.calibration.input_file import InputFile, read_input
+from cellctl.calibration.solvers.base_frame.base_frame_input import BaseFrameFile
+from cellctl.calibration.solvers.tool.tool_input import ToolFile
+from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
+from cellctl.errors.config import FileInvalid
+
+SAMPLES = Path(__file__).parents[3] / "config" / "samples"
+MODELS: dict[str, type[InputFile]] = {
+    "base-frame.json": BaseFrameFile,
+    "transfer.json": TransferFile,
+    "tool.json": ToolFile,
+}
+
+
+def changed(content: Any, key: str, change: Callable[[float], float], inside: bool = False) -> Any:
+    """The content with every number below a key changed."""
+    if isinstance(content, dict):
+        return {
+            name: changed(value, key, change, inside or name == key)
+            for name, value in content.items()
+        }
+    if isinstance(content, list):
+        return [changed(value, key, change, inside) for value in content]
+    return change(content) if inside and isinstance(content, float | int) else content
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_a_sample_is_taken(name: str) -> None:
+    read_input(SAMPLES / name, MODELS[name])
+
+
+@pytest.mark.parametrize(
+    ("name", "key", "factor", "said"),
+    [
+        ("base-frame.json", "position_mm", 1e-3, "position_mm: millimetres"),
+        ("base-frame.json", "joints_deg", 0.0174533, "joints_deg: degrees"),
+        ("transfer.json", "position_mm", 1e-3, "position_mm: millimetres"),
+        ("base-frame.json", "d1_mm", 1e-3, "d1_mm"),
+    ],
+)
+def test_another_unit_is_refused(
+    tmp_path: Path, name: str, key: str, factor: float, said: str
+) -> None:
+    content = json.loads((SAMPLES / name).read_text())
+    path = tmp_path / name
+    path.write_text(json.dumps(changed(content, key, lambda number: number * factor)))
+    with pytest.raises(FileInvalid, match=said):
+        read_input(path, MODELS[name])
+
+
+def test_flange_poses_in_metres_are_refused(tmp_path: Path) -> None:
+    content = json.loads((SAMPLES / "tool.json").read_text())
+    for pose in content["touching"]:
+        for row in pose[:3] if len(pose) == 4 else ():
+            row[3] *= 1e-3
+        if len(pose) == 6:
+            pose[:3] = [length * 1e-3 for length in pose[:3]]
+    path = tmp_path / "tool.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(FileInvalid, match="touching: millimetres belong here"):
+        read_input(path, ToolFile)
