@@ -12,6 +12,7 @@ from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.search.conditions import against_a_wall
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, FacePlan
 from cellctl.processes.peg_in_hole.search.find_hole import find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
@@ -99,7 +100,9 @@ async def search_and_insert(
     await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
     await motions.touch(_DOWN, 2 * CLEAR_M, TOUCH_SHARE * task.limits.search_n)
     # For its time stamp: the deadline of the search counts on the clock of the samples.
-    begun = (await motions.press(task.limits.search_n, _PRESS_S)).last
+    press_n = plan.choice.parameters.press_n.value
+    walled = against_a_wall(press_n, task.cell)
+    begun = (await motions.press(press_n, _PRESS_S, walled)).last
     probe = TouchProbe(
         motions,
         task,

@@ -13,7 +13,7 @@ from cellctl.processes.peg_in_hole.first_contact.classify import (
 )
 from cellctl.processes.peg_in_hole.plan.parameters import SearchParameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.search.probe import LostSupport
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _TRIES = 3
 _LIFT_M = 1e-3

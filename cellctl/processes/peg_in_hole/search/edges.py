@@ -6,12 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import Ended
-from cellctl.processes.peg_in_hole.search.probe import (
-    UPRIGHT,
-    Felt,
-    LostSupport,
-    TouchProbe,
-)
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport
+from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, Felt, TouchProbe
 
 Array = NDArray[np.float64]
 

@@ -1,6 +1,5 @@
 """What all strategies do: touch, slide, look for the way in, and keep what was felt."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -10,8 +9,17 @@ from numpy.typing import NDArray
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
 from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass, class_by_force
-from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, STANDS_M, SearchParameters
+from cellctl.processes.peg_in_hole.plan.parameters import STANDS_M, SearchParameters
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.search.conditions import (
+    LostSupport,
+    Stands,
+    Stop,
+    against_a_wall,
+    depth_m,
+    either,
+    held,
+)
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.spirals import expanding_turns
 
@@ -20,14 +28,23 @@ Array = NDArray[np.float64]
 UPRIGHT = np.zeros(3)
 _LIFT_M = 0.3e-3
 _FREE_M_S = 20e-3
-_ENTERED_S = 0.1
 _DIP_M = 0.1e-3
 """Lower than this beneath the face an upright peg stands on no face."""
-_LOST_RATIO = 0.3
+_LET_GO = 3
+"""A peg that goes deeper each time is let go so often."""
 TOUCH_SHARE = 0.5
 """Of the press, at which a touch ends. Until the arm has answered the force may grow by a whole
 press, and stays within the one and a half presses that a search may make."""
 _LOCAL_RADIUS_M = 0.25e-3
+
+
+class Met(StrEnum):
+    """What has ended a press."""
+
+    NOTHING = "nothing"
+    """The peg has entered."""
+    STAND = "stand"
+    WALL = "wall"
 
 
 class Felt(StrEnum):
@@ -84,6 +101,7 @@ class TouchProbe:
         self.hole_map = hole_map
         self.deadline_s = deadline_s
         self.trace = SearchTrace() if trace is None else trace
+        self._walled = against_a_wall(self.press_n, task.cell)
 
     @property
     def press_n(self) -> float:
@@ -107,14 +125,14 @@ class TouchProbe:
         self.still_in_time(touched.last)
         return touched.last
 
-    async def slide(self, way_m: Array, speed_m_s: float, until: "Stop") -> ContactMotion:
+    async def slide(self, way_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
         """Pressed along a way (n, 2); ends with the deadline too."""
         motion = await self.motions.slide(
             way_m,
             self.press_n,
             speed_m_s,
             # Asked in the motion itself: one slide may take longer than the time that is left.
-            lambda sample: until(sample) or self._late(sample),
+            either(until, self._late),
             self.task.limits.search_n,
         )
         self.still_in_time(motion.last)
@@ -122,42 +140,57 @@ class TouchProbe:
 
     async def enters(self) -> bool:
         """Press; True when the peg stays below the depth of entry."""
-        last, entered = await self._sinks()
-        if not entered and self._on_edge(last):
-            # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in. That
-            # nothing carries it then is what is hoped for.
-            lost = LostSupport(self.press_n)
-            await self.motions.comply(
-                self.press_n,
-                self.parameters.give_way_time.value,
-                lambda sample: lost(sample) or self._late(sample),
-                turns=False,
-            )
-            last, entered = await self._sinks()
-        stands = Felt.EDGE if self._on_edge(last) else Felt.FACE
+        last, met = await self._sinks()
+        for _ in range(_LET_GO):
+            if met is Met.NOTHING or not self._on_edge(last, met):
+                break
+            reached_m = depth_m(last)
+            await self._let_go()
+            last, met = await self._sinks()
+            # On a chamfer it slides in further each time; on a scratch it does not.
+            if met is not Met.NOTHING and depth_m(last) - reached_m < STANDS_M:
+                break
+        entered = met is Met.NOTHING
+        stands = Felt.EDGE if self._on_edge(last, met) else Felt.FACE
         self.trace.note(last, Felt.ENTRY if entered else stands)
         self.still_in_time(last)
         return entered
 
-    def _on_edge(self, sample: ContactSample) -> bool:
+    def _on_edge(self, sample: ContactSample, met: Met) -> bool:
         """By its depth, or by a force that no face makes: the height of a face is not that sure."""
         across = class_by_force(sample.force_n, self.task.cell) is not ContactClass.END_FACE
-        return _stands_lower(sample) or across
+        return met is Met.WALL or depth_m(sample) > _DIP_M or across
 
-    async def _sinks(self) -> tuple[ContactSample, bool]:
-        """Press until the peg is in, or something carries it; the end, and whether it is in."""
+    async def _sinks(self) -> tuple[ContactSample, Met]:
+        """Press until the peg is in, or something carries it or holds it from the side."""
         entered = held(self.task.fit.entry_depth_m)
         stands = Stands(self.press_n, self.parameters.stand_time.value)
-        found = False
+        met = Met.STAND
 
         def condition(sample: ContactSample) -> bool:
-            nonlocal found
-            found = entered(sample)
-            return found or stands(sample) or self._late(sample)
+            nonlocal met
+            if entered(sample):
+                met = Met.NOTHING
+            elif self._walled(sample):
+                met = Met.WALL
+            return met is not Met.STAND or stands(sample) or self._late(sample)
 
         hold_s = self.parameters.entry_time.value
         pressed = await self.motions.press(self.press_n, hold_s, condition)
-        return pressed.last, found
+        return pressed.last, met
+
+    async def _let_go(self) -> None:
+        """On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
+
+        That nothing carries it then is what is hoped for.
+        """
+        lost = LostSupport(self.press_n)
+        await self.motions.comply(
+            self.press_n,
+            self.parameters.give_way_time.value,
+            either(lost, self._late),
+            turns=False,
+        )
 
     async def look_round(self, centre_m: Array, radius_m: float = _LOCAL_RADIUS_M) -> bool:
         """Touch down upright and search a small spiral; True when the peg has entered."""
@@ -174,11 +207,11 @@ class TouchProbe:
         ):
             rest_m = way_m + centre_m
             while len(rest_m):
-                stop = LostSupport(self.press_n)
-                motion = await self.slide(rest_m, speed_m_s, stop)
+                lost = LostSupport(self.press_n)
+                motion = await self.slide(rest_m, speed_m_s, either(lost, self._walled))
                 if motion.ended is Ended.TRAVEL:
                     break
-                if await self._enters_between(stop.begin, motion.last):
+                if await self._enters_between(lost.begin, motion.last):
                     return True
                 # It was a scratch or an edge: the turn goes on behind it and does not begin anew.
                 rest_m = _beyond(rest_m, motion.last.task_position_tip_m[:2])
@@ -195,7 +228,7 @@ class TouchProbe:
             middle_m = (begin.task_position_tip_m[:2] + here_m) / 2
             speed = self.parameters.touch_speed.value
             await self.motions.slide(
-                middle_m[None, :], self.press_n, speed, _never, self.task.limits.search_n
+                middle_m[None, :], self.press_n, speed, self._walled, self.task.limits.search_n
             )
         return await self.enters()
 
@@ -206,73 +239,6 @@ class TouchProbe:
 
     def _late(self, sample: ContactSample) -> bool:
         return sample.time_s > self.deadline_s
-
-
-Stop = Callable[[ContactSample], bool]
-
-
-def _never(_sample: ContactSample) -> bool:
-    return False
-
-
-def _stands_lower(sample: ContactSample) -> bool:
-    return _depth_m(sample) > _DIP_M
-
-
-def _depth_m(sample: ContactSample) -> float:
-    return float(sample.task_position_tip_m[2])
-
-
-def held(depth_m: float) -> Stop:
-    """Holds once the tip has been below a depth for a while."""
-    since: list[float] = []
-
-    def condition(sample: ContactSample) -> bool:
-        if sample.task_position_tip_m[2] <= depth_m:
-            # One reading above that depth begins the time anew, so noise cannot add up to an entry.
-            since.clear()
-            return False
-        since.append(sample.time_s)
-        return sample.time_s - since[0] >= _ENTERED_S
-
-    return condition
-
-
-class Stands:
-    """Holds once something has carried the peg for a while, and it has gone no deeper."""
-
-    def __init__(self, press_n: float, stand_s: float) -> None:
-        self._least_n, self._stand_s = _LOST_RATIO * press_n, stand_s
-        self._begin: ContactSample | None = None
-
-    def __call__(self, sample: ContactSample) -> bool:
-        """The condition of a press."""
-        if abs(sample.force_n[2]) < self._least_n:
-            self._begin = None
-            return False
-        if self._begin is None or _depth_m(sample) - _depth_m(self._begin) > STANDS_M:
-            self._begin = sample
-        return sample.time_s - self._begin.time_s >= self._stand_s
-
-
-class LostSupport:
-    """Holds when the force along z has been nearly gone for the time of detection.
-
-    A stiff arm descends only slowly into the hole, so force tells much earlier than depth.
-    """
-
-    def __init__(self, press_n: float) -> None:
-        self._least_n = _LOST_RATIO * press_n
-        self.begin: ContactSample | None = None
-
-    def __call__(self, sample: ContactSample) -> bool:
-        """The condition of a slide."""
-        if abs(sample.force_n[2]) > self._least_n:
-            self.begin = None
-            return False
-        if self.begin is None:
-            self.begin = sample
-        return sample.time_s - self.begin.time_s >= DETECTION_S
 
 
 def _beyond(way_m: Array, here_m: Array) -> Array:

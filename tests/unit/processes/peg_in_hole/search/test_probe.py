@@ -5,8 +5,10 @@ import asyncio
 import numpy as np
 import pytest
 
+from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
+from cellctl.processes.peg_in_hole.search.conditions import against_a_wall
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
 from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, Hole, Part, contact, wall
@@ -86,3 +88,43 @@ def test_a_peg_that_the_face_carries_is_not_pressed_for_longer(stiffness_n_m: fl
     assert not asyncio.run(probe.enters())
     assert probe.trace.points[-1].felt is Felt.FACE
     assert world.now_s - begun_s < 2.0
+
+
+def greatest_n(world: ElasticWorld) -> float:
+    """True force at any tick, all directions."""
+    return max(float(np.linalg.norm(force[:3])) for force in world.forces)
+
+
+@pytest.mark.parametrize("stiffness_n_m", [1e5, 1e6])
+def test_a_peg_on_the_chamfer_is_let_go_before_side_and_press_add_up(stiffness_n_m: float) -> None:
+    # A stiff arm that presses down a chamfer of 45 degrees is pushed as hard from the side.
+    world = standing_in(hole(stiffness_n_m, 0.5), at_m=(0.45e-3, 0.0, 0.05e-3))
+    probe = probe_in(world, stiffness_n_m, 0.5)
+    assert asyncio.run(probe.enters())
+    assert greatest_n(world) < 1.2 * probe.press_n
+
+
+def test_a_slide_out_of_a_chamfer_ends_at_its_wall_and_the_peg_enters() -> None:
+    # The press of the touch has brought the peg onto the chamfer: nothing tells of a lost face.
+    world = standing_in(hole(1e5, 0.5), at_m=(0.3e-3, 0.0, 0.24e-3))
+    probe = probe_in(world, 1e5, 0.5)
+    assert asyncio.run(probe.spiral(np.array([0.3e-3, 0.0]), 2e-3))
+    assert greatest_n(world) < 1.2 * probe.press_n
+
+
+@pytest.mark.parametrize(
+    ("force_n", "held_by_a_wall"),
+    [
+        ((1.6, 0.0, -8.0), False),
+        ((0.0, -5.0, -8.0), True),
+        ((0.0, 5.0, -1.0), False),
+        ((2.0, 0.0, -3.0), False),
+    ],
+    ids=["friction of the face", "chamfer", "guided by its bore", "too little to tell"],
+)
+def test_what_carries_and_pushes_sideways_is_a_wall(
+    force_n: tuple[float, float, float], held_by_a_wall: bool
+) -> None:
+    zero = np.zeros(3)
+    sample = ContactSample(0.0, zero, zero, np.array(force_n), zero, 0.2)
+    assert against_a_wall(8.0, pin().cell)(sample) is held_by_a_wall
