@@ -140,17 +140,18 @@ class InsertionStream(PoseStream):
 
     def __init__(self, world: ContactWorld) -> None:
         self.period_s, self.limits = PERIOD_S, LIMITS
-        self._world, self._tick = world, 1
+        self._world, self._tick, self._sent_s = world, 1, world.now_s
 
     @property
     def report(self) -> StreamReport:
         """Where the arm is by its encoders."""
         world = self._world
         flange = RigidTransform.from_matrix(world.flange)
-        return StreamReport(world.now_s, self._tick, flange, world.late, world.late)
+        return StreamReport(world.now_s, self._tick, flange, world.late, world.late, self._sent_s)
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
         """See ``PoseStream``."""
+        self._sent_s = self._world.now_s
         self._world.tick(base_T_flange.as_matrix())
         self._tick += 1
         return self.report

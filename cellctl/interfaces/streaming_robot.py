@@ -51,6 +51,8 @@ class StreamReport:
     lost: int
     """Ticks since the beginning that found no new setpoint. The robot stood still or finished its
     last step then; what was lost is not made up for."""
+    sent_s: float
+    """Monotonic time at which this PC sent its newest setpoint; before the first, ``time_s``."""
 
 
 class PoseStream(ABC):

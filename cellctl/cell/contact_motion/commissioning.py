@@ -106,6 +106,24 @@ async def commission_contact(
     )
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _Swing:
+    """What was sent along z, when, and what followed; an entry for each of n setpoints.
+
+    Pose, force and setpoint have times of their own: on a busy PC they lie apart by far more than
+    they would have to, and otherwise at every tick.
+    """
+
+    samples: list[ContactSample]
+    """After each setpoint."""
+    command_m: Array
+    sent_s: Array
+    force_s: Array
+    """When the forces of the samples were measured."""
+    used_s: Array
+    """Age, when a setpoint went out, of the newest force that it could follow from."""
+
+
 class _Commissioning:
     def __init__(self, loop: ContactLoop) -> None:
         self._loop = loop
@@ -114,10 +132,10 @@ class _Commissioning:
         self.greatest_chirp_m = fastest_m_s / (2 * np.pi * _FASTEST_CHIRP_HZ)
 
     async def motion_dead_times(self, amplitude_m: float) -> Array:
-        sent_s, samples, command = await self._chirp(amplitude_m)
-        read_s = np.array([sample.time_s for sample in samples])
-        poses = np.array([sample.task_position_tip_m[_Z] for sample in samples])
-        return burst_dead_times(sent_s, command, read_s, poses)
+        swing = await self._chirp(amplitude_m)
+        read_s = np.array([sample.time_s for sample in swing.samples])
+        poses = np.array([sample.task_position_tip_m[_Z] for sample in swing.samples])
+        return burst_dead_times(swing.sent_s, swing.command_m, read_s, poses)
 
     async def stiffness(self, travel_m: float) -> tuple[StiffnessFit, Array]:
         """The fit, and travel and force of each reading, shape (n, 2)."""
@@ -140,10 +158,15 @@ class _Commissioning:
         _, felt_n = await self._reading()
         await self._go(self._loop.tip_command[_Z] + (2 * _STEP_N - felt_n) / stiffness_n_m)
         amplitude_m = min(_STEP_N / stiffness_n_m, self.greatest_chirp_m)
-        sent_s, samples, command = await self._chirp(amplitude_m)
-        read_s = np.array([sample.time_s for sample in samples])
-        press_n = np.array([-sample.force_n[_Z] for sample in samples])
-        delays_s = burst_dead_times(sent_s, command * stiffness_n_m, read_s, press_n)
+        swing = await self._chirp(amplitude_m)
+        press_n = np.array([-sample.force_n[_Z] for sample in swing.samples])
+        delays_s = burst_dead_times(
+            swing.sent_s,
+            swing.command_m * stiffness_n_m,
+            swing.force_s,
+            press_n,
+            in_use_s=swing.used_s,
+        )
         return np.asarray(delays_s + TICKS_OF_THE_LOOP * self._loop.period_s)
 
     async def loop_figures(
@@ -197,15 +220,16 @@ class _Commissioning:
         made = AdmittanceGains(virtual_mass(figures, weights), gains, np.zeros(6), only_z)
         return Admittance(made, bounds, self._loop.period_s)
 
-    async def _chirp(self, amplitude_m: float) -> tuple[Array, list[ContactSample], Array]:
-        """When each setpoint was sent, what followed, and z that was sent."""
+    async def _chirp(self, amplitude_m: float) -> "_Swing":
         shifts = chirp(amplitude_m, _CHIRP_S, self._loop.period_s)
-        begin = self._loop.tip_command
-        sent_s, samples = [], []
+        begin, loop = self._loop.tip_command, self._loop
+        times, samples = [], []
         for shift_m in shifts:
-            sent_s.append(self._loop.sample.time_s)
-            samples.append(await self._loop.send(begin + shift_m * np.eye(6)[_Z]))
-        return np.array(sent_s), samples, np.asarray(begin[_Z] + shifts)
+            known_s = loop.force_s
+            samples.append(await loop.send(begin + shift_m * np.eye(6)[_Z]))
+            times.append((loop.sent_s, loop.force_s, loop.sent_s - known_s))
+        sent_s, force_s, used_s = np.array(times).T
+        return _Swing(samples, np.asarray(begin[_Z] + shifts), sent_s, force_s, used_s)
 
     async def _reading(self) -> tuple[float, float]:
         """Travel and force along z at standstill: the second half of some ticks."""

@@ -63,6 +63,16 @@ class ContactLoop:
         return self.stream.period_s
 
     @property
+    def sent_s(self) -> float:
+        """When the newest setpoint went out; on the clock of the forces."""
+        return self._report.sent_s
+
+    @property
+    def force_s(self) -> float:
+        """When the newest force that ``sample`` holds was measured."""
+        return self._filter.time_s
+
+    @property
     def felt(self) -> Array:
         """Filtered wrench on the peg about its tip, in the axes of the task, shape (6,)."""
         return np.concatenate([self.sample.force_n, self.sample.moment_nm])

@@ -82,7 +82,7 @@ class ServoStream(PoseStream):
         here = read_pose(pose, self._config.euler)
         self._began_s = asked_s
         self._start = self._last = self._command = here
-        self._report = StreamReport(asked_s, 1, here, late=0, lost=0)
+        self._report = StreamReport(asked_s, 1, here, late=0, lost=0, sent_s=asked_s)
         self._expect_setpoint()
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
@@ -99,9 +99,10 @@ class ServoStream(PoseStream):
         # one, nothing is left to limit.
         caught_up = self._command is before
         self._sent = base_T_flange if caught_up else self._towards(base_T_flange)
+        sent_s = now_s()
         await self._send(self._sent)
         self._late += now_s() > self._began_s + tick * self.period_s
-        self._report = StreamReport(asked_s, tick, here, self._late, self._lost)
+        self._report = StreamReport(asked_s, tick, here, self._late, self._lost, sent_s)
         return self._report
 
     async def finish(self, timeout_s: float) -> None:

@@ -92,6 +92,7 @@ class InProcessStream(PoseStream):
         self._robot = robot
         self._start = self._last = robot.flange
         self._setpoint: RigidTransform | None = None
+        self._sent_s: float | None = None
         self._tick, self._lost, self._silent_ticks = 1, 0, 0
         self._end: CellError | None = None
         self._news = asyncio.Event()
@@ -100,13 +101,15 @@ class InProcessStream(PoseStream):
     @property
     def report(self) -> StreamReport:
         flange, late = self._robot.flange, self._robot.late
-        return StreamReport(now_s(), self._tick, flange, late, self._lost)
+        here_s = now_s()
+        sent_s = here_s if self._sent_s is None else self._sent_s
+        return StreamReport(here_s, self._tick, flange, late, self._lost, sent_s)
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
         self.check()
         self._near(base_T_flange, self._last, self.limits.step_m, self.limits.step_rad)
         self._near(base_T_flange, self._start, self.limits.travel_m, self.limits.travel_rad)
-        self._last = base_T_flange
+        self._last, self._sent_s = base_T_flange, now_s()
         if self._robot.losses:
             self._robot.losses -= 1
         else:

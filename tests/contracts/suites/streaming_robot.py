@@ -201,8 +201,11 @@ class StreamingRobotContract(ABC):
         async with connected.robot.stream(self.limits(connected)) as stream:
             start, step_m = stream.report, stream.limits.step_m / 2
             before = start
+            assert start.sent_s == start.time_s, "nothing was sent yet"
             for number in range(1, 21):
+                asked_s = now_s()
                 report = await stream.advance(raised(start, number * step_m))
+                assert asked_s <= report.sent_s <= now_s()
                 assert report.tick > before.tick
                 assert report.time_s >= before.time_s
                 assert (report.late, report.lost) >= (before.late, before.lost)

@@ -67,8 +67,9 @@ def chirp(amplitude_m: float, duration_s: float, period_s: float) -> Array:
 
 
 def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> DelayFit:
-    """Delay and lag from commands, held from tick to tick, to responses; all of shape (n,).
+    """Delay and lag from commands, each held until the next, to responses.
 
+    Shapes (n,) of the commands and (m,) of the responses; neither times need be regular.
     Raises ``LoopFitRefused`` when a delay does not explain the response.
     """
     period_s = float(np.median(np.diff(sent_s)))
@@ -79,8 +80,7 @@ def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> 
 
     def model(parameters: Array) -> tuple[Array, Array]:
         delay_s, lag_s = parameters
-        # A value that is held for a tick is, for a slow signal, half a tick later than its samples.
-        late = np.interp(grid_s - delay_s - period_s / 2, sent_s, command)
+        late = _held_mean(grid_s - delay_s, sent_s, command, period_s)
         share = 2.0 * max(lag_s, 1e-6) * _FINER / period_s
         numerator, denominator = [1.0, 1.0], [share + 1.0, 1.0 - share]
         begun = lfilter(numerator, denominator, late - late[0]) + late[0]
@@ -111,14 +111,40 @@ def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> 
     return DelayFit(float(fit.x[0]), float(fit.x[1]), float(solved[0]), residual)
 
 
-def burst_dead_times(sent_s: Array, command: Array, read_s: Array, response: Array) -> Array:
-    """Dead time of each burst of 200 ticks or more of a chirp, shape (n,): late ones count."""
+def _held_mean(at_s: Array, sent_s: Array, values: Array, window_s: float) -> Array:
+    """Means over a window round each time of a signal that is held from value to value.
+
+    Over one tick, so that a fit sees no steps; it shifts nothing. A gap of two ticks is a value
+    that is held for two.
+    """
+    ends_s = np.append(sent_s, max(at_s[-1], sent_s[-1]) + window_s)
+    held = np.concatenate([[0.0], np.cumsum(values * np.diff(ends_s))])
+    before_s = np.minimum(at_s - window_s / 2 - sent_s[0], 0.0)
+    begun_s = np.minimum(at_s + window_s / 2 - sent_s[0], 0.0)
+    later = np.interp(at_s + window_s / 2, ends_s, held) + begun_s * values[0]
+    sooner = np.interp(at_s - window_s / 2, ends_s, held) + before_s * values[0]
+    return np.asarray((later - sooner) / window_s)
+
+
+def burst_dead_times(
+    sent_s: Array,
+    command: Array,
+    read_s: Array,
+    response: Array,
+    *,
+    in_use_s: Array | None = None,
+) -> Array:
+    """Dead time of each burst of 200 ticks or more of a chirp, shape (n,): late ones count.
+
+    ``in_use_s`` (n,): age of the response that a loop has when it sends; its mean is added.
+    """
     faded = round(_FADED * len(command))
     whole = np.arange(faded, len(command) - faded)
     least = max(BURST_TICKS, round(BURST_S / float(np.median(np.diff(sent_s)))))
     pieces = np.array_split(whole, max(1, len(whole) // least))
     fits = [fit_delay(sent_s[p], command[p], read_s[p], response[p]) for p in pieces]
-    return np.array([fit.dead_time_s for fit in fits])
+    ages_s = [0.0 if in_use_s is None else float(in_use_s[p].mean()) for p in pieces]
+    return np.array([fit.dead_time_s + age_s for fit, age_s in zip(fits, ages_s, strict=True)])
 
 
 def fit_stiffness(travel_m: Array, force_n: Array) -> StiffnessFit:

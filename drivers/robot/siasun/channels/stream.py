@@ -4,6 +4,7 @@ import asyncio
 
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.clock import now_s
 from cellctl.errors.link import ProtocolViolation
 from cellctl.errors.robot import StreamSilent
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamOffer, StreamReport
@@ -32,6 +33,7 @@ class SiasunStream(PoseStream):
         self._command = command
         self._bounds = bounds
         self._set_number = 0
+        self._sent_s: float | None = None
         self._report: StreamReport | None = None
 
     @property
@@ -54,6 +56,7 @@ class SiasunStream(PoseStream):
         # The newest tick may have come after the report that the caller has seen.
         number = self.report.tick + 1
         xyzabc = write_pose(base_T_flange, self._channel.hello.euler_order)
+        self._sent_s = now_s()
         self._channel.send(protocol.set_point(self._command.session, number, xyzabc))
         self._last, self._set_number = base_T_flange, number
         return await self._after(number - 1)
@@ -92,4 +95,5 @@ class SiasunStream(PoseStream):
             base_T_flange=read_pose(tick.flange_xyzabc, self._channel.hello.euler_order),
             late=tick.late,
             lost=tick.lost,
+            sent_s=self._command.tick_time_s if self._sent_s is None else self._sent_s,
         )

@@ -170,15 +170,18 @@ class WorldStream(PoseStream):
         self.period_s, self.limits = world.period_s, LIMITS
         self._world = world
         self._tick = 1
+        self._sent_s = world.now_s
 
     @property
     def report(self) -> StreamReport:
         world = self._world
-        return StreamReport(world.now_s, self._tick, FRAMES.base_T_flange(world.tip), 0, 0)
+        flange = FRAMES.base_T_flange(world.tip)
+        return StreamReport(world.now_s, self._tick, flange, 0, 0, self._sent_s)
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
         # A tick is awaited on the wire, too, and others get their turn.
         await asyncio.sleep(0)
+        self._sent_s = self._world.now_s
         self._world.tick(FRAMES.tip(base_T_flange))
         self._tick += 1
         return self.report

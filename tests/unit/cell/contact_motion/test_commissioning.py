@@ -1,14 +1,22 @@
 """R9 of the study of insertion by touch."""
 
 import asyncio
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.contact_motion.commissioning import commission_contact
 from cellctl.errors.streamed_contact import LoopFitRefused
 from cellctl.force.contact.streamed.gains import LoopFigures
-from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, contact_loop, wall
+from cellctl.interfaces.streaming_robot import StreamReport
+from tests.unit.cell.contact_motion.elastic_world import (
+    ElasticWorld,
+    WorldStream,
+    contact_loop,
+    wall,
+)
 
 START = np.array([0.0, 0.0, -0.06e-3, 0.0, 0.0, 0.0])
 FREE_M = 0.05e-3
@@ -42,6 +50,38 @@ def test_it_finds_what_arm_and_fixture_truly_have(
         period_s * delay_ticks + lag_s, rel=0.1, abs=0.3 * period_s
     )
     assert max(-force[2] for force in world.forces) < 45.0
+
+
+class AskingStream(WorldStream):
+    """Asks for the pose before each setpoint, over a link of a busy PC: the answers take long at
+    times, and setpoints wait for them."""
+
+    ANSWERS_S = (1e-3, 1e-3, 20e-3)
+
+    def __init__(self, world: ElasticWorld) -> None:
+        super().__init__(world)
+        self._rng = np.random.default_rng(8)
+        self._asked = super().report
+
+    @property
+    def report(self) -> StreamReport:
+        return replace(self._asked, sent_s=self._sent_s)
+
+    async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
+        self._asked = super().report
+        self._world.advance(float(self._rng.choice(self.ANSWERS_S)), self._world.sent[-1])
+        return await super().advance(base_T_flange)
+
+
+def test_answers_of_a_busy_link_do_not_blur_the_dead_time() -> None:
+    world = ElasticWorld(wall(1e5), 8e-3, 0, 5e-3, sigma_n=0.3, tip=START.copy())
+    world.sent.append(START.copy())
+    world.stream = AskingStream(world)
+    waits_s = float(np.mean(AskingStream.ANSWERS_S))
+    bounds = LoopFigures(1.5e5, 60e-3)
+    found = asyncio.run(commission_contact(contact_loop(world, bounds), 3e-3, FREE_M))
+    # A force has waited for the answer, too, before the setpoint that follows from it goes out.
+    assert found.figures.dead_time_s == pytest.approx(world.dead_time_s + waits_s, rel=0.15)
 
 
 def test_a_fixture_that_is_not_there_is_told() -> None:
