@@ -25,6 +25,20 @@ class Progress:
     message: str = ""
 
 
+def on_new_message(tell: Callable[[str], None]) -> Callable[[Progress], None]:
+    """An observer that tells of every message that differs from the one before."""
+    last = ""
+
+    def observe(progress: Progress) -> None:
+        nonlocal last
+        if progress.message != last:
+            last = progress.message
+            if last:
+                tell(last)
+
+    return observe
+
+
 @dataclass(slots=True)
 class ProgressBoard:
     """The one place where the present progress hangs; observers are told of each change."""

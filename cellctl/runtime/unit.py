@@ -29,7 +29,7 @@ from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.jobs.runner import JobRunner
 from cellctl.runtime.process import CellServices, calibration_kinds, open_processes
-from cellctl.runtime.progress import ProgressBoard
+from cellctl.runtime.progress import ProgressBoard, on_new_message
 from cellctl.runtime.status_view import StatusView
 
 _log = log.get(__name__)
@@ -49,6 +49,8 @@ class UnitController:
         self._store = store
         self._jobs = JobRunner(cell.time_limits)
         self.board = ProgressBoard()
+        # In the log, too: who reads it later learns what the arm was doing when something happened.
+        self.board.observers.append(on_new_message(lambda text: _log.info("doing", text=text)))
         self.background = Background()
         self.alarms = Alarms(store, self.background)
         self.calibrations = CalibrationStore(

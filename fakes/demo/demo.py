@@ -88,6 +88,9 @@ class Demo(ABC):
     """All calibrations of the cell in their order, for ``--calibrate``."""
     steps: ClassVar[Mapping[int, str]] = {}
     """Labels of the steps by number, where they differ from those that the line PLC knows."""
+    telling: ClassVar[Sequence[str]] = ()
+    """Keys of a message whose change is worth a line, besides state, step and alarms. ``doing``:
+    what the daemon has said last."""
 
     def prepare(self, control: Control) -> None:  # noqa: B027  most cells begin as they are
         """What the operator does at the cell before the line starts the run."""

@@ -20,6 +20,7 @@ class LiveView:
     def __init__(self, console: Console, demo: Demo) -> None:
         self._console = console
         self._demo = demo
+        self._telling = (*_TELLING, *demo.telling)
         self._live = Live(console=console, refresh_per_second=8, transient=True)
         self._last: dict[str, Any] = {}
         self._begun_s: float | None = None
@@ -46,7 +47,7 @@ class LiveView:
             self._begun_s = message["time"]
         # Between two steps the register shows none: a line for that would only be noise.
         pause = message["state"] == "EXECUTE" and not message["step"]
-        if any(self._last.get(key) != message.get(key) for key in _TELLING) and not pause:
+        if any(self._last.get(key) != message.get(key) for key in self._telling) and not pause:
             time_s = message["time"] - self._begun_s
             self._console.print(f"{time_s:6.1f} s  {self._news(message)}", markup=False)
         self._last = message

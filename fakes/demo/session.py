@@ -198,12 +198,17 @@ class Session:
         result: dict[str, Any] = {}
         with LiveView(self._console, self._demo) as view:
             while (message := plc.next_line(timeout_s=None)) is not None:
-                view.show(message)
+                view.show(message | {"doing": self._doing()})
                 if message.get("event") in ("result", "error"):
                     result = message
         if not result:
             raise ChildFailed(f"the line PLC ended without a result:\n{plc.last_words()}")
         return result
+
+    def _doing(self) -> str:
+        """What the daemon has said last of the job."""
+        said = self._daemon.logged("doing") if self._daemon is not None else None
+        return "" if said is None else str(said["text"])
 
     def _faults(self) -> list[str]:
         return self._daemon.faults() if self._daemon is not None else []

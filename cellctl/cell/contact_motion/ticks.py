@@ -32,6 +32,18 @@ class TickObserver(ABC):
         """A tick has passed."""
 
 
+class Observers(TickObserver):
+    """Several, told in their order."""
+
+    def __init__(self, *observers: TickObserver) -> None:
+        self._observers = observers
+
+    def take(self, tick: ContactTick) -> None:
+        """See ``TickObserver``."""
+        for observer in self._observers:
+            observer.take(tick)
+
+
 class NoObserver(TickObserver):
     """Looks away."""
 

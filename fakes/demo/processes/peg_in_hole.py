@@ -35,6 +35,7 @@ class PegInHoleDemo(Demo):
     procedures: ClassVar[Sequence[Procedure]] = (
         Procedure(301, "contact loop: stiffness and dead time", _next_part),
     )
+    telling: ClassVar[Sequence[str]] = ("doing",)
     steps: ClassVar[Mapping[int, str]] = {10: "approach", 20: "touch face", 30: "search and insert"}
     forces: ClassVar[Mapping[str, float]] = {"insertion_n": 30.0, "fault_n": 50.0, "fault_nm": 1.0}
     """Greatest 20 ms mean of the true force, 3 ms mean, and moment, where no run was opened: the
@@ -54,9 +55,30 @@ class PegInHoleDemo(Demo):
         figures["beyond"] = beyond
         return Judgement(evidence.good and not beyond, figures, _rows(figures, limited))
 
+    def news(self, before: Message, now: Message) -> str | None:
+        """Phase of the cycle and class of the contact, in the daemon's own words."""
+        doing = now.get("doing")
+        new = doing != before.get("doing") and now["state"] == "EXECUTE"
+        return str(doing) if doing and new else None
+
     def rows(self, now: Message) -> Mapping[str, str]:
-        """The force on the part."""
-        return {"force z": force_row(now)}
+        """Phase and class of contact, depth, force and moments."""
+        return {
+            "contact": now.get("doing") or "-",
+            "to the seat": _to_the_seat(now),
+            "force z": force_row(now),
+            "moments": _moments(now),
+        }
+
+
+def _to_the_seat(now: Message) -> str:
+    depth_mm = (now.get("error_mm") or [None] * 3)[2]
+    return "-" if depth_mm is None else f"{-depth_mm:6.2f} mm"
+
+
+def _moments(now: Message) -> str:
+    peaks = [peak for peak in (now.get("force_peaks") or ())[3:] if peak is not None]
+    return f"peaks {', '.join(f'{peak:.2f}' for peak in peaks)} N·m" if peaks else "-"
 
 
 def _limited(forces: Mapping[str, float]) -> Sequence[Limited]:

@@ -2,7 +2,7 @@
 
 import math
 
-from cellctl.runtime.progress import Progress, ProgressBoard
+from cellctl.runtime.progress import Progress, ProgressBoard, on_new_message
 
 
 def test_observers_are_told_of_every_change() -> None:
@@ -24,3 +24,14 @@ def test_nothing_is_known_at_first() -> None:
     progress = Progress()
     assert all(math.isnan(value) for value in (*progress.error_mm_deg, *progress.force_peaks))
     assert not progress.contact
+
+
+def test_a_message_is_told_once() -> None:
+    board, told = ProgressBoard(), list[str]()
+    board.observers.append(on_new_message(told.append))
+    board.update(message="search")
+    board.update(iteration=1)
+    board.update(message="insert")
+    board.reset()
+    board.update(message="insert")
+    assert told == ["search", "insert", "insert"]

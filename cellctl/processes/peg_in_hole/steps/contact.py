@@ -7,9 +7,11 @@ from cellctl.cell.contact_motion.contact_loop import ContactLoop
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.cell.contact_motion.opening import open_contact_loop, watch_closer
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.contact_motion.ticks import Observers
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.record.live_figures import LiveFigures
 from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import PegRun
 
@@ -27,6 +29,7 @@ async def recorded_loop(
 ) -> AsyncIterator[ContactLoop]:
     """The same without motions, for what sends its setpoints itself."""
     cell, log = run.facts.cell, TickLog()
+    live = LiveFigures(run.board, run.facts.plan.task.fit.depth_m)
     try:
         async with open_contact_loop(
             cell.cell,
@@ -34,7 +37,7 @@ async def recorded_loop(
             frames,
             run.facts.contact,
             cell.robot.stream_offer().limits,
-            observer=log,
+            observer=Observers(log, live),
         ) as loop:
             yield loop
     finally:

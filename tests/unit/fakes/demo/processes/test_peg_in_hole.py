@@ -123,3 +123,36 @@ def test_a_shipped_cell_comes_with_the_measured_loop(name: str) -> None:
     assert isinstance(settings, PegSettings)
     # Better than the bounds, or nothing would be gained by measuring.
     assert figures.loop_n_s_m < 0.7 * settings.stiffness_n_mm * settings.dead_time_ms
+
+
+NOW: dict[str, Any] = {
+    "state": "EXECUTE",
+    "step": "search and insert",
+    "step_number": 30,
+    "error_mm": [0.1, 0.0, -4.25],
+    "force_z_n": -7.5,
+    "force_peaks": [1.0, 2.0, 9.0, 0.11, 0.02, 0.0],
+    "force_limit_n": None,
+    "doing": "search: spiral; first contact: end face",
+}
+
+
+def test_the_live_view_shows_contact_depth_force_and_moments() -> None:
+    rows = PegInHoleDemo().rows(NOW)
+    assert "end face" in rows["contact"]
+    assert rows["to the seat"].strip() == "4.25 mm"
+    assert "-7.50 N" in rows["force z"]
+    assert rows["moments"] == "peaks 0.11, 0.02, 0.00 N·m"
+
+
+def test_a_new_class_of_contact_is_worth_a_line() -> None:
+    demo = PegInHoleDemo()
+    assert "doing" in demo.telling
+    assert demo.news(NOW, NOW | {"doing": "insert: aligned"}) == "insert: aligned"
+    assert demo.news(NOW, NOW) is None
+    assert demo.news(NOW, NOW | {"state": "COMPLETE", "doing": "over"}) is None
+
+
+def test_before_any_contact_nothing_is_claimed() -> None:
+    empty = {"state": "EXECUTE", "step": "", "step_number": 0}
+    assert set(PegInHoleDemo().rows(empty).values()) == {"-"}
