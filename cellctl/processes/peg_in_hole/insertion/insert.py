@@ -24,8 +24,11 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 SEAT_TOLERANCE_M = 0.3e-3
 _MOST_RECOVERIES = 3
 _RECOVERY_S = 15.0
+"""From the end of the first feed on."""
 _GAIN_M = 0.2e-3
+"""Depth that a recovery has to win."""
 _SAME_DEPTH_M = 0.1e-3
+"""Two feeds that end no farther apart than this have met the same thing."""
 
 
 @dataclass(frozen=True, slots=True)

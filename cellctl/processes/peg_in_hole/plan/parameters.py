@@ -14,9 +14,11 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 DETECTION_S = 0.03
 """A lost or a new contact is believed after so long."""
 _TOUCH_N = 8.0
+"""By so much a contact may grow, and with so much a search presses, where the recipe allows it."""
 _FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
 _SIDE_N = 5.0
+"""With so much the peg is held against the outer face of a plug (section 3.6)."""
 STANDS_M = 0.05e-3
 """A peg that is carried and goes no deeper than this stands."""
 _LONGER, _SETTLE_S = 1.5, 0.5
@@ -84,6 +86,8 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "c + max(ch_hole + ch_peg - 0.1 mm, 0)",
             {"c": fit.clearance_m, "ch_hole": fit.hole_chamfer_m, "ch_peg": fit.peg_chamfer_m},
         ),
+        # At this pitch the path passes the hole's axis within 0.8 C, and so crosses the circle in
+        # which the peg falls in on a chord of 1.2 C at least: the slide speed rests on that chord.
         Derived("pitch", 1.6 * catch_m, "m", "1.6 C", {"C": catch_m}),
         Derived(
             "slide speed",
@@ -109,7 +113,8 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "μ F_z + 3 σ_F",
             {"μ": cell.friction, "F_z": press_n, "σ_F": cell.force_sigma_n},
         ),
-        # A press moves the arm at F / S only, with S for the axes that one contact loads.
+        # A press moves the arm at F / S only, with S = 1.5 n k θ for the n axes that one contact
+        # loads: one on a face, three on a chamfer (section 4.1).
         Derived("sink speed", sink_m_s, "m/s", "min(F / (1.5 k θ), v_t)", pressed),
         Derived(
             "entry time",

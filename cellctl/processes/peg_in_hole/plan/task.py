@@ -118,7 +118,7 @@ class SearchTask:
 
     @property
     def search_limit_s(self) -> float:
-        """A loop that is slow by nature gets more time (reference, section 1)."""
+        """A loop that is slow by nature gets more time (section 1 of the study)."""
         return 60.0 if self.cell.loop_n_s_m <= _SLOW_LOOP_N_S_M else 110.0
 
     @property

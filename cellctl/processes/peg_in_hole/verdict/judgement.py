@@ -24,10 +24,15 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 
 _MM = 1e-3
+# Items 1, 7, 5 and 4 of section 5.4.
 _SEAT_MM, _RETOUCH_MM, _STEADY_MM, _PLAY_MM = 0.3, 0.15, 0.1, 0.1
 _LEAST_SLOPE = 0.3
+"""Rise of the force at the seat over the stiffness of arm and contact."""
 _LEAST_SIGMAS = 5.0
+"""By so many standard deviations a living sensor's force changes at least between two pushes."""
 _MOST_OF_GRIP = 0.6
+"""Greatest force over that at which the part slips; the limit of an insertion is to be set to no
+more (section 4.5)."""
 
 DEPTH, LOW_FORCE, HIGH_FORCE = "distance from the seat", "seat force", "greatest seat force"
 SLOPE = "rise of the force at the seat"
