@@ -10,6 +10,8 @@ from pathlib import Path
 PEOPLE = {"operator": "operate", "engineer": "maintain"}
 """Who may sign in, and their roles."""
 _N, _R, _P = 2**15, 8, 1
+"""Cost figures of scrypt, those of the operator page: a secret does not carry them, and with others
+no PIN would fit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,9 @@ _JOB_PORTS: dict[int, Channel] = {5001: "CMD", 5002: "STA", 5003: "GRD"}
 """Ports in the shipped job files."""
 _CAUSES = {1: "asked for by the PC", 2: "no heartbeat", 3: "link lost", 4: "panel"}
 _PERMIT, _GUARD_PERMIT, _PERMIT_LOOP = 9, 10, 9
+"""DO[9] and DO[10], the contacts of both background jobs, and DI[9], the end of the permit loop."""
+_JOB_ALARM = 4100
+"""Error number that this controller shows when a job has ended in an alarm; any but 0 would do."""
 
 
 class JobController:
@@ -165,7 +168,7 @@ class JobController:
             ("DI", 4): panel.mode == "AUT",
             ("DI", 5): self.motions.moving(),
             ("DI", _PERMIT_LOOP): self._permit(),
-            ("GIH", 1): 4100 if self.alarm else panel.error_code,
+            ("GIH", 1): _JOB_ALARM if self.alarm else panel.error_code,
             ("GIB", 2): 0 if self.faults.active("override_zero") else 100,
         }
         if (family, index) == ("GIB", 1):

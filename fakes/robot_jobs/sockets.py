@@ -18,6 +18,7 @@ _WRONG_HELLOS = {
     "wrong_name": (r"(CMD|STA|GRD),[^,]*", r"\1,NOBODY"),
 }
 _ACCEPTED = b"OKAY"
+"""How the PC answers a hello that it accepts (docs/protocols/sjl-2.md)."""
 _STOP, _STOP_BYTES = b"ABRT", 26
 """The word of a stop, and how long its record is (docs/protocols/sjl-2.md, section 3)."""
 

@@ -21,6 +21,7 @@ async def connected(cell: CellConfig, name: str) -> AsyncIterator[tuple[Robot, f
     driver, settings = robot_driver(cell.robots[name])
     robot = cast(Robot, cast(Any, driver)(name, settings))
     began_s = now_s()
+    # Inside, because a connection that fails half-way has links to be dropped, too.
     try:
         await robot.connect()
         yield robot, now_s() - began_s
