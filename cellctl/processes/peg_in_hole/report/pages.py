@@ -58,6 +58,8 @@ def _search(record: RunRecord) -> Iterator[ReportBlock]:
         yield FactList(
             (
                 ("strategies, in their order", ", ".join(choice["order"])),
+                # Of the searches that were not chosen, too: the times say why.
+                *((f"estimate, {one['name']}", _computed(one)) for one in choice["estimates"]),
                 *(
                     (one["name"], _computed(one))
                     for one in choice["parameters"] + choice.get("guard", [])

@@ -28,6 +28,7 @@ from cellctl.processes.peg_in_hole.steps import insert_peg
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord
+from cellctl.records.report.sections import FactList
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
@@ -108,6 +109,13 @@ async def test_a_search_that_finds_no_hole_keeps_its_path_and_leaves_the_face(
     assert bench.board.current.message == "the peg was drawn out"
     drawn = pages(record, lambda _artefact: b"")
     assert [section.title for section in drawn.sections] == ["Search", "Insertion"]
+    facts = [
+        fact
+        for block in drawn.sections[0].blocks
+        if isinstance(block, FactList)
+        for fact in block.facts
+    ]
+    assert "estimate, tilted-valley" in dict(facts), "why the other searches were not the first"
 
 
 async def test_a_wedged_peg_is_left_where_it_stands_and_its_search_is_kept(
