@@ -138,7 +138,7 @@ def _verdict(record: RunRecord) -> tuple[str, str]:
         return "Not closed", "bad"
     # The measuring room has the last word on a part that its run called good.
     if part_verdict(record) != result:
-        return "Bad part: plug gauge beyond its limit", "bad"
+        return "Bad part by gauge", "bad"
     if record.head.mode == DRY_RUN and result == RunResult.BAD:
         return "Dry run, no part", "good"
     if result == RunResult.GOOD and not _of_production(record):

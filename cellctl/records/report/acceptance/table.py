@@ -28,7 +28,8 @@ _LEGEND = (
     f"U: expanded uncertainty, coverage factor k = {COVERAGE_FACTOR:g}, level of confidence about "
     "95 % (JCGM 100): the value is known to ± U. Where a row has an accepted range, it is the "
     "required one less U, and the measured value must lie in it (JCGM 106, guarded acceptance). "
-    "Rows without an accepted range are judged by the required range alone; a dash as U means that "
+    "Rows without an accepted range are judged by the required range alone, marked "
+    "(< U) where the margin is below U; a dash as U means that "
     "no uncertainty was evaluated for that value."
 )
 _VERDICTS = {
@@ -83,7 +84,18 @@ def _rounded(value: float | None, unit: str, places: int | None) -> str:
 def _verdict(entry: Requirement) -> tuple[str, RowMark]:
     if entry.verdict is None:
         return ("not measured" if entry.value is None else "no limit known"), RowMark.NONE
-    return _VERDICTS[entry.verdict]
+    text, mark = _VERDICTS[entry.verdict]
+    return (f"{text} (< U)" if _closer_than_u(entry) else text), mark
+
+
+def _closer_than_u(entry: Requirement) -> bool:
+    """Whether a row that is judged without a guard band conforms by less than its uncertainty."""
+    if entry.verdict is not Verdict.PASS or entry.accepted != NO_LIMIT:
+        return False
+    bounds = (bound for bound in (entry.required.lower, entry.required.upper) if bound is not None)
+    if entry.value is None or entry.expanded is None:
+        return False
+    return any(abs(bound - entry.value) < entry.expanded for bound in bounds)
 
 
 def limit_text(limit: Limit, unit: str, places: int | None = None) -> str:

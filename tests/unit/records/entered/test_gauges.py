@@ -77,7 +77,7 @@ def test_both_entries_are_shown_everywhere(store: RunStore, run: int, tmp_path: 
 def test_the_report_and_show_say_bad(store: RunStore, run: int, tmp_path: Path) -> None:
     store.set_gauge(run, "P5", 5.70, "OP-7")
     page = " ".join(read(export_run(store, run, tmp_path)).texts)
-    assert "Bad part: plug gauge beyond its limit" in page
+    assert "Bad part by gauge" in page
     assert "Good part" not in page
     assert json.loads((tmp_path / "run.json").read_text())["part_verdict"] == "bad"
     shown = CliRunner().invoke(app, ["show", str(run), "--data-dir", str(store.path)]).stdout

@@ -10,7 +10,7 @@ import pytest
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entered.notes import add_note
-from cellctl.records.entries import Document, RunRecord
+from cellctl.records.entries import Document, RunRecord, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit, figure
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
@@ -113,6 +113,25 @@ def test_a_figure_without_a_limit_is_no_requirement(store: RunStore) -> None:
     assert of_figure(record, "speed") is None
     assert guarded(record, "missing", "", "none") is None
     assert acceptance(record, ()).blocks == ()
+
+
+@pytest.mark.parametrize(
+    ("value", "accepted", "verdict"),
+    [
+        (0.0021, NO_LIMIT, "✓ conforms (< U)"),
+        (0.0005, NO_LIMIT, "✓ conforms"),
+        (0.0021, Limit(upper=0.003), "✓ conforms"),
+    ],
+)
+def test_a_row_whose_margin_is_below_its_uncertainty_says_so(
+    store: RunStore, value: float, accepted: Limit, verdict: str
+) -> None:
+    limit = Limit(upper=0.005)
+    entry = Requirement(
+        "angle", value, "°", limit, Verdict.PASS, expanded=0.0042, accepted=accepted
+    )
+    rows = rows_of(store.run(start(store)), RequirementGroup("Group", (entry,)))
+    assert rows[1][5] == verdict
 
 
 def test_a_value_without_a_limit_is_not_called_unmeasured(store: RunStore) -> None:
