@@ -1,8 +1,11 @@
 """The report as PDF: the same page as in HTML, laid out on A4 by WeasyPrint."""
 
 import logging
+from pathlib import Path
 
 from cellctl.errors.records import PdfNotMade
+
+_SHEET = Path(__file__).with_name("report.pdf.css")
 
 
 def to_pdf(page: str) -> bytes:
@@ -20,5 +23,8 @@ def to_pdf(page: str) -> bytes:
     # It warns about properties that only browsers know; they change nothing on paper.
     logging.getLogger("weasyprint").setLevel(logging.ERROR)
     fetcher = URLFetcher(allowed_protocols={"data"})
+    # Within the page: what WeasyPrint takes beside it counts less than the page's own style.
+    sheet = f"<style>{_SHEET.read_text(encoding='utf-8')}</style>"
+    page = page.replace("</head>", f"{sheet}</head>", 1)
     data: bytes = HTML(string=page, url_fetcher=fetcher).write_pdf()
     return data

@@ -18,9 +18,13 @@ from typer.testing import CliRunner
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import PdfNotMade
 from cellctl.processes.deck_to_frame.report.pages import pages
-from cellctl.records import RunStore
+from cellctl.records import RunResult, RunStore
+from cellctl.records.entered.gauges import GAUGE_HOLES
+from cellctl.records.entries import Document
+from cellctl.records.figures import Limit, figure
 from cellctl.records.report.export import write_report
 from cellctl.records.report.pdf import to_pdf
+from tests.unit.records.conftest import start
 from tests.unit.records.page import read
 from tests.unit.records.sample import good_run
 
@@ -89,6 +93,23 @@ def test_the_first_page_holds_what_is_signed(recorded: Recorded) -> None:
     first = PdfReader(recorded.pdf).pages[0].extract_text()
     for expected in ("SAT-0042", "Good part", "Acceptance", "38.4 N", "k = 2", "accepted by"):
         assert expected in first, expected
+
+
+@drawn
+def test_the_first_page_is_signed_however_much_it_holds(store: RunStore, tmp_path: Path) -> None:
+    run = start(store)
+    store.add(run, Document(GAUGE_HOLES, {"P1": {"least_mm": 5.8, "most_mm": 6.0}}))
+    limit = Limit(upper=99.0)
+    store.add(run, *(figure(f"further_{n}", float(n), "mm", limit=limit) for n in range(60)))
+    store.close_run(run, RunResult.GOOD)
+    for diameter_mm in (5.70, 5.95):
+        store.set_gauge(run, "P1", diameter_mm, "anna")
+    write_report(store, run, tmp_path / "a.pdf", pages=pages, pdf=True)
+    first, second = (page.extract_text() for page in PdfReader(tmp_path / "a.pdf").pages[:2])
+    for expected in ("Acceptance", "performed by", "inspected by", "accepted by"):
+        assert expected in first, expected
+    assert "accepted by" not in second
+    assert "further" in second, "the table goes on overleaf"
 
 
 @drawn
