@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
+from cellctl.errors.streamed_contact import StreamLate
 from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
@@ -71,7 +72,8 @@ class FacePlan:
 async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) -> TouchedFace:
     """Touch on a circle round the search centre; the first point fast, since its height is unknown.
 
-    Raises ``FaceAbsent``, ``FaceUneven`` and ``FaceTilted``.
+    Raises ``FaceAbsent``, ``FaceUneven`` and ``FaceTilted``, and ``StreamLate`` when a touch takes
+    far longer than it should.
     """
     radius_m, height_uncertainty_m = plan.radius_m, plan.height_uncertainty_m
     touching = _Touching(motions, task, plan.datum_depth_m, height_uncertainty_m)
@@ -145,8 +147,14 @@ class _Touching:
     ) -> ContactSample:
         """The tip in contact at a place (2,), over which it stands."""
         touched = await self.motions.touch(_DOWN, travel_m, self.task.limits.search_n, speed_m_s)
+        x_mm, y_mm = place_m * 1e3
+        if touched.ended is Ended.TIME:
+            # Late ticks let the arm stand: it has not gone far enough to say that nothing is there.
+            raise StreamLate(
+                f"the touch at x {x_mm:.1f}, y {y_mm:.1f} mm did not go its {travel_m * 1e3:.1f} "
+                "mm in three times the time that they take"
+            )
         if touched.ended is not Ended.FORCE:
-            x_mm, y_mm = place_m * 1e3
             raise FaceAbsent(
                 f"no contact at x {x_mm:.1f}, y {y_mm:.1f} mm within {travel_m * 1e3:.1f} mm"
             )
