@@ -12,7 +12,7 @@ import pytest
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
-from cellctl.cli.faults import catalogue_page
+from cellctl.cli.faults import Language, catalogue_page
 from cellctl.errors import CellError
 from cellctl.fault_catalogue import shipped_faults
 
@@ -90,8 +90,10 @@ def test_every_fault_tells_the_operator_what_to_do() -> None:
 
 
 def test_the_fault_catalogue_is_current() -> None:
-    written = (ROOT / "docs" / "faults.md").read_text(encoding="utf-8")
-    assert written == catalogue_page(shipped_faults()), "run `cellctl faults > docs/faults.md`"
+    for page, language in (("faults.md", Language.ENGLISH), ("faults.zh.md", Language.CHINESE)):
+        written = (ROOT / "docs" / page).read_text(encoding="utf-8")
+        command = f"run `cellctl faults --lang {language} > docs/{page}`"
+        assert written == catalogue_page(shipped_faults(), language), command
 
 
 def driver_folders() -> list[Path]:

@@ -2,18 +2,59 @@
 
 import json
 from collections.abc import Iterable
+from enum import StrEnum
 from typing import Annotated
 
 import typer
 
 from cellctl.errors import CellError
+from cellctl.errors.base import Reaction
 from cellctl.fault_catalogue import known_faults
+from cellctl.translations import fault_words
+
+
+class Language(StrEnum):
+    """Languages of the catalogue."""
+
+    ENGLISH = "en"
+    CHINESE = "zh"
+
+
+_HEADS = {
+    Language.ENGLISH: ("number", "what happened", "likely cause", "what to do", "reaction"),
+    Language.CHINESE: ("编号", "故障", "可能原因", "处理方法", "反应"),
+}
+_INTRODUCTIONS = {
+    Language.ENGLISH: (
+        "# Fault catalogue",
+        "Made by `cellctl faults`. The number goes to the PLC, the text to the operator.",
+    ),
+    Language.CHINESE: (
+        "# 故障目录",
+        "由 `cellctl faults --lang zh` 生成。编号发给 PLC，文字显示给操作员。[English](faults.md)",
+    ),
+}
+_REACTIONS = {
+    Reaction.WARN: "警告",
+    Reaction.HOLD: "保持",
+    Reaction.STOP: "停止",
+    Reaction.ABORT: "中止",
+}
+_PARTS = {
+    Language.ENGLISH: ("cause:    ", "remedy:   ", "reaction: "),
+    Language.CHINESE: ("原因：", "处理：", "反应："),
+}
 
 Number = Annotated[int | None, typer.Argument(help="Number of a fault, without the F.")]
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
+Lang = Annotated[
+    Language, typer.Option("--lang", help="Plug-ins without words in it are told in English.")
+]
 
 
-def faults(number: Number = None, *, as_json: AsJson = False) -> None:
+def faults(
+    number: Number = None, *, as_json: AsJson = False, lang: Lang = Language.ENGLISH
+) -> None:
     """All faults, installed packages' included, as Markdown; or one with cause and remedy."""
     found = known_faults()
     if number is not None:
@@ -21,30 +62,36 @@ def faults(number: Number = None, *, as_json: AsJson = False) -> None:
         if not found:
             raise typer.BadParameter(_neighbours(number), param_hint="NUMBER")
     if as_json:
-        typer.echo(json.dumps([_plain(fault) for fault in found], indent=2, ensure_ascii=False))
+        plain = [_plain(fault, lang) for fault in found]
+        typer.echo(json.dumps(plain, indent=2, ensure_ascii=False))
     elif number is not None:
-        typer.echo(_one(found[0]))
+        typer.echo(_one(found[0], lang))
     else:
-        typer.echo(catalogue_page(found), nl=False)
+        typer.echo(catalogue_page(found, lang), nl=False)
 
 
-def _plain(fault: type[CellError]) -> dict[str, str | int]:
+def _plain(fault: type[CellError], language: Language) -> dict[str, str | int]:
+    words = fault_words(fault, language)
     return {
         "number": fault.number,
-        "text": fault.text,
-        "cause": fault.cause,
-        "remedy": fault.remedy,
+        "text": words.text,
+        "cause": words.cause,
+        "remedy": words.remedy,
         "reaction": fault.reaction.value,
     }
 
 
-def _one(fault: type[CellError]) -> str:
-    return (
-        f"F{fault.number:03d} {fault.text}\n"
-        f"  cause:    {fault.cause}\n"
-        f"  remedy:   {fault.remedy}\n"
-        f"  reaction: {fault.reaction.value}"
-    )
+def _one(fault: type[CellError], language: Language) -> str:
+    words = fault_words(fault, language)
+    told = (words.cause, words.remedy, _reaction(fault, language))
+    lines = [f"F{fault.number:03d} {words.text}"]
+    lines += [f"  {part}{said}" for part, said in zip(_PARTS[language], told, strict=True)]
+    return "\n".join(lines)
+
+
+def _reaction(fault: type[CellError], language: Language) -> str:
+    chinese = language is Language.CHINESE
+    return _REACTIONS[fault.reaction] if chinese else fault.reaction.value
 
 
 def _neighbours(number: int) -> str:
@@ -53,19 +100,16 @@ def _neighbours(number: int) -> str:
     return f"there is no F{number:03d}; of its hundred: {', '.join(near) or 'none'}"
 
 
-def catalogue_page(faults: Iterable[type[CellError]]) -> str:
+def catalogue_page(faults: Iterable[type[CellError]], language: Language = Language.ENGLISH) -> str:
     """A catalogue of these faults as Markdown."""
-    lines = [
-        "# Fault catalogue",
-        "",
-        "Made by `cellctl faults`. The number goes to the PLC, the text to the operator.",
-        "",
-        "| number | what happened | likely cause | what to do | reaction |",
-        "|---|---|---|---|---|",
-    ]
-    lines += [
-        f"| F{fault.number:03d} | {fault.text} | {fault.cause} | {fault.remedy} "
-        f"| {fault.reaction.value} |"
-        for fault in faults
-    ]
+    title, introduction = _INTRODUCTIONS[language]
+    lines = [title, "", introduction, "", _row(*_HEADS[language]), "|---|---|---|---|---|"]
+    for fault in faults:
+        words = fault_words(fault, language)
+        number, reaction = f"F{fault.number:03d}", _reaction(fault, language)
+        lines.append(_row(number, words.text, words.cause, words.remedy, reaction))
     return "\n".join(lines) + "\n"
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(cells)} |"

@@ -10,6 +10,9 @@ from starlette.exceptions import HTTPException
 
 from cellctl.errors import CellError
 from cellctl.errors.records import ArtefactDamaged, RunUnknown
+from cellctl.hmi.words.languages import headers_of, language_of
+from cellctl.hmi.words.page_words import refusal
+from cellctl.translations import fault_words, spoken
 
 MEDIA_TYPE = "application/problem+json"
 RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -60,8 +63,12 @@ def answer(
 
 async def _problem(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, Problem)
-    response = answer(request, error.status, error.kind, error.detail, error.members)
-    response.headers.update(error.headers)
+    language, code = language_of(request), error.members.get("reject_code")
+    detail = spoken(error.detail, language)
+    if code is not None:
+        detail = refusal(code, detail, language)
+    response = answer(request, error.status, error.kind, detail, error.members)
+    response.headers.update({**headers_of(language), **error.headers})
     return response
 
 
@@ -87,5 +94,10 @@ async def _fault(request: Request, error: Exception) -> JSONResponse:
         status = 404
     elif isinstance(error, ArtefactDamaged):
         status = 410
-    members = {"fault": error.number, "cause": error.cause, "remedy": error.remedy}
-    return answer(request, status, f"fault-{error.number}", str(error), members)
+    language = language_of(request)
+    words = fault_words(type(error), language)
+    members = {"fault": error.number, "cause": words.cause, "remedy": words.remedy}
+    detail = spoken(str(error), language)
+    response = answer(request, status, f"fault-{error.number}", detail, members)
+    response.headers.update(headers_of(language))
+    return response

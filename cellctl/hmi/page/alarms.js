@@ -3,7 +3,7 @@
 import { give, whyNot } from "./buttons.js";
 import { h, time } from "./dom.js";
 import { cell } from "./live.js";
-import { given, t } from "./texts.js";
+import { given, spoken, t } from "./texts.js";
 
 export const PRIORITY = { abort: 1, stop: 2, hold: 2, warn: 3 };
 export const MARKS = { 1: "■1", 2: "▲2", 3: "▼3" };
@@ -18,7 +18,7 @@ function one(alarm, first, firstSince) {
   const latched = (cell.snapshot.faults || []).some((fault) => fault.number === alarm.number);
   const reason = whyNot("acknowledge");
   return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number },
-    h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${alarm.text}`),
+    h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${spoken(alarm.text)}`),
     h("p", { class: "dim" }, first ? t("first_out") : t("after_first", after.toFixed(1)), ` · ${time(alarm.since)}`,
       alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${t("latched")}` : ""),
     h("p", {}, `${t("cause")}: ${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}: ${remedy(alarm.number, alarm.remedy)}`),

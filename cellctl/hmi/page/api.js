@@ -1,4 +1,6 @@
-// Questions and commands to the API.
+// Questions and commands to the API, which answers in the language of the page.
+
+import { language } from "./texts.js";
 
 export class Refusal extends Error {
   constructor(status, problem) {
@@ -16,13 +18,13 @@ async function answered(response) {
 }
 
 export async function ask(path) {
-  return answered(await fetch(`/api/v1/${path}`, { signal: AbortSignal.timeout(10000) }));
+  return answered(await fetch(`/api/v1/${path}`, { signal: AbortSignal.timeout(10000), headers: { "Accept-Language": language } }));
 }
 
 export async function send(method, path, body, headers = {}) {
   return answered(await fetch(`/api/v1/${path}`, {
     method, body: JSON.stringify(body), signal: AbortSignal.timeout(15000),
-    headers: { "Content-Type": "application/json", ...headers },
+    headers: { "Content-Type": "application/json", "Accept-Language": language, ...headers },
   }));
 }
 

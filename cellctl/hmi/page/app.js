@@ -10,7 +10,7 @@ import * as history from "./history.js";
 import * as line from "./line.js";
 import { ageS, cell, open, stale, start, watch } from "./live.js";
 import * as run from "./run.js";
-import { change, load, other, t } from "./texts.js";
+import { change, load, other, spoken, t } from "./texts.js";
 
 const SCREENS = { run, alarms, history, calibration, line, health };
 const $ = (id) => document.getElementById(id);
@@ -39,7 +39,7 @@ function band() {
   } else if (s.alarms.length) {
     const first = s.alarms.find((one) => one.number === s.faults[0]?.number) || s.alarms[0];
     kind = `p${alarms.priority(first)}`;
-    text = `${alarms.MARKS[alarms.priority(first)]} ${first.text}${s.alarms.length > 1 ? ` (+${s.alarms.length - 1})` : ""}`;
+    text = `${alarms.MARKS[alarms.priority(first)]} ${spoken(first.text)}${s.alarms.length > 1 ? ` (+${s.alarms.length - 1})` : ""}`;
   } else if (s.stop_not_confirmed) [kind, text] = ["p1", t("stop_not_confirmed")];
   if (place.dataset.text === text && place.className === kind) return;
   place.className = kind;

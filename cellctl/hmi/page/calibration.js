@@ -3,12 +3,12 @@
 import { give, longPress, whyNot } from "./buttons.js";
 import { h, table, time } from "./dom.js";
 import { cell } from "./live.js";
-import { t } from "./texts.js";
+import { label, spoken, t } from "./texts.js";
 
 const DUE_DAYS = 14;
 
 function state(one) {
-  if (one.problem) return h("span", { class: "bad" }, `■ ${one.problem}`);
+  if (one.problem) return h("span", { class: "bad" }, `■ ${spoken(one.problem)}`);
   const days = (new Date(one.valid_until) - Date.now()) / 86400000;
   if (days < DUE_DAYS) return h("span", { class: "p2" }, `▲ ${t("due_in", Math.max(0, Math.floor(days)))}`);
   return h("span", {}, t("valid"));
@@ -21,7 +21,7 @@ function parts(one) { return one.identity ? h("a", { href: `#history/used=${one.
 function procedures(d) {
   return d.procedures.map((one) => h("div", { class: "row" },
     longPress(h("button", { type: "button", class: "procedure" }, `${one.number}`), () => give("procedure", { request: "procedure", number: one.number, serial: `PROCEDURE-${one.number}` })),
-    h("span", {}, one.name)));
+    h("span", {}, label(one.name))));
 }
 
 let drawn = "";

@@ -4,7 +4,7 @@ import { ask } from "./api.js";
 import { commands, refresh } from "./buttons.js";
 import { bar, h, num, shown, svg, table } from "./dom.js";
 import { cell } from "./live.js";
-import { given, t } from "./texts.js";
+import { given, label, t } from "./texts.js";
 
 const CURVE_S = 30;
 const curve = [];
@@ -59,8 +59,8 @@ function state(s) {
   const mark = s.state.startsWith("ABORT") ? "■ " : waiting ? "● " : "";
   const run = s.run.number ? t("run_line", s.run.number, s.run.serial || "—", t(`result_${s.run.result}`)) : t("no_run");
   return [h("div", { class: `state live${colour}`, id: "state", "data-state": s.state }, mark + word + to),
-    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, s.step.label, s.pass || "—") : t("no_step")),
-    h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, s.step.text) : null,
+    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")),
+    h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, label(s.step.text)) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
     ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
     h("p", { id: "next" }, t(`next_${s.state}`))];

@@ -9,6 +9,9 @@ from cellctl.clock import now_s
 from cellctl.fault_catalogue import known_fault
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.words.languages import Language
+from cellctl.hmi.words.spoken import description_in, permitted_in, snapshot_in
+from cellctl.translations import fault_words
 from cellctl.version import software
 
 router = APIRouter(tags=["live"])
@@ -16,8 +19,12 @@ STALE_S = 1.5
 
 
 @router.get("/status")
-async def status(request: Request, _visitor: Asked) -> dict[str, Any]:
+async def status(request: Request, _visitor: Asked, language: Language) -> dict[str, Any]:
     """The newest snapshot; 503 when there is none that is fresh."""
+    return snapshot_in(language, _fresh(request))
+
+
+def _fresh(request: Request) -> dict[str, Any]:
     hub = request.app.state.parts.hub
     if hub.age_s is None or hub.age_s > STALE_S:
         raise Problem(503, "daemon-away", "the cell has not said anything lately").later(1)
@@ -25,15 +32,15 @@ async def status(request: Request, _visitor: Asked) -> dict[str, Any]:
 
 
 @router.get("/description")
-async def description(request: Request, _visitor: Asked) -> dict[str, Any]:
+async def description(request: Request, _visitor: Asked, language: Language) -> dict[str, Any]:
     """Calibrations, and the recipes and procedures to choose from."""
-    return dict(request.app.state.parts.hub.description)
+    return description_in(language, request.app.state.parts.hub.description)
 
 
 @router.get("/permitted")
-async def permitted(request: Request, visitor: Asked) -> dict[str, Any]:
+async def permitted(request: Request, _visitor: Asked, language: Language) -> dict[str, Any]:
     """By command: code 0 if the cell would take it now, else why not."""
-    return dict((await status(request, visitor))["permitted"])
+    return permitted_in(language, _fresh(request)["permitted"])
 
 
 @router.get("/health")
@@ -62,16 +69,17 @@ async def curve(request: Request, _visitor: Asked) -> dict[str, Any]:
 
 
 @router.get("/faults/{number}")
-async def fault(number: int, _visitor: Asked) -> dict[str, Any]:
+async def fault(number: int, _visitor: Asked, language: Language) -> dict[str, Any]:
     """One fault of the catalogue, those of installed packages included."""
     found = known_fault(number)
     if found is None:
         raise Problem(404, "fault-unknown", f"there is no F{number:03d}")
+    words = fault_words(found, language)
     return {
         "number": found.number,
-        "text": found.text,
-        "cause": found.cause,
-        "remedy": found.remedy,
+        "text": words.text,
+        "cause": words.cause,
+        "remedy": words.remedy,
         "reaction": found.reaction.name.lower(),
     }
 

@@ -13,6 +13,8 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.words.languages import Language
+from cellctl.hmi.words.spoken import run_in
 from cellctl.records.run_filter import RunFilter
 
 router = APIRouter(tags=["records"])
@@ -61,9 +63,9 @@ async def runs(
 
 
 @router.get("/runs/{number}")
-async def run(request: Request, number: int, _visitor: Asked) -> dict[str, Any]:
+async def run(request: Request, number: int, _visitor: Asked, language: Language) -> dict[str, Any]:
     """One run with all its figures."""
-    return dict(await request.app.state.parts.archive.run(number))
+    return run_in(language, await request.app.state.parts.archive.run(number))
 
 
 @router.get("/runs/{number}/artefacts/{name:path}", response_class=Response)

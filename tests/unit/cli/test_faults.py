@@ -6,6 +6,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
 from cellctl.fault_catalogue import known_faults
+from cellctl.translations import fault_words
 
 
 def said(*words: str) -> str:
@@ -20,6 +21,17 @@ def test_one_fault_has_its_cause_and_remedy() -> None:
     for words in ("F207", fault.text, fault.cause, fault.remedy, fault.reaction.value):
         assert words in text
     assert "F206" not in text
+
+
+def test_one_fault_is_told_in_chinese() -> None:
+    fault = next(one for one in known_faults() if one.number == 207)
+    chinese = fault_words(fault, "zh")
+    text = said("207", "--lang", "zh")
+    for words in ("F207", chinese.text, chinese.cause, chinese.remedy):
+        assert words in text
+    assert fault.cause not in text
+    plain = json.loads(said("207", "--lang", "zh", "--json"))[0]
+    assert (plain["text"], plain["reaction"]) == (chinese.text, fault.reaction.value)
 
 
 def test_every_fault_is_there_for_programs() -> None:

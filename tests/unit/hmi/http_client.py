@@ -3,6 +3,7 @@
 import http.client
 import json
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 from urllib.parse import urlsplit
@@ -63,11 +64,15 @@ class Client:
         return self.request("POST", "/api/v1/commands", body, **headers)
 
     def until_live(self) -> None:
-        self.until(200)
+        self.until_status(200)
 
-    def until(self, status: int) -> None:
+    def until_status(self, status: int) -> None:
         """Wait until the status of the cell answers so."""
+        self.until(lambda: self.get("status").status == status)
+
+    def until(self, shown: Callable[[], bool]) -> None:
+        """Wait until what the daemon pushed is there."""
         end_s = time.monotonic() + 10
-        while self.get("status").status != status:
+        while not shown():
             assert time.monotonic() < end_s
             time.sleep(0.05)

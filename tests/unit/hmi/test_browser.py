@@ -10,8 +10,10 @@ from typing import Any
 import pytest
 
 from cellctl.api.local_socket.messages import PlainCommand, Refused, StartCommand
+from cellctl.fault_catalogue import known_fault
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.translations import fault_words, label
 from tests.unit.hmi.scripted_daemon import (
     NAMES,
     PIN,
@@ -207,6 +209,27 @@ def test_an_alarm_moves_no_button_and_is_acknowledged(screen: Screen, paper: Pap
     alarms.first.get_by_role("button").click()
     screen.tab.wait_for_timeout(300)
     assert paper.asked[-1].command.request == "acknowledge"
+
+
+def test_an_alarm_and_a_step_are_told_in_chinese(screen: Screen, paper: PaperDaemon) -> None:
+    old = known_fault(207)
+    assert old is not None
+    chinese = fault_words(old, "zh")
+    told = alarm(207, f"{old.text}: 0.31 s") | {"cause": old.cause, "remedy": old.remedy}
+    step = {"number": 50, "label": "mate", "text": "head_1: view 2 of 3"}
+    paper.snapshot = snapshot(alarms=[told, alarm(1999, "of a plug-in")], step=step)
+    band, tab = screen.tab.locator("#band"), screen.tab
+    expect(band).to_contain_text(f"F207 {old.text}: 0.31 s")
+    tab.click("#language")
+    expect(band).to_contain_text(f"F207 {chinese.text}：0.31 s")
+    expect(tab.locator("#step")).to_contain_text(label("mate", "zh"))
+    expect(tab.locator("#now")).to_contain_text(label("head_1: view 2 of 3", "zh"))
+    tab.click("nav a[href='#alarms']")
+    alarms = tab.locator(".alarm")
+    expect(alarms.first).to_contain_text(chinese.cause)
+    expect(alarms.first).to_contain_text(chinese.remedy)
+    expect(alarms.last).to_contain_text("F1999 of a plug-in")
+    expect(alarms.last).to_contain_text("a remedy")
 
 
 def test_a_missing_value_is_a_dash(screen: Screen, paper: PaperDaemon) -> None:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from cellctl.fault_catalogue import known_fault
+from cellctl.hmi.words.page_words import page_words
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES
 
@@ -50,6 +52,17 @@ def test_every_word_that_the_page_asks_for_is_there() -> None:
     asked = set(re.findall(r'\bt\("(\w+)"', code))
     assert len(asked) > 80
     assert asked - set(words) == set()
+
+
+def test_the_page_is_given_the_words_of_faults_and_labels_besides_its_own() -> None:
+    fault = known_fault(207)
+    assert fault is not None
+    served = page_words("zh")
+    assert served["english_207"] == fault.text
+    assert served["fault_207"] not in ("", fault.text)
+    assert {"cause_207", "remedy_207", "label_mate", "label_identify payload"} <= set(served)
+    assert served.items() >= texts("zh").items(), "its own words come first"
+    assert page_words("en") == texts("en")
 
 
 def test_the_page_names_no_process_and_no_device() -> None:
