@@ -52,6 +52,7 @@ def campaign(
     if good:
         console.print(_statistics(good))
         console.print(decay(good))
+        console.print(normalised(good))
     for result in results:
         if not result["passed"]:
             why = result["fault"] or "beyond its limit: " + ", ".join(result.get("beyond", ()))
@@ -132,6 +133,16 @@ def decay(good: list[dict[str, Any]]) -> Table:
         columns = zip(np.median(found, axis=0), found.max(axis=0), strict=True)
         cells = [f"{middle:.4f} / {most:.4f}" for middle, most in columns]
         table.add_row(str(look + 1), str(len(found)), str(last), *cells)
+    return table
+
+
+def normalised(good: list[dict[str, Any]]) -> Table:
+    """What the cameras were off the truth of the seated deck, over what they said; 1 is honest."""
+    table = Table("errors over stated sigma", *COMPONENTS, title="look at the seated deck")
+    errors = [one["seat_normalised"] for one in good if one.get("seat_normalised")]
+    if errors:
+        rms = np.sqrt(np.mean(np.square(np.array(errors, float)), axis=0))
+        table.add_row(f"rms of {len(errors)}", *(f"{value:.2f}" for value in rms))
     return table
 
 

@@ -8,7 +8,7 @@ from benchmarks.tornado.outcome import Outcome, Verdict
 
 FIGURES = (
     ("lateral_mm", "offset at the pins, mm", 0.2),
-    ("rotation_deg", "rotation, °", 0.01),
+    ("rotation_deg", "rotation about y or z, °", 0.01),
     ("peak_n", "peak force, N", 50.0),
 )
 """Key, title, limit."""

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
-from fakes.demo.processes.deck_to_frame import LIMITED
+from fakes.demo.processes.deck_to_frame import LIMITED, rotations
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.trial import Trial, run_trial
 
@@ -28,7 +28,7 @@ def run_mating(case: Case) -> Outcome:
     pose = truth["frame_T_deck_mm_deg"]
     figures = {
         "lateral_mm": max(pin["offset_mm"] for pin in truth["pins"].values()),
-        "rotation_deg": max(abs(angle) for angle in pose[3:]),
+        **rotations(pose),
         "seat_gap_mm": pose[2] - truth["deck_thickness_mm"],
         "peak_true_n": trial.true_peak_n,
         "final_true_n": truth["contact_force_n"],

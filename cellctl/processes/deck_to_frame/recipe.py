@@ -16,6 +16,9 @@ class PoseCorrection(Section):
 
     threshold_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
     threshold_deg: Annotated[float, Field(gt=0, le=1)] = 0.005
+    threshold_about_x_deg: Annotated[float, Field(gt=0, le=1)] | None = None
+    """About x of the frame, which is known least where x is the line from head to head; None: as
+    about the other axes."""
     max_iterations: Annotated[int, Field(ge=1, le=50)] = 10
     max_correction_mm: Annotated[float, Field(gt=0, le=50)] = 10.0
     max_correction_deg: Annotated[float, Field(gt=0, le=10)] = 1.5
@@ -28,10 +31,19 @@ class PoseCorrection(Section):
     along each axis: a metre of steel at 5 K, twice."""
     heads_drift_deg: Annotated[float, Field(gt=0, le=0.1)] = 0.01
     """The same about each axis."""
+    heads_sway_mm: Annotated[float, Field(ge=0, le=0.1)] = 0.005
+    """How far a head sways in one picture, across its line of sight: standard deviation of each
+    axis. That of a floor with 0.4 mm/s (ISO 2631-2, offices) at 12 Hz; the scatter of pictures of a
+    part at rest tells it."""
     rule: Literal["compose", "paper"] = "compose"
     """Pose composition, or the paper's componentwise Euler accumulation for comparison."""
     method: Literal["default", "paper"] = "default"
     """Hole measurement: the default, or the paper's image steps for comparison."""
+
+    @property
+    def thresholds_deg(self) -> tuple[float, float, float]:
+        """About x, y and z of the frame."""
+        return _about_axes(self.threshold_deg, self.threshold_about_x_deg)
 
 
 class Pins(Section):
@@ -126,8 +138,15 @@ class DeckRecipe(Recipe):
     """Distance between deck and frame, in the middle of the face, that the cameras may see."""
     seated_limit_deg: Annotated[float, Field(gt=0, le=5)] = 0.01
     """Rotation about any axis of the frame that the seated deck may have."""
+    seated_limit_about_x_deg: Annotated[float, Field(gt=0, le=5)] | None = None
+    """About x of the frame; None: as about the other axes."""
     pose_correction: PoseCorrection = PoseCorrection()
     mating: Mating
+
+    @property
+    def seated_limits_deg(self) -> tuple[float, float, float]:
+        """About x, y and z of the frame."""
+        return _about_axes(self.seated_limit_deg, self.seated_limit_about_x_deg)
 
     def files(self) -> Mapping[str, str]:
         """The feature files."""
@@ -135,3 +154,7 @@ class DeckRecipe(Recipe):
             "frame_features.toml": self.frame_features,
             "deck_features.toml": self.deck_features,
         }
+
+
+def _about_axes(deg: float, about_x_deg: float | None) -> tuple[float, float, float]:
+    return (deg if about_x_deg is None else about_x_deg, deg, deg)

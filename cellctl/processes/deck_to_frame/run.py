@@ -105,7 +105,8 @@ class AssemblyRun:
     def thresholds(self) -> Thresholds:
         """Errors of the pose below which the deck may be mated (eq. 16)."""
         settings = self.recipe.pose_correction
-        return Thresholds(settings.threshold_mm * MM, float(np.radians(settings.threshold_deg)))
+        about_x, about_y, about_z = np.radians(settings.thresholds_deg).tolist()
+        return Thresholds(settings.threshold_mm * MM, (about_x, about_y, about_z))
 
     @property
     def base_T_c1(self) -> RigidTransform:

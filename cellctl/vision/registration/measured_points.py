@@ -27,6 +27,8 @@ class MeasuredPoints:
     """Of the measured points in C1, shape (n, 3, 3)."""
     by_transfer: Array
     """Derivative of each point by the error of ``c1_T_c2``, shape (n, 3, 6)."""
+    frames: int = 1
+    """Pictures of each head over which the points are averaged."""
 
     @classmethod
     def seen(
@@ -59,6 +61,7 @@ class MeasuredPoints:
             np.array([rows[hole.name][0] for hole in used]).reshape(-1, 3),
             np.array([rows[hole.name][1] for hole in used]).reshape(-1, 3, 3),
             np.array([rows[hole.name][2] for hole in used]).reshape(-1, 3, 6),
+            head_1.frames,
         )
 
     def off_their_drawing(self, holes: Sequence[Hole]) -> Self:
@@ -88,10 +91,11 @@ class MeasuredPoints:
     def without(self, index: int) -> "MeasuredPoints":
         """All but one."""
         keep = [i for i in range(len(self.names)) if i != index]
-        return MeasuredPoints(
-            tuple(self.names[i] for i in keep),
-            self.nominal_m[keep],
-            self.measured_m[keep],
-            self.covariances_m2[keep],
-            self.by_transfer[keep],
+        return replace(
+            self,
+            names=tuple(self.names[i] for i in keep),
+            nominal_m=self.nominal_m[keep],
+            measured_m=self.measured_m[keep],
+            covariances_m2=self.covariances_m2[keep],
+            by_transfer=self.by_transfer[keep],
         )

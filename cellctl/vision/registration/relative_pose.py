@@ -45,12 +45,15 @@ def relative_pose(
     c1_T_part_1: RigidTransform,
     c1_T_part_2: RigidTransform,
     transfer_covariance: Array,
+    *,
+    sway_m: float = 0.0,
 ) -> RelativePose:
     """Least squares over the holes of both parts and the error of ``c1_T_c2`` that they share.
 
     The poses are those of each part alone, to start from. ``transfer_covariance`` (6, 6) says what
     is known of ``c1_T_c2``: its calibration, and how far the heads may have moved since. It must
-    have full rank.
+    have full rank. ``sway_m`` is how far the arms of the heads sway in one picture, standard
+    deviation along x and y of C1: it shifts all holes of one head alike and leaves no misfit.
     """
     poses = [c1_T_part_1, c1_T_part_2]
     movement: Array = np.zeros(6)
@@ -65,7 +68,9 @@ def relative_pose(
     freedom = 3 * (len(part_1.names) + len(part_2.names)) - 12
     misfit = ChiSquare(chi2, freedom)
     jacobian = _by_poses(*poses)
-    covariance = jacobian @ np.linalg.inv(normal)[:12, :12] @ jacobian.T
+    known = np.linalg.inv(normal)
+    of_poses = known[:12, :12] + _by_sway((part_1, part_2), poses, known, sway_m)[:12, :12]
+    covariance = jacobian @ of_poses @ jacobian.T
     return RelativePose(UncertainPose(poses[0].inv() * poses[1], covariance), movement, misfit)
 
 
@@ -93,6 +98,26 @@ def _equations(
         gradient += np.einsum("nij,nik,nk->j", design, weights, residuals_m)
         chi2 += float(np.einsum("ni,nij,nj->", residuals_m, weights, residuals_m))
     return normal, gradient, chi2
+
+
+def _by_sway(
+    parts: tuple[MeasuredPoints, MeasuredPoints],
+    poses: list[RigidTransform],
+    known: Array,
+    sway_m: float,
+) -> Array:
+    """What the sway of both heads adds to the covariance ``known``, shape (18, 18)."""
+    added = np.zeros((18, 18))
+    for points, pose, place in zip(parts, poses, (_PART_1, _PART_2), strict=True):
+        design = np.zeros((len(points.names), 3, 18))
+        design[:, :, place] = by_pose(pose.rotation.apply(points.nominal_m))
+        design[:, :, _HEADS] = points.by_transfer
+        weighted = np.linalg.inv(points.covariances_m2) @ design
+        of_head_2 = points.by_transfer.any(axis=(1, 2))
+        for of_head in (of_head_2, ~of_head_2):
+            gain = known @ weighted[of_head].sum(axis=0)[:2].T
+            added += gain @ gain.T * sway_m**2 / points.frames
+    return added
 
 
 def _by_poses(c1_T_part_1: RigidTransform, c1_T_part_2: RigidTransform) -> Array:

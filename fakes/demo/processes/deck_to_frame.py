@@ -17,7 +17,8 @@ _AXES = ("x", "y", "z")
 
 LIMITED = (
     Limited("true offset at the pin holes, mm", "lateral_mm", 0.0, 0.2, "{:.4f}"),
-    Limited("true rotation, worst axis, deg", "rotation_deg", 0.0, 0.01, "{:.5f}"),
+    Limited("true rotation about y or z, deg", "rotation_deg", 0.0, 0.01, "{:.5f}"),
+    Limited("true rotation about x, deg", "rotation_about_x_deg", 0.0, 0.02, "{:.5f}"),
     Limited("true seat gap, mm", "seat_gap_mm", -0.1, 0.1, "{:.4f}"),
     Limited("peak contact force, true, N", "peak_true_n", 0.0, 50.0, "{:.1f}", of_the_seat=False),
     Limited(
@@ -96,7 +97,7 @@ def _figures(evidence: Evidence) -> dict[str, Any]:
         ],
         "true_frame_T_deck_mm_deg": pose,
         "lateral_mm": max(offsets) if offsets else None,
-        "rotation_deg": None if pose[0] is None else max(abs(angle) for angle in pose[3:]),
+        **rotations(pose),
         "seat_gap_mm": None if pose[0] is None else pose[2] - truth["deck_thickness_mm"],
         "peak_true_n": truth["peak_contact_force_n"],
         "final_true_n": truth["contact_force_n"],
@@ -104,7 +105,34 @@ def _figures(evidence: Evidence) -> dict[str, Any]:
         "hold_force_n": measured.get("hold_force"),
         "gauge_mm": {name: pin["gauge_mm"] for name, pin in pins.items()},
         "gauge_min_mm": min((pin["gauge_mm"] for pin in pins.values()), default=None),
+        "seat_normalised": _normalised(evidence),
     }
+
+
+def rotations(frame_T_deck_mm_deg: Sequence[float | None]) -> dict[str, float | None]:
+    """True rotation about x, and the larger one of those about y and z; None without a deck."""
+    known = [abs(angle) for angle in frame_T_deck_mm_deg[3:] if angle is not None]
+    if not known:
+        return {"rotation_deg": None, "rotation_about_x_deg": None}
+    about_z, about_y, about_x = known  # the order of a written pose
+    return {"rotation_deg": max(about_y, about_z), "rotation_about_x_deg": about_x}
+
+
+def _normalised(evidence: Evidence) -> list[float] | None:
+    """What the cameras were off the truth of the seated deck, over what they said of themselves.
+
+    Six components; None for a run that did not come to that look.
+    """
+    looks = [one["content"] for one in evidence.record.get("documents", ())]
+    seen = [one for one in looks if "seated_sigma_mm_deg" in one]
+    pose = evidence.truth.get("frame_T_deck_mm_deg")
+    if not seen or pose is None:
+        return None
+    x, y, z, about_z, about_y, about_x = pose
+    true_error = [-x, -y, evidence.recipe["deck_thickness_mm"] - z, -about_x, -about_y, -about_z]
+    found, sigmas = (seen[-1][f"seated_{what}_mm_deg"] for what in ("error", "sigma"))
+    columns = zip(found, true_error, sigmas, strict=True)
+    return [(one - true) / sigma for one, true, sigma in columns]
 
 
 def _converged(record: Mapping[str, Any]) -> bool:

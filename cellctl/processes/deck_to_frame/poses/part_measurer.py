@@ -39,6 +39,8 @@ class HeadGeometry:
     head_2: StereoHead
     c1_T_c2: UncertainPose
     """With the drift since the calibration in its covariance."""
+    sway_m: float = 0.0
+    """How far the arms that carry the heads sway in one picture: standard deviation, each axis."""
 
     @classmethod
     def of(cls, calibrations: CalibrationSet, settings: PoseCorrection) -> Self:
@@ -46,7 +48,7 @@ class HeadGeometry:
         drift = np.repeat([settings.heads_drift_mm * MM, np.radians(settings.heads_drift_deg)], 3)
         calibrated = calibrations.c1_T_c2
         c1_T_c2 = UncertainPose(calibrated.pose, calibrated.covariance + np.diag(drift**2))
-        return cls(*calibrations.heads, c1_T_c2)
+        return cls(*calibrations.heads, c1_T_c2, settings.heads_sway_mm * MM)
 
     def camera_T_part(self, c1_T_part: RigidTransform) -> tuple[RigidTransform, RigidTransform]:
         """A pose predicted in head I, for both heads."""
@@ -79,10 +81,11 @@ class PartMeasurement:
     def sigma_mm_deg(self) -> Array:
         """Standard deviations x, y, z in mm and rx, ry, rz in degrees, of the images alone.
 
-        They say whether more frames help. The error of C1_T_C2, and what the part is off its
-        drawing, stay with any number of frames.
+        In the axes of the part, as the thresholds are. They say whether more frames help. The error
+        of C1_T_C2, and what the part is off its drawing, stay with any number of frames.
         """
-        sigma = np.sqrt(np.diag(self.pose.image_covariance))
+        into_part = np.kron(np.eye(2), self.c1_T_part.rotation.inv().as_matrix())
+        sigma = np.sqrt(np.diag(into_part @ self.pose.image_covariance @ into_part.T))
         return np.concatenate([sigma[:3] / MM, np.degrees(sigma[3:])])
 
 
@@ -101,7 +104,8 @@ def deck_in_frame(
         M_T_D = own * UncertainPose(c1_T_D, deck.own_covariance)
         return RelativePose(M_T_D, np.zeros(6), deck.misfit)
     known = geometry.c1_T_c2.covariance
-    return relative_pose(frame.points, deck.points, c1_T_M, c1_T_D, known)
+    sway_m = geometry.sway_m
+    return relative_pose(frame.points, deck.points, c1_T_M, c1_T_D, known, sway_m=sway_m)
 
 
 class PartMeasurer:

@@ -78,8 +78,8 @@ class Thresholds:
 
     translation_m: float = 0.05 * MM
     """Per axis."""
-    rotation_rad: float = float(np.radians(0.005))
-    """Per axis."""
+    rotation_rad: tuple[float, float, float] = (float(np.radians(0.005)),) * 3
+    """About x, y and z of the frame."""
     uncertainty_share: float = 0.5
     """Largest standard deviation of a component, in parts of its threshold. However many images are
     taken, six holes of a deck of one metre leave 0.0022° of a usual threshold of 0.005°."""
@@ -87,7 +87,7 @@ class Thresholds:
     @property
     def vector(self) -> Array:
         """Shape (6,)."""
-        return np.repeat([self.translation_m, self.rotation_rad], 3)
+        return np.array([*(self.translation_m,) * 3, *self.rotation_rad])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -38,16 +38,32 @@ class SeatError:
         """Expanded uncertainty of the gap."""
         return COVERAGE_FACTOR * float(np.sqrt(self.covariance[2, 2])) / MM
 
-    @property
-    def rotation_deg(self) -> float:
-        """About the worst axis."""
-        return float(np.degrees(np.abs(self.error[3:]).max()))
+    def rotation(self, limits_deg: Sequence[float]) -> "SeatRotation":
+        """About the axis with the least room to its limit; limits about x, y and z of the frame."""
+        found_deg = np.degrees(np.abs(self.error[3:]))
+        uncertainty_deg = COVERAGE_FACTOR * np.degrees(np.sqrt(np.diag(self.covariance)[3:]))
+        room_deg = np.asarray(limits_deg) - found_deg - uncertainty_deg
+        # A rotation that is not a number has the least room of all: argmin finds it first.
+        axis = int(np.argmin(room_deg))
+        return SeatRotation(
+            "xyz"[axis], float(found_deg[axis]), float(uncertainty_deg[axis]), limits_deg[axis]
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SeatRotation:
+    """Rotation of a seated deck about one axis of the frame, in degrees."""
+
+    axis: str
+    value_deg: float
+    uncertainty_deg: float
+    """Expanded."""
+    limit_deg: float
 
     @property
-    def rotation_uncertainty_deg(self) -> float:
-        """Expanded uncertainty of the rotation, of the axis that is known least."""
-        variance = np.diag(self.covariance)[3:].max()
-        return COVERAGE_FACTOR * float(np.degrees(np.sqrt(variance)))
+    def acceptance_deg(self) -> float:
+        """Up to here the rotation is surely within its limit."""
+        return self.limit_deg - self.uncertainty_deg
 
 
 def pin_holes(holes: Sequence[Hole]) -> list[Hole]:

@@ -140,7 +140,7 @@ class DeckRecorder:
     ) -> None:
         """The seated deck: error against the seat, gap, rotation, offset at each pin hole."""
         await self.measurement("seated", measured)
-        await self._document(seat_record(seat), seat_limits_of(seat, recipe))
+        await self._document(seat_record(seat, recipe), seat_limits_of(seat, recipe))
 
     async def gauge_holes(self, pins: Iterable[Hole], recipe: DeckRecipe) -> None:
         """The holes that a person may gauge, with the gauge that a good part lets through."""

@@ -57,7 +57,7 @@ def loop_pass(
 
 
 def error_figures(entry: LoopPass) -> tuple[Figure, ...]:
-    """The worst axis of position and of angle; thresholds are the same for all three axes."""
+    """Position and angle about the axis that uses up most of its threshold."""
     return (
         _worst(POSITION_ERROR, entry.components[:3]),
         _worst(ANGLE_ERROR, entry.components[3:]),
@@ -66,11 +66,12 @@ def error_figures(entry: LoopPass) -> tuple[Figure, ...]:
 
 def _worst(key: str, components: tuple[PassComponent, ...]) -> Figure:
     values = np.abs(np.array([component.value for component in components], dtype=float))
-    # The greatest of numbers of which one is not a number is not a number: an unknown component
-    # must not hide behind those that are known.
-    return figure(
-        key, float(values.max()), components[0].unit, limit=Limit(upper=components[0].limit)
-    )
+    limits = np.array([component.limit for component in components], dtype=float)
+    # The place of the greatest is that of the first that is not a number, if there is one: an
+    # unknown component must not hide behind those that are known.
+    worst = int(np.argmax(values / limits))
+    upper = Limit(upper=float(limits[worst]))
+    return figure(key, float(values[worst]), components[worst].unit, limit=upper)
 
 
 def rms_um(measured: PartMeasurement) -> float:
@@ -133,16 +134,18 @@ def residual_figure(kind: str, measured: PartMeasurement) -> Figure:
     )
 
 
-def seat_record(seat: SeatError) -> dict[str, Any]:
+def seat_record(seat: SeatError, recipe: DeckRecipe) -> dict[str, Any]:
     """The seated deck as plain data, in mm and degrees, with expanded uncertainties."""
+    rotation = seat.rotation(recipe.seated_limits_deg)
     return {
         "seated_error_mm_deg": in_mm_deg(seat.error).tolist(),
+        "seated_sigma_mm_deg": in_mm_deg(np.sqrt(np.diag(seat.covariance))).tolist(),
         f"{PIN_OFFSETS}_mm": dict(seat.offsets_mm),
         f"{GAP_BY_VISION}_mm": seat.gap_mm,
-        f"{SEAT_ROTATION}_deg": seat.rotation_deg,
+        f"{SEAT_ROTATION}_deg": rotation.value_deg,
         f"{PIN_OFFSETS}_{UNCERTAINTY}_mm": dict(seat.offset_uncertainties_mm),
         f"{GAP_BY_VISION}_{UNCERTAINTY}_mm": seat.gap_uncertainty_mm,
-        f"{SEAT_ROTATION}_{UNCERTAINTY}_deg": seat.rotation_uncertainty_deg,
+        f"{SEAT_ROTATION}_{UNCERTAINTY}_deg": rotation.uncertainty_deg,
     }
 
 
@@ -160,12 +163,11 @@ def gauge_holes(pins: Iterable[Hole], recipe: DeckRecipe) -> dict[str, Any]:
 def seat_limits_of(seat: SeatError, recipe: DeckRecipe) -> Mapping[str, Limit]:
     """Limits of acceptance of ``seat_record``: those of the recipe less the uncertainty."""
     gap_mm = recipe.seated_gap_limit_mm - seat.gap_uncertainty_mm
-    rotation_deg = recipe.seated_limit_deg - seat.rotation_uncertainty_deg
     return {
         **{
             f"{PIN_OFFSETS}.{name}": Limit(upper=recipe.seated_limit_mm - uncertainty_mm)
             for name, uncertainty_mm in seat.offset_uncertainties_mm.items()
         },
         GAP_BY_VISION: Limit(-gap_mm, gap_mm),
-        SEAT_ROTATION: Limit(upper=rotation_deg),
+        SEAT_ROTATION: Limit(upper=seat.rotation(recipe.seated_limits_deg).acceptance_deg),
     }

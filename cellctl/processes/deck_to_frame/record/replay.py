@@ -144,7 +144,7 @@ class Replay:
         if key == "seated":
             holes = self.features["deck"].holes
             figures, _ = split_document(
-                seat_record(seat_error(relative.cautious, thickness_m, holes))
+                seat_record(seat_error(relative.cautious, thickness_m, holes), self.recipe)
             )
             for entry in figures:
                 yield Replayed(

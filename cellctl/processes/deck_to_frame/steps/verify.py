@@ -63,8 +63,9 @@ def _unproven(found: SeatError, recipe: DeckRecipe) -> Iterator[str]:
             f"gap {found.gap_mm:+.3f} ± {found.gap_uncertainty_mm:.3f} mm, "
             f"allowed {recipe.seated_gap_limit_mm:g} mm"
         )
-    if not found.rotation_deg + found.rotation_uncertainty_deg <= recipe.seated_limit_deg:
+    rotation = found.rotation(recipe.seated_limits_deg)
+    if not rotation.value_deg <= rotation.acceptance_deg:
         yield (
-            f"turned by {found.rotation_deg:.4f} ± {found.rotation_uncertainty_deg:.4f}°, "
-            f"allowed {recipe.seated_limit_deg:g}°"
+            f"turned about {rotation.axis} by {rotation.value_deg:.4f} ± "
+            f"{rotation.uncertainty_deg:.4f}°, allowed {rotation.limit_deg:g}°"
         )

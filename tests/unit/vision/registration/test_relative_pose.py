@@ -83,6 +83,25 @@ def test_the_covariance_is_honest_whatever_the_heads_did(draws: int) -> None:
     assert np.mean(misfits) == pytest.approx(freedom, rel=0.05)
 
 
+@pytest.mark.parametrize("frames", [1, 4])
+def test_the_covariance_is_honest_when_the_arms_of_the_heads_sway(frames: int) -> None:
+    rng, sway_m, squared = np.random.default_rng(4), 5e-6, []
+    for _ in range(60):
+        parts = []
+        for part in both(rng, np.zeros(6)):
+            shift = rng.normal(size=(2, 3)) * [sway_m, sway_m, 0.0] / np.sqrt(frames)
+            points = part.points
+            shifted = points.measured_m + np.repeat(shift, 3, axis=0)
+            parts.append(replace(part, points=replace(points, measured_m=shifted, frames=frames)))
+        frame, deck = parts
+        poses = frame.pose.pose, deck.pose.pose
+        found = relative_pose(frame.points, deck.points, *poses, np.diag(DRIFT**2), sway_m=sway_m)
+        off = error(found.part_1_T_part_2.pose)
+        squared.append(float(off @ np.linalg.solve(found.part_1_T_part_2.covariance, off)))
+    band = chi2(6 * len(squared)).interval(0.999)
+    assert 0.9 * band[0] < sum(squared) < band[1]
+
+
 def test_the_movement_of_the_heads_is_found() -> None:
     moved = DRIFT * np.array([1.5, -1.0, 1.0, 0.0, 0.0, 0.0])
     result = together(*both(np.random.default_rng(3), moved))

@@ -76,6 +76,9 @@ def _thresholds(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
         "threshold_mm": (correction.threshold_mm, recipe.seated_limit_mm, "seated_limit_mm"),
         "threshold_deg": (correction.threshold_deg, recipe.seated_limit_deg, "seated_limit_deg"),
     }
+    if correction.threshold_about_x_deg or recipe.seated_limit_about_x_deg:
+        about_x = correction.thresholds_deg[0], recipe.seated_limits_deg[0]
+        limits["threshold_about_x_deg"] = (*about_x, "seated_limit_about_x_deg")
     for name, (threshold, most, limit) in limits.items():
         if threshold > most:
             # A deck within it would be mated, and then refused.

@@ -50,9 +50,38 @@ def test_a_gap_under_the_seated_deck_is_bad(gap_mm: float) -> None:
     assert judged({"frame_T_deck_mm_deg": pose}) == ["true seat gap, mm"]
 
 
-def test_a_tilted_deck_is_bad() -> None:
-    pose = [0.01, -0.01, 15.01, 0.03, 0.0, 0.0]
-    assert judged({"frame_T_deck_mm_deg": pose}) == ["true rotation, worst axis, deg"]
+@pytest.mark.parametrize(
+    ("angles_deg", "name"),
+    [
+        ([0.015, 0.0, 0.0], "true rotation about y or z, deg"),
+        ([0.0, -0.015, 0.0], "true rotation about y or z, deg"),
+        ([0.0, 0.0, -0.03], "true rotation about x, deg"),
+    ],
+)
+def test_a_turned_deck_is_bad(angles_deg: list[float], name: str) -> None:
+    assert judged({"frame_T_deck_mm_deg": [0.01, -0.01, 15.01, *angles_deg]}) == [name]
+
+
+def test_about_its_long_axis_a_deck_may_be_off_by_more() -> None:
+    assert judged({"frame_T_deck_mm_deg": [0.01, -0.01, 15.01, 0.0, 0.0, 0.015]}) == []
+
+
+def test_the_last_look_is_held_against_the_truth_in_its_own_sigmas() -> None:
+    seen = {
+        # Target minus measured; the true deck is 0.02 mm too high and turned by 0.002° about z.
+        "seated_error_mm_deg": [0.0, 0.0, -0.03, 0.0, 0.0, -0.002],
+        "seated_sigma_mm_deg": [0.01, 0.01, 0.005, 0.001, 0.001, 0.0005],
+    }
+    truth = TRUTH | {"frame_T_deck_mm_deg": [0.01, 0.0, 15.02, 0.002, -0.001, 0.0]}
+    record = RECORD | {"documents": [{"key": "mating", "content": seen}]}
+    evidence = Evidence(GOOD, truth, record, {"deck_thickness_mm": 15.0})
+    found = DeckToFrameDemo().judge(evidence).figures["seat_normalised"]
+    assert found == pytest.approx([1.0, 0.0, -2.0, 0.0, -1.0, 0.0])
+
+
+def test_a_run_without_a_last_look_has_no_normalised_errors() -> None:
+    evidence = Evidence(GOOD, TRUTH, RECORD)
+    assert DeckToFrameDemo().judge(evidence).figures["seat_normalised"] is None
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,129 @@
+"""The deck's fake cell without wire and without a clock: arms that go where they are told, images.
+
+What the loop sees is what it sees in `cellctl demo`: the same world, renderer and calibrations.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import Array
+from cellctl.geometry.units import in_mm_deg
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, combined
+from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds
+from cellctl.processes.deck_to_frame.recipe import PoseCorrection
+from cellctl.processes.deck_to_frame.run import SHARE_OF_ONE_PART
+from cellctl.vision.features.feature_file import FeatureFile
+from cellctl.vision.measure import measure_pair
+from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.registration.part_pose import PartPose
+from fakes.render.look import options_of
+from fakes.render.worker import render_frame
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
+from fakes.scenes.deck_on_frame.scene import DeckOnFrame
+from fakes.world.arm import inverse
+from fakes.world.frames import from_written
+
+SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
+FRAME_S = 1.137
+"""From one pair of images to the next, as in the demonstration on a free machine; no multiple of
+the period with which the arms sway."""
+SETTLE_S = 1.5
+SPEED_M_S, ACCELERATION_M_S2 = 0.05, 0.2
+
+
+class FakeStation:
+    """One drawn cell with both heads at their measuring poses and the deck clear of the frame."""
+
+    def __init__(self, scenario: DeckScenario, seed: int, geometry: HeadGeometry) -> None:
+        self.world = DeckOnFrame(scenario, seed)
+        self._geometry = geometry
+        self._look = options_of(
+            scenario.rendering,
+            glare=scenario.size_of("glare"),
+            tilt_shading=scenario.size_of("tilt_shading"),
+        )
+        for robot in ("aux_1", "aux_2"):
+            self._to_taught(robot, "measure")
+        self._to_taught("main", "clear")
+
+    # -- main robot -----------------------------------------------------------------------------
+    def to_deck_measure(self) -> None:
+        """The main robot holds the deck above the station."""
+        self._to_taught("main", "deck_measure")
+
+    def base_T_flange(self) -> RigidTransform:
+        """Of the main robot, as it reports it."""
+        return self.world.arms["main"].encoder_pose(self.world.time_s)
+
+    def move_flange(self, base_T_flange: RigidTransform) -> None:
+        """Straight, then wait until the deck is still."""
+        arm = self.world.arms["main"]
+        arm.start_linear(self.world.time_s, base_T_flange, SPEED_M_S, ACCELERATION_M_S2)
+        self.world.advance(arm.standstill_s + SETTLE_S)
+
+    def _to_taught(self, robot: str, name: str) -> None:
+        arm = self.world.arms[robot]
+        cell_T_base = from_written(arm.settings.base_mm_deg)
+        pose = cell_T_base.inv() * from_written(self.world.scenario.taught[robot][name])
+        joints = inverse(arm.settings.chain_mm, pose, arm.joints(self.world.time_s))
+        arm.start_joint(self.world.time_s, joints, 100)
+        self.world.advance(arm.standstill_s + SETTLE_S)
+
+    def true_frame_T_deck(self) -> RigidTransform:
+        """The deck's outer face in the frame."""
+        parts, cell_T_deck = self.world.placed.parts, self.world.cell_T_deck()
+        assert parts is not None
+        assert cell_T_deck is not None
+        return parts.cell_T_frame.inv() * cell_T_deck
+
+    # -- heads ----------------------------------------------------------------------------------
+    def measure(
+        self,
+        features: FeatureFile,
+        c1_T_part: RigidTransform,
+        settings: PoseCorrection,
+        thresholds: Thresholds,
+    ) -> tuple[PartPose, int]:
+        """Frames are added as ``PartMeasurer`` adds them; the pose, and how many it took."""
+        wanted = thresholds.vector * thresholds.uncertainty_share * SHARE_OF_ONE_PART
+        taken: list[tuple[PairMeasurement, PairMeasurement]] = []
+        while True:
+            for _ in range(min(len(taken) or settings.frames, settings.max_frames - len(taken))):
+                taken.append(self._one_frame(features, c1_T_part))
+            pose = combined(features, taken, self._geometry, settings.method)[1]
+            certain = _sigma_in_part(pose) <= in_mm_deg(wanted)
+            if certain.all() or len(taken) >= settings.max_frames:
+                return pose, len(taken)
+
+    def _one_frame(
+        self, features: FeatureFile, c1_T_part: RigidTransform
+    ) -> tuple[PairMeasurement, PairMeasurement]:
+        self.world.advance(self.world.time_s + FRAME_S)
+        predictions = self._geometry.camera_T_part(c1_T_part)
+        left, right = (
+            measure_pair(
+                *self._images(head),
+                model,
+                features.seen_by(number),
+                camera_T_part=predictions[number - 1],
+            )
+            for head, model, number in (
+                ("head_1", self._geometry.head_1, 1),
+                ("head_2", self._geometry.head_2, 2),
+            )
+        )
+        return left, right
+
+    def _images(self, head: str) -> tuple[Image, Image]:
+        frame = render_frame(self.world.camera_scene(head), self._look)
+        left, right = np.frombuffer(frame.payload, np.uint8).reshape(2, frame.height, frame.width)
+        return left, right
+
+
+def _sigma_in_part(pose: PartPose) -> Array:
+    into_part = np.kron(np.eye(2), pose.pose.pose.rotation.inv().as_matrix())
+    covariance = into_part @ pose.image_covariance @ into_part.T
+    return in_mm_deg(np.sqrt(np.diag(covariance)))
