@@ -40,6 +40,7 @@ class FakeStation:
     def __init__(self, scenario: DeckScenario, seed: int, geometry: HeadGeometry) -> None:
         self.world = DeckOnFrame(scenario, seed)
         self._geometry = geometry
+        assert scenario.rendering is not None  # the scenario's model demands it of cameras
         self._look = options_of(
             scenario.rendering,
             glare=scenario.size_of("glare"),
@@ -103,19 +104,13 @@ class FakeStation:
     ) -> tuple[PairMeasurement, PairMeasurement]:
         self.world.advance(self.world.time_s + FRAME_S)
         predictions = self._geometry.camera_T_part(c1_T_part)
-        left, right = (
-            measure_pair(
-                *self._images(head),
-                model,
-                features.seen_by(number),
-                camera_T_part=predictions[number - 1],
-            )
-            for head, model, number in (
-                ("head_1", self._geometry.head_1, 1),
-                ("head_2", self._geometry.head_2, 2),
-            )
+        models = self._geometry.head_1, self._geometry.head_2
+        holes = features.seen_by(1), features.seen_by(2)
+        one, two = (
+            measure_pair(*self._images(head), models[i], holes[i], camera_T_part=predictions[i])
+            for i, head in enumerate(("head_1", "head_2"))
         )
-        return left, right
+        return one, two
 
     def _images(self, head: str) -> tuple[Image, Image]:
         frame = render_frame(self.world.camera_scene(head), self._look)

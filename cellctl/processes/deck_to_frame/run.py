@@ -6,15 +6,18 @@ from typing import Self
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl import log
 from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.guarded_motion.settling import settle
+from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, PartMeasurer
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.deck_recorder import DeckRecorder
+from cellctl.processes.deck_to_frame.record.keys import DECK, FRAME
 from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.interruption import Interruption
@@ -22,6 +25,8 @@ from cellctl.runtime.process import CellServices, RunContext
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, obey_hold
 from cellctl.vision.features.feature_file import FeatureFile
+
+_log = log.get(__name__)
 
 SHARE_OF_ONE_PART = 0.6
 """Of the uncertainty of the deck in the frame. Frame and deck contribute alike, which would allow
@@ -122,13 +127,28 @@ class AssemblyRun:
         """
         settings, thresholds = self.recipe.pose_correction, self.thresholds
         wanted = thresholds.vector * thresholds.uncertainty_share * SHARE_OF_ONE_PART
-        return await self.measurer.measure(
-            features,
-            c1_T_part,
-            frames=frames or settings.frames,
-            max_frames=settings.max_frames,
-            wanted_sigma_mm_deg=in_mm_deg(wanted),
-        )
+        try:
+            return await self.measurer.measure(
+                features,
+                c1_T_part,
+                frames=frames or settings.frames,
+                max_frames=settings.max_frames,
+                wanted_sigma_mm_deg=in_mm_deg(wanted),
+            )
+        except CellError as fault:
+            await self._keep_seen(features, c1_T_part, fault)
+            raise
+
+    async def _keep_seen(
+        self, features: FeatureFile, c1_T_part: RigidTransform, fault: CellError
+    ) -> None:
+        """Keep what the heads saw of a measurement that failed; no fault hides the first one."""
+        part = FRAME if features is self.facts.frame_features else DECK
+        try:
+            await self.recorder.failed_measurement(part, c1_T_part, self.measurer.seen, fault)
+        except CellError as second:
+            fault.add_note(f"images not kept: {second}")
+            _log.error("images not kept", fault=str(second))
 
     async def move_flange(
         self, base_T_flange: RigidTransform, flange_T_deck: RigidTransform

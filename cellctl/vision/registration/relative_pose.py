@@ -68,7 +68,7 @@ def relative_pose(
     freedom = 3 * (len(part_1.names) + len(part_2.names)) - 12
     misfit = ChiSquare(chi2, freedom)
     jacobian = _by_poses(*poses)
-    known = np.linalg.inv(normal)
+    known = np.asarray(np.linalg.inv(normal), dtype=np.float64)
     of_poses = known[:12, :12] + _by_sway((part_1, part_2), poses, known, sway_m)[:12, :12]
     covariance = jacobian @ of_poses @ jacobian.T
     return RelativePose(UncertainPose(poses[0].inv() * poses[1], covariance), movement, misfit)

@@ -4,7 +4,7 @@ from io import StringIO
 
 from rich.console import Console
 
-from benchmarks.campaign import decay, told
+from benchmarks.campaign import decay, normalised, told
 
 FIRST, SECOND = [0.1, -0.2, 0.3, 0.01, 0.02, -0.03], [0.01, 0.0, -0.02, 0.001, 0.002, 0.003]
 
@@ -24,3 +24,14 @@ def test_a_bad_part_that_was_called_good_is_told_from_one_that_was_not() -> None
     assert told({"passed": False, "result": "good"}) == "CALLED GOOD, IS NOT"
     for result in ({"result": "bad"}, {"result": "none"}, {}):
         assert told({"passed": False, **result}) == "not good, and called so"
+
+
+def test_normalised_errors_are_those_of_the_runs_that_have_some() -> None:
+    written = StringIO()
+    errors = [[1.0, 0.0, 0.5, 2.0, 0.0, 0.0], [-1.0, 0.0, 0.5, -1.0, 0.0, 0.0], None]
+    found = normalised([{"seat_normalised": one} for one in errors])
+    Console(file=written, width=200).print(found)
+    (row,) = [line.split("│")[1:-1] for line in written.getvalue().splitlines() if "rms" in line]
+    assert [cell.strip() for cell in row] == [
+        "rms of 2", "1.00", "0.00", "0.50", "1.58", "0.00", "0.00",
+    ]  # fmt: skip

@@ -30,6 +30,7 @@ from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
     HeadGeometry,
     PartMeasurement,
+    SeenPair,
     deck_in_frame,
 )
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
@@ -271,6 +272,7 @@ class TruthMeasurer:
     base_T_c1: RigidTransform
     measured: list[str] = field(default_factory=list)
     frames: list[int] = field(default_factory=list)
+    seen: list[SeenPair] = field(default_factory=list)
 
     def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
         return deck_in_frame(frame, deck, self.geometry, "paper")

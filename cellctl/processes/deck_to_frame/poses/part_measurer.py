@@ -56,6 +56,17 @@ class HeadGeometry:
 
 
 @dataclass(frozen=True, slots=True)
+class SeenPair:
+    """What one head saw, whatever came of it."""
+
+    frame: int
+    """From 1 on."""
+    head: int
+    """1 or 2."""
+    pair: StereoPair
+
+
+@dataclass(frozen=True, slots=True)
 class PartMeasurement:
     """A part measured by both heads, with what is needed to show and to repeat it."""
 
@@ -119,6 +130,8 @@ class PartMeasurer:
         self._geometry = geometry
         self._method = method
         self._reference = [head.robot.state().base_T_flange for head in cell.heads]
+        self.seen: list[SeenPair] = []
+        """Of the measurement that goes on, or that has failed."""
 
     def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
         """``M_T_D`` of two parts that these heads have measured."""
@@ -140,6 +153,7 @@ class PartMeasurer:
         robot moved while the pictures were taken, the faults of ``cellctl.vision`` when holes
         are missing or do not fit, and before the first part of a run those of its exposures.
         """
+        self.seen = []
         predictions = self._geometry.camera_T_part(c1_T_part)
         base_T_flange = self._cell.main.state().base_T_flange
         await gather_or_cancel(*(self._exposures.find(head.camera) for head in self._cell.heads))
@@ -157,6 +171,7 @@ class PartMeasurer:
             self._check_standstill(base_T_flange)
             measurement = self._combine(features, taken, pairs, base_T_flange)
             if (measurement.sigma_mm_deg <= wanted_sigma_mm_deg).all():
+                self.seen = []
                 return replace(measurement, predicted=c1_T_part, shots=tuple(shots))
             if len(taken) >= max_frames:
                 raise UncertaintyTooLarge(_sigma_text(measurement, wanted_sigma_mm_deg))
@@ -188,6 +203,10 @@ class PartMeasurer:
         camera_T_part: RigidTransform,
     ) -> tuple[StereoPair, PairMeasurement]:
         pair = await station.camera.grab()
+        # Before anything is looked for: what is not found must be seen in the record.
+        head = self._cell.heads.index(station) + 1
+        frame = 1 + sum(one.head == head for one in self.seen)
+        self.seen.append(SeenPair(frame, head, pair))
         found = await self._cell.workers.run(
             measure_pair,
             pair.left,

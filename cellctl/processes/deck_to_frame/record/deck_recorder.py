@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import utc_now
+from cellctl.errors import CellError
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
-from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, SeenPair
 from cellctl.processes.deck_to_frame.poses.pose_correction import Judgement, Thresholds
 from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
@@ -34,6 +35,7 @@ from cellctl.processes.deck_to_frame.record.entries import (
 from cellctl.processes.deck_to_frame.record.keys import (
     BASE,
     DECK,
+    FAILED,
     FLANGE,
     FLANGE_T_DECK,
     FRAME,
@@ -48,7 +50,14 @@ from cellctl.processes.deck_to_frame.record.mating_record import (
     result_limits,
     result_record,
 )
-from cellctl.processes.deck_to_frame.record.sources import exposures, measured_from, raw_images
+from cellctl.processes.deck_to_frame.record.sources import (
+    exposures,
+    failed_from,
+    measured_from,
+    raw_images,
+    seen_exposures,
+    seen_images,
+)
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, figure, split_document
@@ -96,6 +105,20 @@ class DeckRecorder:
         await self.recorder.add(residual_figure(kind, measured))
         await self._reported(kind, measured)
         await self._images(kind, measured)
+
+    async def failed_measurement(
+        self, part: str, predicted: RigidTransform, seen: Sequence[SeenPair], fault: CellError
+    ) -> None:
+        """The images of a measurement that ended with a fault; of one without any, nothing."""
+        if not seen:
+            return
+        name = self._new_name(f"{FAILED}-{part}")
+        images = seen_images(name, seen)
+        source = failed_from(part, predicted, fault, list(images))
+        await self.recorder.document(MEASURED_FROM, {name: source})
+        await self.recorder.exposures(seen_exposures(name, seen))
+        for file, image in images.items():
+            self.recorder.raw_image(file, image)
 
     async def deck_on_flange(self, flange_T_deck: UncertainPose) -> None:
         """The deck's pose on the flange (eq. 4)."""
@@ -188,9 +211,7 @@ class DeckRecorder:
                 await self.recorder.artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 
     async def _images(self, kind: str, measured: PartMeasurement) -> None:
-        """A kind that comes again, after a Hold, gets a number: no picture hides another."""
-        self._names[kind] += 1
-        name = kind if self._names[kind] == 1 else f"{kind}-again-{self._names[kind]}"
+        name = self._new_name(kind)
         predicted = measured.predicted
         if predicted is not None:
             images = raw_images(name, measured.shots)
@@ -202,6 +223,11 @@ class DeckRecorder:
             for file, image in images.items():
                 self.recorder.raw_image(file, image)
         await self._pictures(name, measured)
+
+    def _new_name(self, kind: str) -> str:
+        """A kind that comes again, after a Hold, gets a number: no picture hides another."""
+        self._names[kind] += 1
+        return kind if self._names[kind] == 1 else f"{kind}-again-{self._names[kind]}"
 
     async def _pictures(self, kind: str, measured: PartMeasurement) -> None:
         for head, (pair, found) in enumerate(zip(measured.pairs, measured.heads, strict=True), 1):

@@ -17,6 +17,9 @@ COMPONENTS = (
 MEASURED_FROM = "measurements.input"
 """Document: for each measurement the images and the prediction that it was computed from."""
 
+FAILED = "failed"
+"""Key in that document of a measurement that ended with a fault, and what its images begin with."""
+
 MATING = "mating"
 """Document with what is no number."""
 TARGET_FORCE, LIMIT_FORCE, PEAK_FORCE = "target_force", "limit_force", "peak_force"

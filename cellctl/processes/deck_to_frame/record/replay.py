@@ -10,6 +10,17 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.errors.records import NotReplayable
+from cellctl.errors.vision import (
+    CamerasSwapped,
+    CameraUpsideDown,
+    HoleAmbiguous,
+    HoleMissing,
+    ImageBlack,
+    ImageBlurred,
+    ImageSaturated,
+    ImageSizeMismatch,
+    VisionError,
+)
 from cellctl.force.contact.curve import curve_statistics
 from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -32,6 +43,7 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.entries import seat_record
 from cellctl.processes.deck_to_frame.record.keys import (
     COMPONENTS,
+    FAILED,
     FLANGE_T_DECK,
     FRAME,
     MEASURED_FROM,
@@ -51,6 +63,20 @@ from cellctl.vision.registration.part_pose import PartPose
 POSE = (("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("A", "°"), ("B", "°"), ("C", "°"))
 FORCE_RESOLUTION = 1e-4
 """Force curves are written with four decimals."""
+OF_ONE_PAIR = frozenset(
+    fault.number
+    for fault in (
+        ImageSizeMismatch,
+        ImageBlack,
+        ImageSaturated,
+        ImageBlurred,
+        CamerasSwapped,
+        CameraUpsideDown,
+        HoleMissing,
+        HoleAmbiguous,
+    )
+)
+"""Faults that the images of one head lead to by themselves."""
 ROUNDING = 1e-9
 """In mm and degrees: the last digits depend on the number of threads that compute, and recorded
 poses are written as angles."""
@@ -79,6 +105,9 @@ class Replay:
             # Raw images are kept while the run goes on and may be late; a measurement without all
             # of its images cannot come out the same.
             if found_images < len(wanted):
+                continue
+            if source["key"] == FAILED:
+                yield self._fault_again(name, source)
                 continue
             pose = self._measure(source)
             c1_T_part = pose.pose.pose
@@ -119,6 +148,34 @@ class Replay:
             )
             taken.append((one, two))
         return combined(features, taken, heads, method)[1]
+
+    def _fault_again(self, name: str, source: Mapping[str, Any]) -> Replayed:
+        """The fault that the images of a failed measurement lead to today.
+
+        A fault that no image alone leads to is none here either: a head that moved, frames that do
+        not suffice, holes of both heads that do not fit together.
+        """
+        features, heads = self.features[source["part"]], self._heads
+        predictions = heads.camera_T_part(predicted_pose(source))
+        artefacts = {artefact.name: artefact for artefact in self.record.artefacts}
+        images = [decode(self.read(artefacts[file])) for file in source["images"]]
+        found = 0
+        for index, file in enumerate(source["images"][::2]):
+            head = 1 if "-head-1-" in file else 2
+            try:
+                measure_pair(
+                    images[2 * index],
+                    images[2 * index + 1],
+                    (heads.head_1, heads.head_2)[head - 1],
+                    features.seen_by(1 if head == 1 else 2),
+                    camera_T_part=predictions[head - 1],
+                    method=self._method,
+                )
+            except VisionError as fault:
+                found = fault.number
+        was = source["fault"]
+        expected = was if found or was in OF_ONE_PAIR else 0
+        return Replayed(name, f"fault F{was}", "", expected, found)
 
     def _frames(self, names: Sequence[str]) -> Iterator[list[Image]]:
         artefacts = {artefact.name: artefact for artefact in self.record.artefacts}

@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.errors import CellError
 from cellctl.interfaces import StereoPair
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
-from cellctl.processes.deck_to_frame.record.keys import FRAME
+from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, SeenPair
+from cellctl.processes.deck_to_frame.record.keys import FAILED, FRAME
 
 IMAGES_PER_FRAME = 4
 """Left and right of head I, left and right of head II."""
@@ -23,6 +24,35 @@ def raw_images(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dic
         for frame, pairs in enumerate(shots, start=1)
         for head, pair in enumerate(pairs, start=1)
         for side, image in (("left", pair.left), ("right", pair.right))
+    }
+
+
+def seen_images(name: str, seen: Sequence[SeenPair]) -> dict[str, Image]:
+    """The images of a measurement that failed, by the names that ``raw_images`` would give them."""
+    return {
+        f"raw/{name}-frame-{one.frame}-head-{one.head}-{side}.pgm.zst": image
+        for one in seen
+        for side, image in (("left", one.pair.left), ("right", one.pair.right))
+    }
+
+
+def seen_exposures(name: str, seen: Sequence[SeenPair]) -> dict[str, ExposureRecord | None]:
+    """How these images were exposed, by the same names."""
+    records = (record for one in seen for record in one.pair.exposures or (None, None))
+    return dict(zip(seen_images(name, seen), records, strict=True))
+
+
+def failed_from(
+    part: str, predicted: RigidTransform, fault: CellError, images: list[str]
+) -> dict[str, Any]:
+    """Part, prediction, images and fault of a measurement that failed."""
+    return {
+        "key": FAILED,
+        "part": part,
+        "c1_T_part_predicted": predicted.as_matrix().tolist(),
+        "fault": fault.number,
+        "text": str(fault),
+        "images": images,
     }
 
 

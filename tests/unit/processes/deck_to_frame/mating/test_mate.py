@@ -120,7 +120,8 @@ def test_the_record_holds_formula_curve_and_stiffness(seated: Seated) -> None:
     assert result.stiffness is not None
     arm_n_m, contact_n_m = ARM_STIFFNESS_N_M, seated.cell.world.scenario.contact.stiffness_n_m[0]
     truth_n_m = arm_n_m * contact_n_m / (arm_n_m + contact_n_m)
-    assert result.stiffness.stiffness_n_m == pytest.approx(truth_n_m, rel=0.25)
+    # A burr carries first and is softer than the rim.
+    assert result.stiffness.stiffness_n_m == pytest.approx(truth_n_m, rel=0.3)
     assert result.statistics.peak_filtered_fz_n < 45.0
 
 

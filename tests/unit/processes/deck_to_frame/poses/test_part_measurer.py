@@ -182,6 +182,24 @@ async def test_a_stale_robot_state_is_not_measured_with(bench: Bench, eyes: Eyes
     assert eyes.calls == []
 
 
+async def test_what_was_seen_is_kept_when_the_measurement_fails(bench: Bench, eyes: Eyes) -> None:
+    shared = measurer(bench)
+    known = {"frames": 2, "max_frames": 2, "wanted_sigma_mm_deg": np.full(6, 1.0)}
+
+    def miss_in_the_second_frame() -> None:
+        if len(eyes.calls) == 4:
+            raise HoleMissing("P1")
+
+    eyes.during = miss_in_the_second_frame
+    with pytest.raises(HoleMissing):
+        await shared.measure(bench.features()[0], PLACE, **known)  # type: ignore[arg-type]
+    seen = {(one.frame, one.head) for one in shared.seen}
+    assert seen == {(1, 1), (1, 2), (2, 1), (2, 2)}
+    eyes.during = None
+    await shared.measure(bench.features()[0], PLACE, **known)  # type: ignore[arg-type]
+    assert shared.seen == [], "the measurement itself has them then"
+
+
 async def test_exposures_are_found_before_the_first_picture(bench: Bench, eyes: Eyes) -> None:
     exposures = Exposures(eyes)
     known = {"frames": 1, "max_frames": 1, "wanted_sigma_mm_deg": np.full(6, 1.0)}

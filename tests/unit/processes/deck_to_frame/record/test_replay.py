@@ -13,12 +13,14 @@ from scipy.spatial.transform import RigidTransform
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
+from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoPair
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
     HeadGeometry,
     PartMeasurement,
+    SeenPair,
     deck_in_frame,
 )
 from cellctl.records.files.raw_images import MEDIA_TYPE
@@ -116,6 +118,40 @@ async def test_what_differs_is_named_with_its_size(daemon_rig: DaemonRig, seeing
     assert code == 1
     assert "0.001" in said
     assert "frame" in said
+
+
+@pytest.mark.parametrize(("found_today", "code"), [(False, 0), (True, 1)])
+async def test_the_images_of_a_measurement_that_failed_are_looked_at_again(
+    daemon_rig: DaemonRig,
+    seeing: Seeing,
+    monkeypatch: pytest.MonkeyPatch,
+    found_today: bool,
+    code: int,
+) -> None:
+    missing = HoleMissing("P2")
+
+    async def failing(self: TruthMeasurer, *_: Any, **__: Any) -> PartMeasurement:
+        images = seeing.rng.integers(0, 256, (2, 6, 8), dtype=np.uint8)
+        self.seen = [SeenPair(1, 2, StereoPair(images[0], images[1], 0.0, 1))]
+        raise missing
+
+    def look(*_: Any, **__: Any) -> None:
+        if not found_today:
+            raise missing
+
+    monkeypatch.setattr(TruthMeasurer, "measure", failing)
+    monkeypatch.setattr(module, "measure_pair", look)
+    await daemon_rig.started(serial="SAT-7")
+    await daemon_rig.to(State.ABORTED)
+    record = await daemon_rig.record()
+    images = [one.name for one in record.artefacts if one.media_type == MEDIA_TYPE]
+    assert images == [
+        f"raw/failed-frame-frame-1-head-2-{side}.pgm.zst" for side in ("left", "right")
+    ]
+    exit_code, said = await replay(daemon_rig, "--every")
+    assert exit_code == code, said
+    assert "failed-frame" in said
+    assert "fault F421" in said
 
 
 async def test_a_run_without_raw_images_says_so(daemon_rig: DaemonRig) -> None:
