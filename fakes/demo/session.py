@@ -25,6 +25,9 @@ from fakes.scenes.load import load
 GOOD, NOT_STARTED, NOT_GOOD, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
 
+RUN_TIMEOUT_S = 900.0
+"""How long the line waits for a part. A computer that others share renders and measures so slowly
+that a run of a minute takes six; a run that does not go on ends by the cell's own limits."""
 SLOW_SHARE = 0.01
 """Of its time, lost by the fake cell: from here on the computer is named as a cause. Two processors
 that are free lose a tenth of it."""
@@ -176,7 +179,8 @@ class Session:
         serial = self._demo.serial.format(seed=self._seed)
         mate = self._demo.mate_serial.format(seed=self._seed)
         parts = ("--serial", serial, "--mate-serial", mate)
-        result = self._line("--recipe", str(self._demo.recipe), *parts)
+        patience = ("--timeout", f"{RUN_TIMEOUT_S:g}")
+        result = self._line("--recipe", str(self._demo.recipe), *parts, *patience)
         faults = self._faults()
         # Asked at once: the truth is that of the end of the job.
         truth = self._control.request("truth")["truth"]
