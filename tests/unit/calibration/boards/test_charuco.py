@@ -53,3 +53,38 @@ def test_a_mirrored_image_is_named() -> None:
 def test_no_board_is_none() -> None:
     noise = np.random.default_rng(0).integers(80, 120, (400, 500)).astype(np.uint8)
     assert detect_corners(noise, BOARD) is None
+
+
+@pytest.mark.parametrize(
+    ("tilt_deg", "farther_m", "blur_px"),
+    [
+        ((24.0, -21.0, -65.0), 0.9, 0.0),
+        ((-9.0, -7.0, -164.0), 1.05, 0.8),
+        ((35.0, 12.0, -96.0), 0.7, 0.8),
+        ((10.0, 30.0, 20.0), 0.1, 1.5),
+        ((-30.0, 25.0, 118.0), 0.0, 0.0),
+    ],
+)
+def test_markers_do_not_pull_corners_that_are_far_and_tilted(
+    tilt_deg: tuple[float, float, float], farther_m: float, blur_px: float
+) -> None:
+    image, truth = picture(tilt_deg, farther_m, blur_px)
+    corners = detect_corners(image, BOARD)
+    assert corners is not None
+    assert len(corners.ids) >= 30
+    off_px = np.linalg.norm(corners.pixels - truth[corners.ids], axis=1)
+    assert np.quantile(off_px, 0.95) < 0.1
+    assert off_px.max() < 0.2
+
+
+def test_a_corner_that_contradicts_the_others_is_left_out() -> None:
+    image, truth = picture((10.0, 25.0, 170.0), 0.0, 0.0)
+    # A mark beside a corner makes a saddle of its own there, 3 px from the printed one.
+    spoilt, (column, row) = image.copy(), np.rint(truth[18]).astype(int)
+    x, y = np.meshgrid(np.arange(-8, 9), np.arange(-8, 9))
+    spoilt[row - 8 : row + 9, column - 8 : column + 9] = np.where((x - 2) * (y + 2) > 0, 40, 220)
+    corners = detect_corners(np.asarray(spoilt, dtype=np.uint8), BOARD)
+    assert corners is not None
+    assert 18 not in corners.ids
+    off_px = np.linalg.norm(corners.pixels - truth[corners.ids], axis=1)
+    assert off_px.max() < 0.1
