@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean install rollback bundle
 
 venv: $(VENV)/.installed
@@ -83,13 +83,16 @@ campaign-planning: N = 100
 campaign-planning: venv
 	$(BIN)/python -m benchmarks.planning.campaign -n $(N)
 
-bench: bench-metrology bench-looks bench-guard
+bench: bench-metrology bench-looks bench-hand-eye bench-guard
 
 bench-metrology: venv
 	$(BIN)/python -m benchmarks.metrology.accuracy
 
 bench-looks: venv
 	$(BIN)/python -m benchmarks.metrology.looks
+
+bench-hand-eye: venv
+	$(BIN)/python -m benchmarks.calibration.hand_eye_comparison
 
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard.latency

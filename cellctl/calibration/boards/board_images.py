@@ -10,9 +10,10 @@ from cellctl.calibration.boards.board import (
     BoardView,
     CalibrationBoard,
     CameraView,
+    Corners,
 )
 from cellctl.calibration.boards.board_search import name_chessboard
-from cellctl.calibration.boards.corner_detection import detect_corners
+from cellctl.calibration.boards.corner_detection import detect_corners, why_no_corners
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
 from cellctl.interfaces.stereo_camera import Image
@@ -50,7 +51,7 @@ class DetectedViews:
 
     views: tuple[BoardView, ...]
     not_found: tuple[str, ...]
-    """Pairs in which at least one camera does not see the board."""
+    """Pairs in which at least one camera does not see the board, with camera and reason."""
     image_size: tuple[int, int]
 
 
@@ -60,7 +61,7 @@ class DetectedCameraViews:
 
     views: tuple[CameraView, ...]
     not_found: tuple[str, ...]
-    """Images without the board."""
+    """Images without the board, with the reason."""
     image_size: tuple[int, int]
 
 
@@ -77,9 +78,9 @@ def detect_views(pairs: Sequence[BoardImages], board: CalibrationBoard) -> Detec
         for pair in pairs
         for side, image in (("left", pair.left), ("right", pair.right))
     )
-    views, missing = _search_all(pairs, board, detect_view, lambda pair: (pair.name, pair.left))
+    views, missing = _search_all(pairs, board, _look_at_pair, lambda pair: (pair.name, pair.left))
     if not views:
-        raise BoardNotFound(f"no pair shows the {board}")
+        raise BoardNotFound(f"no pair shows the {board}; {missing[0]}")
     return DetectedViews(tuple(views), tuple(missing), image_size)
 
 
@@ -90,9 +91,9 @@ def detect_camera_views(
     if not images:
         raise TooFewViews("no images were given")
     image_size = _common_size((one.name, one.image) for one in images)
-    views, missing = _search_all(images, board, detect_camera_view, lambda o: (o.name, o.image))
+    views, missing = _search_all(images, board, _look_at_image, lambda o: (o.name, o.image))
     if not views:
-        raise BoardNotFound(f"no image shows the {board}")
+        raise BoardNotFound(f"no image shows the {board}; {missing[0]}")
     return DetectedCameraViews(tuple(views), tuple(missing), image_size)
 
 
@@ -101,40 +102,64 @@ def detect_view(pair: BoardImages, board: CalibrationBoard) -> BoardView | None:
 
     Raises ``ImageBlack``, ``ImageSaturated`` or ``BoardMirrored``.
     """
-    corners = []
-    for side, image in (("left", pair.left), ("right", pair.right)):
-        found = detect_corners(image, board)
-        _check_exposure(f"{pair.name} {side}", image, board_found=found is not None)
-        corners.append(found)
-    left, right = corners
-    if left is None or right is None:
-        return None
-    return BoardView(pair.name, left, right)
+    seen = _look_at_pair(pair, board)
+    return None if isinstance(seen, _NotSeen) else seen
 
 
 def detect_camera_view(one: BoardImage, board: CalibrationBoard) -> CameraView | None:
     """The board in one image, or None; raises as ``detect_view`` does."""
-    found = detect_corners(one.image, board)
-    _check_exposure(one.name, one.image, board_found=found is not None)
-    return None if found is None else CameraView(one.name, found)
+    seen = _look_at_image(one, board)
+    return None if isinstance(seen, _NotSeen) else seen
+
+
+@dataclass(frozen=True, slots=True)
+class _NotSeen:
+    why: str
+
+
+def _look_at_pair(pair: BoardImages, board: CalibrationBoard) -> BoardView | _NotSeen:
+    left = _look(pair.left, f"{pair.name} left", board)
+    right = _look(pair.right, f"{pair.name} right", board)
+    if isinstance(left, Corners) and isinstance(right, Corners):
+        return BoardView(pair.name, left, right)
+    reasons = [
+        f"{side} image: {seen.why}"
+        for side, seen in (("left", left), ("right", right))
+        if isinstance(seen, _NotSeen)
+    ]
+    return _NotSeen(", ".join(reasons))
+
+
+def _look_at_image(one: BoardImage, board: CalibrationBoard) -> CameraView | _NotSeen:
+    seen = _look(one.image, one.name, board)
+    return CameraView(one.name, seen) if isinstance(seen, Corners) else seen
+
+
+def _look(image: Image, name: str, board: CalibrationBoard) -> Corners | _NotSeen:
+    corners = detect_corners(image, board)
+    _check_exposure(name, image, board_found=corners is not None)
+    return _NotSeen(why_no_corners(image, board)) if corners is None else corners
 
 
 def _search_all(
     exposures: Sequence[T],
     board: CalibrationBoard,
-    detect: Callable[[T, CalibrationBoard], V | None],
+    look: Callable[[T, CalibrationBoard], V | _NotSeen],
     shown: Callable[[T], tuple[str, Image]],
 ) -> tuple[list[V], list[str]]:
-    """Views, and the names of the exposures without one; ``shown`` gives name and an image."""
+    """Views, and names with reasons of the exposures without one.
+
+    ``shown`` gives the name and an image of an exposure.
+    """
     views: list[V] = []
     missing: list[str] = []
     for exposure in exposures:
-        view = detect(exposure, board)
-        if view is not None:
+        view = look(exposure, board)
+        if not isinstance(view, _NotSeen):
             views.append(view)
             continue
         name, image = shown(exposure)
-        missing.append(name)
+        missing.append(f"{name} ({view.why})")
         # Trying all sizes of board takes long, so only twice, and only while most fail.
         if len(missing) in _SUSPICIOUS and len(views) < len(missing):
             _check_board(name, image, board)

@@ -23,13 +23,23 @@ def find_chessboard(image: Image, board: CalibrationBoard) -> Array | None:
     if found is None:
         return None
     grid = _right_handed(found.reshape(board.rows, board.columns, 2))
-    if _continues(image, grid):
+    if _side_that_continues(image, grid) is not None:
         return None
     # The colours tell which end is the first, so that an upside-down camera does not pass for a
     # turned board.
     if not board.symmetric and not _first_cell_is_dark(image, grid):
         grid = grid[::-1, ::-1]
     return np.ascontiguousarray(grid.reshape(-1, 2))
+
+
+def why_no_chessboard(image: Image, board: CalibrationBoard) -> str:
+    """Why ``find_chessboard`` gives none, for people."""
+    found = _search(image, (board.columns, board.rows))
+    if found is None:
+        return "not seen whole and sharp"
+    grid = _right_handed(found.reshape(board.rows, board.columns, 2))
+    side = _side_that_continues(image, grid)
+    return f"the pattern goes on beyond its {side} side: it has more corners than were given"
 
 
 def name_chessboard(image: Image) -> tuple[int, int] | None:
@@ -75,8 +85,8 @@ def _right_handed(grid: Array) -> Array:
     return grid if area > 0 else grid[:, ::-1]
 
 
-def _continues(image: Image, grid: Array) -> bool:
-    """Whether the pattern goes on beyond one of the four sides of the grid."""
+def _side_that_continues(image: Image, grid: Array) -> str | None:
+    """The side of the grid, in the image, beyond which the pattern goes on; None if none does."""
     for quarter in range(4):
         turned = np.rot90(grid, quarter)
         last, before, earlier = turned[0], turned[1], turned[2]
@@ -91,8 +101,16 @@ def _continues(image: Image, grid: Array) -> bool:
         # Colours alternate: a further line of corners has the opposite sign.
         ratio = -float((outside[seen] * np.sign(own[seen])).sum() / np.abs(own[seen]).sum())
         if ratio > _CONTINUES:
-            return True
-    return False
+            return _side(np.mean(last - before, axis=0))
+    return None
+
+
+def _side(outwards: Array) -> str:
+    """The name of the side of the image to which a direction points most."""
+    x, y = outwards
+    if abs(x) > abs(y):
+        return "right" if x > 0 else "left"
+    return "lower" if y > 0 else "upper"
 
 
 def _contrast(image: Image, corners: Array, across: Array, along: Array) -> Array:

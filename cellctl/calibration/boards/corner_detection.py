@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Corners, Ids
-from cellctl.calibration.boards.board_search import find_chessboard
+from cellctl.calibration.boards.board_search import find_chessboard, why_no_chessboard
 from cellctl.calibration.boards.circle_centres import measured_rims
 from cellctl.calibration.boards.circle_search import find_circles
 from cellctl.calibration.boards.corner_saddle import saddle_points
@@ -44,6 +44,15 @@ def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:
     half = round(_WINDOW_OF_SQUARE * _square_px(rough, board))
     half = int(np.clip(half, _MIN_WINDOW_PX, _MAX_WINDOW_PX))
     return Corners(rough.ids, _refine(image, found, half))
+
+
+def why_no_corners(image: Image, board: CalibrationBoard) -> str:
+    """Why ``detect_corners`` gives none, for people."""
+    if board.charuco is not None:
+        return f"fewer than {_MIN_CHARUCO} corners between markers that could be read"
+    if board.circles is not None:
+        return "no grid of so many circles that is seen whole and ends there"
+    return why_no_chessboard(image, board)
 
 
 def _refine(image: Image, pixels: Array, half: int) -> Array:

@@ -6,6 +6,7 @@ refinement by gradients needs longer edges, and takes those of a neighbour for t
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
@@ -20,7 +21,8 @@ def saddle_points(image: Image, pixels: Array, half: int) -> Array:
     The window reaches ``half`` px to each side, and a saddle is not looked for farther away.
     """
     # Smoothed in proportion to the window, so that a parabola describes the greys in all of it.
-    smooth = cv2.GaussianBlur(image.astype(np.float32), (0, 0), max(1.0, 0.5 * half))
+    blurred = cv2.GaussianBlur(image.astype(np.float32), (0, 0), max(1.0, 0.5 * half))
+    smooth = np.asarray(blurred, dtype=np.float32)
     fit = _parabola_fit(half)
     return np.array([_saddle_point(smooth, start, half, fit) for start in pixels]).reshape(-1, 2)
 
@@ -33,7 +35,7 @@ def _parabola_fit(half: int) -> Array:
     return np.asarray(np.linalg.pinv(terms * root[:, None]) * root)
 
 
-def _saddle_point(smooth: Array, start: Array, half: int, fit: Array) -> Array:
+def _saddle_point(smooth: NDArray[np.float32], start: Array, half: int, fit: Array) -> Array:
     place, size = np.array(start, dtype=float), (2 * half + 1, 2 * half + 1)
     for _ in range(_ROUNDS):
         window = cv2.getRectSubPix(smooth, size, (float(place[0]), float(place[1])))

@@ -219,4 +219,4 @@ def _matching(pattern: str) -> list[Path]:
 
 def _say_left_out(console: Console, not_found: Sequence[str]) -> None:
     if not_found:
-        console.print(f"board not found, left out: {', '.join(not_found)}", markup=False)
+        console.print(f"board not found, left out: {'; '.join(not_found)}", markup=False)

@@ -17,8 +17,11 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc, pose_to_xyzabc
 
-_FITS_M = 5e-3
-"""A board whose place scatters by less belongs to these poses, whatever the arm's accuracy."""
+_FITS = 0.01
+"""Of its distance: a board whose place scatters by less belongs to these poses, whatever the arm's
+accuracy."""
+_SCALE = 0.01
+"""Lengths that differ by less are not worth a word."""
 _BETTER = 10.0
 """So many times better than as given."""
 _TURNED_RAD = np.radians(2)
@@ -59,16 +62,38 @@ _MISTAKES = (
 
 def explanation(poses: Sequence[HandEyePose], setup: Setup) -> str | None:
     """The mistake without which the poses fit; None when no single one explains them."""
-    limit_m = min(_FITS_M, _spread_m(poses, setup) / _BETTER)
-    found = [
-        (spread_m, mistake)
-        for mistake in _MISTAKES
-        if (spread_m := _spread_m(*_without(mistake, poses, setup))) <= limit_m
-    ]
+    given_m = _spread_m(poses, setup)
+    found = []
+    for mistake in _MISTAKES:
+        changed = _without(mistake, poses, setup)
+        limit_m = min(_FITS * board_distance_m(changed[0]), given_m / _BETTER)
+        spread_m = _spread_m(*changed)
+        if spread_m <= limit_m:
+            found.append((spread_m, mistake))
     if not found:
         return None
     best = min(found, key=lambda one: one[0])[1]
     return best.words.format(other=setup.other.value)
+
+
+def board_distance_m(poses: Sequence[HandEyePose]) -> float:
+    """Median distance of the board from the camera."""
+    return float(
+        np.median([np.linalg.norm(pose.camera_T_board.pose.translation) for pose in poses])
+    )
+
+
+def another_size(scale: float, sigma: float) -> list[str]:
+    """That the board has another size than it was given, if the robot's motions say so.
+
+    ``scale`` is the robot's lengths over the board's, ``sigma`` its standard deviation.
+    """
+    if abs(scale - 1.0) < max(_SCALE, 4.0 * sigma):
+        return []
+    return [
+        f"the board is {scale:.3f} times as large as it was said to be, by the robot's motions: "
+        f"check its squares and the camera's focal length"
+    ]
 
 
 def odd_poses(
@@ -81,13 +106,14 @@ def odd_poses(
     ``predicted`` is camera_T_board as the calibration expects it.
     """
     out = [pose for pose in poses if pose.name in rejected]
+    fits_m = _FITS * board_distance_m(poses)
     said = []
     for one, other in combinations(out, 2):
         exchanged = (
             replace(one, camera_T_board=other.camera_T_board),
             replace(other, camera_T_board=one.camera_T_board),
         )
-        if all(_off(pose, predicted)[0] < _FITS_M for pose in exchanged):
+        if all(_off(pose, predicted)[0] < fits_m for pose in exchanged):
             said.append(f"{one.name} and {other.name} fit with their pictures exchanged")
     turned = RigidTransform.from_rotation(Rotation.from_euler("z", 180, degrees=True))
     for pose in out:
@@ -126,10 +152,7 @@ def _spread_m(poses: Sequence[HandEyePose], setup: Setup) -> float:
     # A board nearer than this no camera sees whole: lengths of both in metres fit each other.
     if np.median([np.linalg.norm(pose.translation) for pose in seen]) < 5 * MM:
         return float("inf")
-    turns = [
-        pose.base_T_flange if setup is Setup.EYE_IN_HAND else pose.base_T_flange.inv()
-        for pose in poses
-    ]
+    turns = [setup.turn(pose.base_T_flange) for pose in poses]
     try:
         x, z, _ = closed_form(turns, seen)
     except (RobotCameraMismatch, PosesNotDiverse):

@@ -30,6 +30,10 @@ class Setup(Enum):
         """The setup that one may have meant instead."""
         return Setup.EYE_TO_HAND if self is Setup.EYE_IN_HAND else Setup.EYE_IN_HAND
 
+    def turn(self, base_T_flange: RigidTransform) -> RigidTransform:
+        """The pose of the arm with which turn · X · camera_T_board = Z."""
+        return base_T_flange if self is Setup.EYE_IN_HAND else base_T_flange.inv()
+
 
 @dataclass(frozen=True, slots=True)
 class HandEyePose:

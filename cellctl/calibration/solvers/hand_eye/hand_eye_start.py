@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import Array
 
@@ -61,6 +62,30 @@ def closed_form(
     # The median: a gross error among the poses must not pull the start.
     mean_translation = np.median([pose.translation for pose in z], axis=0)
     return x, RigidTransform.from_components(mean_translation, mean_rotation), spread
+
+
+def board_scale(poses: Sequence[HandEyePose], setup: Setup) -> tuple[float, float]:
+    """The robot's lengths over those of the board, and the standard deviation of that.
+
+    1 when the board has the size that it was said to have. Raises ``PosesNotDiverse``.
+    """
+    turns = [setup.turn(pose.base_T_flange) for pose in poses]
+    robot, camera = _motions(turns, [pose.camera_T_board.pose for pose in poses])
+    alpha = np.stack([motion.rotation.as_rotvec() for motion in robot])
+    beta = np.stack([motion.rotation.as_rotvec() for motion in camera])
+    rotation, _ = Rotation.align_vectors(alpha, beta)
+    matrices = np.stack([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
+    seen = np.stack([rotation.apply(motion.translation) for motion in camera])
+    # (R_A - 1) t = s R t_B - t_A, with the scale s as a fourth unknown.
+    design = np.concatenate([matrices, -seen[:, :, None]], axis=2).reshape(-1, 4)
+    knowns = -np.concatenate([motion.translation for motion in robot])
+    solution, *_ = np.linalg.lstsq(design, knowns, rcond=None)
+    left = knowns - design @ solution
+    # Pairs of poses are no independent measurements: as many as there are poses are.
+    freedom = max(3 * len(poses) - 7, 1)
+    variance = float(left @ left) / len(knowns) * (3 * len(poses)) / freedom
+    inverse = np.linalg.pinv(design.T @ design * (3.0 * len(poses) / len(knowns)))
+    return float(solution[3]), float(np.sqrt(variance * inverse[3, 3]))
 
 
 def turns_agree(

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from cellctl.calibration.boards.board_in_camera import board_in_camera
-from cellctl.calibration.solvers.hand_eye.hand_eye import HandEyeLimits, calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
+from cellctl.calibration.solvers.hand_eye.hand_eye_limits import HandEyeLimits
 from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import (
     HandEyePose,

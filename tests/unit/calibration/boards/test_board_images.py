@@ -1,3 +1,5 @@
+import re
+
 import cv2
 import numpy as np
 import pytest
@@ -114,8 +116,20 @@ def test_pairs_without_the_board_are_named() -> None:
     given[1] = BoardImages("p1", given[1].left, plain)
     found = detect_views(given, BOARD)
     assert [one.name for one in found.views] == ["p0", "p2"]
-    assert found.not_found == ("p1",)
+    assert found.not_found == ("p1 (right image: not seen whole and sharp)",)
     assert found.image_size == SIZE
+
+
+def test_a_board_that_goes_on_is_refused_with_camera_side_and_reason() -> None:
+    given = pairs()
+    whole = draw(CalibrationBoard(13, 10, 0.025), view(0), samples=4)
+    given[1] = BoardImages("p1", given[1].left, whole)
+    found = detect_views(given, BOARD)
+    assert [one.name for one in found.views] == ["p0", "p2"]
+    (refused,) = found.not_found
+    assert re.fullmatch(
+        r"p1 \(right image: the pattern goes on beyond its right side: .*\)", refused
+    )
 
 
 @pytest.mark.parametrize(
@@ -153,7 +167,7 @@ def test_unknown_dictionary() -> None:
 
 def test_no_board_at_all() -> None:
     noise = np.random.default_rng(0).integers(80, 120, (400, 500)).astype(np.uint8)
-    with pytest.raises(BoardNotFound, match="no pair shows the 9 x 6 chessboard"):
+    with pytest.raises(BoardNotFound, match=r"no pair shows the 9 x 6 chessboard.*p0 \(left image"):
         detect_views([BoardImages("p0", noise, noise)], BOARD)
     with pytest.raises(TooFewViews):
         detect_views([], BOARD)
