@@ -1,6 +1,6 @@
 """Figures of the metrology benchmark: errors against truth, bounds and stated uncertainties."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,11 @@ class HoleErrors:
             self.along_px.append(error_px)
             self.bounds_px.append(bound_px)
             self.squared_2d.append(_squared(error_px, covariance_px2))
+
+    def take(self, other: "HoleErrors") -> None:
+        """Take in all errors of another one."""
+        for one in fields(self):
+            getattr(self, one.name).extend(getattr(other, one.name))
 
     @property
     def count(self) -> int:

@@ -29,6 +29,7 @@ from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
 from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, WholeImageSearch, search_windows
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
+from cellctl.vision.rim.image_scale import with_image_scales
 from cellctl.vision.rim.roi import RimRoi
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 
@@ -138,22 +139,31 @@ def _measure(
     # A wrong arrangement ends here, before the expensive fits. Edges alone are less exact, hence
     # the allowance.
     check_layout(holes, located.positions_m, tolerance_m + _COARSE_M)
-    measured: dict[str, HoleMeasurement] = {}
+    measured: dict[int, RimPair] = {}
+    all_rois = [
+        rim_rois(images, hole, place_m, located.normal)
+        for hole, place_m in zip(holes, located.positions_m, strict=True)
+    ]
     blurs: list[tuple[float, float]] = []
     # Rims that show the blur of the images come first. The others are given it: the turns of a
     # thread, for one, look like blur themselves.
     for index in sorted(range(len(holes)), key=lambda index: not kind_of(holes[index]).lends_blur):
         hole = holes[index]
-        rois = rim_rois(images, hole, located.positions_m[index], located.normal)
+        rois = all_rois[index]
         known = np.median(blurs, axis=0) if blurs else None
         blur_px = None if known is None else (float(known[0]), float(known[1]))
         rims = measure_rims(rois, located.places[index], blur_px)
         if kind_of(hole).lends_blur:
             blurs.append((rims.left.blur_px, rims.right.blur_px))
         _check_sharpness(rois, rims)
+        measured[index] = rims
+    pairs = with_image_scales([measured[index] for index in range(len(holes))])
+    for rois, rims in zip(all_rois, pairs, strict=True):
         refuse_too_uncertain(rois, rims)
-        measured[hole.name] = _stereo(images.head, hole, rims)
-    result = PairMeasurement("default", tuple(measured[hole.name] for hole in holes))
+    result = PairMeasurement(
+        "default",
+        tuple(_stereo(images.head, hole, rims) for hole, rims in zip(holes, pairs, strict=True)),
+    )
     check_layout(holes, result.positions_m, tolerance_m)
     return result
 

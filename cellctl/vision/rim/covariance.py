@@ -41,6 +41,9 @@ class RatedFit:
     """Covariance of (x, y) of every image, then of the radius, in plane units squared."""
     contrast_grey: float
     """Step from inside to outside."""
+    misfit: float
+    """Squares of what the residuals sum to over arcs, over what independent errors give: about 1
+    where the model is complete."""
 
     @property
     def shapes(self) -> tuple[RimShape, ...]:
@@ -69,7 +72,9 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
     # both.
     x, y = np.concatenate(offsets, axis=1)
-    covariance = _widened(covariance, arc_covariance(scores, np.arctan2(y, x)))
+    independent = covariance
+    seen = arc_covariance(scores, np.arctan2(y, x))
+    covariance = _widened(independent, seen)
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
     contrast = float(np.average(grey, weights=outside + 1e-9)) - float(
@@ -79,7 +84,10 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     # stands for them.
     covariance += _model_covariance(problem, grey, outside, contrast)
     covariance[: len(spread), : len(spread)] += spread
-    return RatedFit(fit, covariance, contrast)
+    centre = slice(2 * len(problem.views))
+    inverse = np.linalg.inv(independent[centre, centre])
+    misfit = float(np.trace(inverse @ seen[centre, centre])) / len(inverse)
+    return RatedFit(fit, covariance, contrast, misfit)
 
 
 def _model_covariance(problem: RimProblem, grey: Array, outside: Array, contrast: float) -> Array:

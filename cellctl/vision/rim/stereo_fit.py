@@ -44,6 +44,8 @@ class Rim:
     size_ratio: float
     """Measured over nominal diameter, if the plane's distance is right."""
     blur_px: float
+    misfit: float
+    """As in ``RatedFit``."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,6 +138,7 @@ def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float)
         ellipse=ellipse_of_circle(point_px, jacobian * shape.radius),
         size_ratio=shape.radius / given.roi.nominal_radius,
         blur_px=shape.blur_px,
+        misfit=rated.misfit,
     )
 
 

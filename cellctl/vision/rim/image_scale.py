@@ -1,0 +1,42 @@
+"""One scale of uncertainty for each image, from the residuals of all its rims.
+
+What the model leaves out of a lens, a lamp or a sensor disturbs all rims of an image. One rim shows
+that only roughly, because its residuals have few independent parts; all rims together show it well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from cellctl.vision.rim.stereo_fit import Rim, RimPair
+
+_CHANCE = 1.6
+"""By chance and by holes that are hard to model alone, the mean over three rims of a good image
+stays below."""
+
+
+def with_image_scales(pairs: Sequence[RimPair]) -> list[RimPair]:
+    """The same rims with covariances times the scales of their images."""
+    left = image_scale([pair.left for pair in pairs])
+    right = image_scale([pair.right for pair in pairs])
+    return [_scaled(pair, left, right) for pair in pairs]
+
+
+def image_scale(rims: Sequence[Rim]) -> float:
+    """Variances over those of independent errors, from all rims of an image; at least 1.
+
+    It comes on top of what a rim's own residuals have widened: those show only the part of an
+    error that the fit could not take up, and the same error has shifted the centres, too.
+    """
+    misfit = float(np.mean([rim.misfit for rim in rims]))
+    return misfit if misfit > _CHANCE else 1.0
+
+
+def _scaled(pair: RimPair, left: float, right: float) -> RimPair:
+    root = np.sqrt(np.repeat([left, right], 2))
+    return RimPair(
+        replace(pair.left, covariance_px2=pair.left.covariance_px2 * left),
+        replace(pair.right, covariance_px2=pair.right.covariance_px2 * right),
+        pair.covariance_px2 * np.outer(root, root),
+    )
