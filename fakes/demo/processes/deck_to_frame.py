@@ -123,14 +123,16 @@ def _normalised(evidence: Evidence) -> list[float] | None:
 
     Six components; None for a run that did not come to that look.
     """
-    looks = [one["content"] for one in evidence.record.get("documents", ())]
-    seen = [one for one in looks if "seated_sigma_mm_deg" in one]
+    figures = {one["key"]: one["value"] for one in evidence.record.get("figures", ())}
+    found, sigmas = (
+        [figures.get(f"seated_{what}.{axis}") for axis in ("x", "y", "z", "rx", "ry", "rz")]
+        for what in ("error", "sigma")
+    )
     pose = evidence.truth.get("frame_T_deck_mm_deg")
-    if not seen or pose is None:
+    if pose is None or None in found or None in sigmas:
         return None
     x, y, z, about_z, about_y, about_x = pose
     true_error = [-x, -y, evidence.recipe["deck_thickness_mm"] - z, -about_x, -about_y, -about_z]
-    found, sigmas = (seen[-1][f"seated_{what}_mm_deg"] for what in ("error", "sigma"))
     columns = zip(found, true_error, sigmas, strict=True)
     return [(one - true) / sigma for one, true, sigma in columns]
 

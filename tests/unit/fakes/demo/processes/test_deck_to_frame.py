@@ -67,13 +67,15 @@ def test_about_its_long_axis_a_deck_may_be_off_by_more() -> None:
 
 
 def test_the_last_look_is_held_against_the_truth_in_its_own_sigmas() -> None:
-    seen = {
-        # Target minus measured; the true deck is 0.02 mm too high and turned by 0.002° about z.
-        "seated_error_mm_deg": [0.0, 0.0, -0.03, 0.0, 0.0, -0.002],
-        "seated_sigma_mm_deg": [0.01, 0.01, 0.005, 0.001, 0.001, 0.0005],
-    }
+    # Target minus measured; the true deck is 0.02 mm too high and turned by 0.002° about z.
+    error, sigma = [0.0, 0.0, -0.03, 0.0, 0.0, -0.002], [0.01, 0.01, 0.005, 0.001, 0.001, 0.0005]
+    seen = [
+        {"key": f"seated_{what}.{axis}", "value": value, "verdict": None}
+        for what, values in (("error", error), ("sigma", sigma))
+        for axis, value in zip(("x", "y", "z", "rx", "ry", "rz"), values, strict=True)
+    ]
     truth = TRUTH | {"frame_T_deck_mm_deg": [0.01, 0.0, 15.02, 0.002, -0.001, 0.0]}
-    record = RECORD | {"documents": [{"key": "mating", "content": seen}]}
+    record = RECORD | {"figures": [*RECORD["figures"], *seen]}
     evidence = Evidence(GOOD, truth, record, {"deck_thickness_mm": 15.0})
     found = DeckToFrameDemo().judge(evidence).figures["seat_normalised"]
     assert found == pytest.approx([1.0, 0.0, -2.0, 0.0, -1.0, 0.0])
