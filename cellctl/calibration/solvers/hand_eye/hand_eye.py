@@ -2,8 +2,7 @@
 
 A closed form starts a weighted maximum-likelihood solution: each pose's residual is weighted with
 the covariance of the camera's pose and of the robot's pose, in the proportions that the residuals
-themselves show. Measured against closed forms this is best or equal whatever the robot's accuracy
-and whatever was stated of it (docs/calibration.md, ``make bench-hand-eye``).
+themselves show. ``make bench-hand-eye`` compares it with closed forms (docs/calibration.md).
 """
 
 from collections.abc import Sequence
