@@ -56,13 +56,14 @@ class Child:
 
     def _read(self) -> None:
         assert self.process.stdout is not None
-        for line in self.process.stdout:
-            try:
-                message = json.loads(line)
-            except ValueError:
-                # Libraries print, too; a line that is no JSON must not end the reading.
-                message = {"text": line.rstrip()}
-            self.lines.put(message if isinstance(message, dict) else {"text": message})
+        with self.process.stdout as lines:
+            for line in lines:
+                try:
+                    message = json.loads(line)
+                except ValueError:
+                    # Libraries print, too; a line that is no JSON must not end the reading.
+                    message = {"text": line.rstrip()}
+                self.lines.put(message if isinstance(message, dict) else {"text": message})
         self.lines.put(None)
 
     def next_line(self, timeout_s: float | None) -> dict[str, Any] | None:

@@ -1,5 +1,6 @@
 """One demonstration while it runs: fake cell, daemon, operator page, line PLC."""
 
+import signal
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -79,6 +80,7 @@ class Session:
         self._seed = seed
         self._begun_s = time.monotonic()
         self._daemon: Child | None = None
+        self._daemon_command: list[str] = []
         self._gentl: GentlPath | None = None
 
     def start_fake(self) -> None:
@@ -111,8 +113,8 @@ class Session:
         calibrations = own_calibrations(self._files.cell, self._folder)
         if calibrations is not None:
             command += ["--calibration-dir", str(calibrations)]
-        self._daemon = self._spawn("daemon", command)
-        self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
+        self._daemon_command = command
+        self._spawn_daemon("daemon")
         self._console.print(f"both are up; record and logs in {self._folder}/")
 
     def start_page(self) -> None:
@@ -154,10 +156,29 @@ class Session:
             f"  its runs:           .venv/bin/cellctl runs list {data}\n"
             "Ctrl-C ends both"
         )
+        starts = 1
+        while (killed_by := self._daemon_killed_by()) is not None:
+            starts += 1
+            self._console.print(
+                f"the daemon was killed by {killed_by.name}; starting it again, as systemd does …"
+            )
+            # A log of its own: what the one before has said is what one wants to read now.
+            self._spawn_daemon(f"daemon-{starts}")
+            self._console.print(f"it is up; its log: {self._folder / f'daemon-{starts}.log'}")
+        assert self._daemon is not None
+        raise ChildFailed(f"the daemon ended:\n{self._daemon.last_words()}")
+
+    def _spawn_daemon(self, name: str) -> None:
+        self._daemon = self._spawn(name, self._daemon_command)
+        self._modbus_port = int(self._daemon.wait_ready()["modbus_port"])
+
+    def _daemon_killed_by(self) -> signal.Signals | None:
+        """Wait until the daemon is gone; the signal that has killed it, None if it ended itself."""
         assert self._daemon is not None
         while self._daemon.next_line(timeout_s=None) is not None:
             continue
-        raise ChildFailed(f"the daemon ended:\n{self._daemon.last_words()}")
+        code = self._daemon.process.wait()
+        return signal.Signals(-code) if code < 0 else None
 
     def _calibrate(self) -> int:
         if not self._demo.procedures:
