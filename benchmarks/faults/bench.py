@@ -52,7 +52,7 @@ class Bench:
         self.own = FaultCell.make(folder)
         # A coarse loop is soon where the deck is mated; what stops it is the same.
         self.own.change("threshold_mm = 0.05", "threshold_mm = 0.15\nframes = 1")
-        self.own.change("threshold_deg = 0.005", "threshold_deg = 0.05")
+        self.own.change("threshold_deg = 0.006", "threshold_deg = 0.05")
         self.fresh = True
         """Nothing has moved yet."""
         try:

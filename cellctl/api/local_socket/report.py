@@ -43,7 +43,7 @@ class ForceReport(StrictModel):
     """Otherwise the weight is still in it, and no wrench is shown."""
     limit_n: float | None
     presses_n: float | None = None
-    """In Stopped and Aborted, where an arm presses; None where none does."""
+    """In Stopped and Aborted, where an arm may press; None where none does."""
     wrench: tuple[AxisReport, ...]
 
 

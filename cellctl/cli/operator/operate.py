@@ -184,4 +184,4 @@ def _tell(report: StatusReport) -> None:
 
     typer.echo(f"{report.state.lower()}, mode {report.mode.lower()}")
     for text in pressing(report):
-        typer.echo(f"an arm presses: {text}")
+        typer.echo(f"an arm may press: {text}")

@@ -96,10 +96,16 @@ def _rows(report: StatusReport) -> list[tuple[str, Text]]:
 
 
 def pressing(report: StatusReport) -> tuple[str, ...]:
-    """For each sensor whose arm presses: the force, and what has to be done before Reset."""
+    """For each sensor whose arm may press: the force, and what has to be done before Reset.
+
+    The sensor alone cannot tell a contact from the weight of a payload that is known to some
+    newtons, or from braking: nobody may be told to open a gripper from which a part hangs.
+    """
     return tuple(
-        f"{force.presses_n:.1f} N at {force.sensor}. Before `cellctl reset`, which lifts off: "
-        "fasten the part and take it out of the gripper, or see that it is loose"
+        f"{force.presses_n:.1f} N at {force.sensor}; just after a stop, braking counts too. Look "
+        "at the arm before `cellctl reset`, which lifts off. A part that rests on something: "
+        "fasten it and take it out of the gripper, or see that it is loose. One that hangs free: "
+        "leave the gripper closed"
         for force in report.forces
         if force.presses_n is not None
     )

@@ -81,7 +81,7 @@ def camera(control: Control) -> list[float]:
 def without_precision(own: OwnCell) -> None:
     """So coarse a loop that the deck is soon where it is mated."""
     own.change("threshold_mm = 0.05", "threshold_mm = 0.15\nframes = 1")
-    own.change("threshold_deg = 0.005", "threshold_deg = 0.05")
+    own.change("threshold_deg = 0.006", "threshold_deg = 0.05")
 
 
 def test_while_connecting(own: OwnCell) -> None:

@@ -49,7 +49,7 @@ FIGURES = (
         "0 to 5000",
     ),
     deck(
-        "threshold_deg = 0.005",
+        "threshold_deg = 0.006",
         "threshold_deg = 0.5",
         "recipes.0.pose_correction.threshold_deg",
         "seated_limit_deg",

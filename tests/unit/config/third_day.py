@@ -133,13 +133,13 @@ _HEADS = (
         "0.0, 33.6262, 90.0]",
         "0.0, 39.6262, 90.0]",
         "robots.main.poses_deg.deck_measure",
-        "outside of the picture of head_1",
+        "outside of the picture of head_2",
     ),
     deck(
         "base_T_frame = [1900.0, 0.0, 400.0",
         "base_T_frame = [1900.0, 90.0, 400.0",
         f"{_RECIPE}.base_T_frame",
-        "outside of the picture of head_1",
+        "outside of the picture of head_2",
     ),
     deck(
         "[23.3, 30.0, 622.6,",
@@ -296,7 +296,7 @@ _LIMITS = (
 
 IN_CELL_FILES = _LOADS + _HEADS + _ZONES + _ADDRESSES + _LIMITS
 
-_P3 = "position_mm = [-300.0, -230.0, 0.0]"
+_P3 = "position_mm = [-400.0, -230.0,"
 IN_DRAWINGS = (
     drawn(_FRAME, "[0.0, 0.0, 1.0]", "[0.0, 0.0, -1.0]", "outward_axis = [0.0, 0.0, -1.0]"),
     drawn(_DECK, "[0.0, 0.0, 1.0]", "[0.0, 0.0, -1.0]", "outward_axis"),
@@ -305,10 +305,10 @@ IN_DRAWINGS = (
     drawn(_DECK, "diameter_mm = 5.0", "diameter_mm = 3.0", "4 to 10; hole P2"),
     drawn(_BOTH, "diameter_mm = 6.0", "diameter_mm = 60.0", "0.5 to 50 mm"),
     drawn(_BOTH, "diameter_mm = 6.0", "diameter_mm = 0.006", "0.5 to 50 mm"),
-    drawn(("frame.toml", "deck.toml"), _P3, _P3.replace("-300.0", "300.0"), "a place in view"),
+    drawn(("frame.toml", "deck.toml"), _P3, _P3.replace("-400.0", "400.0"), "a place in view"),
     drawn(("frame.toml", "deck.toml"), _P3, _P3.replace("-230.0", "230.0"), "a place in view"),
-    drawn(_BOTH, "[300.0, 230.0, 0.0]", "[-300.0, -230.0, 0.0]", "another place than that of"),
-    drawn(_DECK, _P3, _P3.replace(" 0.0]", " 25.0]"), "z from -15 to 1"),
+    drawn(_BOTH, "[400.0, 230.0,", "[-400.0, -230.0,", "another place than that of"),
+    drawn(_DECK, f"{_P3} -2.5]", f"{_P3} 25.0]", "z from -15 to 1"),
     drawn(_DECK, "position_sigma_mm = 0.004", "position_sigma_mm = 0.4", "at most 0.041"),
     drawn(_DECK, '["P1", "P2", "P3"]', '["P1", "P1", "P2"]', "head_1 lists P1 twice"),
     drawn(_DECK, '["P1", "P2", "P3"]', '["P1", "P2", "P4"]', "without P4, which head_2 sees"),

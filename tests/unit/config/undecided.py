@@ -13,8 +13,8 @@ UNDECIDED = (
     Undecided(
         drawn(
             _BOTH,
-            "position_mm = [-300.0, -230.0, 0.0]",
-            "position_mm = [-480.0, -230.0, 0.0]",
+            "position_mm = [-400.0, -230.0,",
+            "position_mm = [-480.0, -230.0,",
             "lie on one line",
         ),
         "three holes of a head on a line: the pose follows from all six",

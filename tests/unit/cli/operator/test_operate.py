@@ -171,7 +171,8 @@ def test_an_arm_that_presses_is_told_with_what_to_do(daemon: Agreeable) -> None:
     daemon.shows["forces"] = (PRESSING,)
     for name in ("abort", "clear"):
         said = cellctl(name).output
-        assert "an arm presses: 34.5 N at force. Before `cellctl reset`" in said
+        assert "an arm may press: 34.5 N at force; just after a stop" in said
+        assert "One that hangs free: leave the gripper closed" in said
     daemon.shows["forces"] = ()
     assert "presses" not in cellctl("abort").output
 

@@ -28,8 +28,18 @@ def test_good_images_change_nothing() -> None:
 
 
 def test_a_doubtful_image_widens_all_its_rims_and_no_other_image() -> None:
-    given = [pair(4.0, 1.0), pair(1.0, 0.5), pair(4.0, 1.5)]
+    given = [pair(4.0, 1.0), pair(1.0, 0.5), pair(3.0, 1.5)]
     assert image_scale([one.left for one in given]) == pytest.approx(3.0)
+    _check_left_only(given)
+
+
+def test_one_doubtful_rim_is_not_the_image() -> None:
+    given = [pair(11.0, 1.0), pair(1.0, 0.5), pair(1.5, 9.0)]
+    assert image_scale([one.left for one in given]) == 1.0
+    assert image_scale([one.right for one in given]) == 1.0
+
+
+def _check_left_only(given: list[RimPair]) -> None:
     for before, after in zip(given, with_image_scales(given), strict=True):
         np.testing.assert_allclose(after.left.covariance_px2, 3.0 * COVARIANCE)
         np.testing.assert_allclose(after.right.covariance_px2, COVARIANCE)
