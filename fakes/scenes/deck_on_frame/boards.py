@@ -32,13 +32,17 @@ def measuring_flange(scenario: DeckScenario, head: str) -> RigidTransform:
 
 
 def target_board_pose(scenario: DeckScenario, seed: int, head: str, number: int) -> RigidTransform:
-    """cell_T_board of board P, roughly under a head, its x along the rows of the head's images."""
+    """cell_T_board of board P, roughly under a head, its x along the rows of the head's images.
+
+    Not over the middle of the holes that the head measures: those may lie to one side of its
+    pictures, where the outer discs of the board would be out of sight.
+    """
     board, rng = scenario.target_board, stream(seed, "target board", head, number)
     cell_T_frame = from_written(scenario.parts.frame_mm_deg)
-    sees = scenario.parts.seen_by[head]
-    holes = [hole.position_mm for hole in scenario.parts.holes if hole.name in sees]
-    middle = cell_T_frame.apply(np.append(np.mean(holes, axis=0), board.height_mm) * MM)
-    flange_x = measuring_flange(scenario, head).rotation.apply([1.0, 0.0, 0.0])
+    flange = measuring_flange(scenario, head)
+    flange_x, looks = flange.rotation.apply([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    above = cell_T_frame.inv().apply(flange.translation)[2] - board.height_mm * MM
+    middle = flange.translation - looks * above / cell_T_frame.inv().rotation.apply(looks)[2]
     turn = Rotation.from_euler("z", np.arctan2(flange_x[1], flange_x[0]))
     offset = rng.uniform(-1, 1, 3) * np.array(board.placement.xyz_mm) * MM
     tilt = rng.uniform(-1, 1, 3) * np.deg2rad(board.placement.rotation_deg)

@@ -220,7 +220,8 @@ async def test_a_head_of_the_cell_shows_what_a_frame_server_would(
     producer: Path, cameras: Path
 ) -> None:
     """Pixel by pixel, and its serial number is that of the frame server too."""
-    scenario = small_heads()
+    # Exposures drift with the time of day, which is not the same in both worlds.
+    scenario = small_heads().without_imperfections()
     serials = scenario.stereo_cameras["head_1"].serials
     settings = {
         "left": Selection(serial_number=serials[0]),
