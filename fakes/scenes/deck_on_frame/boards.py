@@ -10,6 +10,9 @@ from fakes.world.scene import SceneDisc
 
 _EDGE_PX = 40.0
 """Room for lens distortion and for lenses that differ from the nominal one."""
+_BESIDE_FLANGE_MM = (23.3, 30.0)
+"""Where board P lies under the flange, x and y: as ``flange_T_target_board`` of the cell file says.
+A disc is looked for within 35 mm of there."""
 _DRAWS = 1000
 """Views that are tried before the scenario's board is taken for one that fits into no picture."""
 
@@ -43,6 +46,7 @@ def target_board_pose(scenario: DeckScenario, seed: int, head: str, number: int)
     flange_x, looks = flange.rotation.apply([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     above = cell_T_frame.inv().apply(flange.translation)[2] - board.height_mm * MM
     middle = flange.translation - looks * above / cell_T_frame.inv().rotation.apply(looks)[2]
+    middle = middle + flange.rotation.apply([*_BESIDE_FLANGE_MM, 0.0]) * MM
     turn = Rotation.from_euler("z", np.arctan2(flange_x[1], flange_x[0]))
     offset = rng.uniform(-1, 1, 3) * np.array(board.placement.xyz_mm) * MM
     tilt = rng.uniform(-1, 1, 3) * np.deg2rad(board.placement.rotation_deg)
