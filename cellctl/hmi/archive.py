@@ -31,8 +31,7 @@ class ArchiveReader:
 
         Raises ``StoreUnavailable``.
         """
-        async with self._readers:
-            found = await asyncio.to_thread(listed_runs, self.data_dir, limit, wanted)
+        found = await self._in_thread(lambda: listed_runs(self.data_dir, limit, wanted))
         return [_head(one.head) | {"ended_as": _ended_as(one)} for one in found]
 
     async def run(self, number: int) -> dict[str, Any]:
@@ -87,6 +86,9 @@ class ArchiveReader:
             with closing(RunStore(self.data_dir, create=False)) as store:
                 return read(store)
 
+        return await self._in_thread(work)
+
+    async def _in_thread(self, work: Callable[[], T]) -> T:
         async with self._readers:
             return await asyncio.to_thread(work)
 

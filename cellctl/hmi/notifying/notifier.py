@@ -1,10 +1,12 @@
 """Follows the hub and fills an outbox for each receiver of the settings."""
 
 import asyncio
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from cellctl import log
+from cellctl.clock import now_s
 from cellctl.hmi.hub import Hub
 from cellctl.hmi.notifying.events import Event, EventWatch
 from cellctl.hmi.notifying.outbox import Outbox
@@ -12,6 +14,8 @@ from cellctl.hmi.notifying.senders import Messenger, StartedProgram, WebHook
 from cellctl.hmi.settings import Receiver
 
 _LOOK_S = 1.0
+_DUE_PERIOD_S = 60.0
+"""Calibrations end by the day: their dates need not be read at each of ten snapshots a second."""
 _log = log.get(__name__)
 
 
@@ -21,6 +25,8 @@ class Notifier:
     def __init__(self, hub: Hub, receivers: Sequence[Receiver]) -> None:
         self._hub = hub
         self._watch = EventWatch()
+        self._due_s = -math.inf
+        """When calibrations are looked at next."""
         self._outboxes = [(frozenset(one.on), Outbox(sender_of(one))) for one in receivers]
 
     async def run(self) -> None:
@@ -46,7 +52,8 @@ class Notifier:
 
     def _look(self) -> None:
         hub, watch = self._hub, self._watch
-        if hub.description:
+        if hub.description and now_s() >= self._due_s:
+            self._due_s = now_s() + _DUE_PERIOD_S
             self._put(watch.description(hub.description))
         self._put(watch.age(hub.age_s))
         if hub.snapshot and hub.linked:

@@ -1,11 +1,9 @@
 """The report as PDF: the same page as in HTML, laid out on A4 by WeasyPrint."""
 
 import logging
-from pathlib import Path
+from importlib.resources import files
 
 from cellctl.errors.records import PdfNotMade
-
-_SHEET = Path(__file__).with_name("report.pdf.css")
 
 
 def to_pdf(page: str) -> bytes:
@@ -24,7 +22,7 @@ def to_pdf(page: str) -> bytes:
     logging.getLogger("weasyprint").setLevel(logging.ERROR)
     fetcher = URLFetcher(allowed_protocols={"data"})
     # Within the page: what WeasyPrint takes beside it counts less than the page's own style.
-    sheet = f"<style>{_SHEET.read_text(encoding='utf-8')}</style>"
-    page = page.replace("</head>", f"{sheet}</head>", 1)
+    css = files("cellctl.records.report").joinpath("report.pdf.css").read_text(encoding="utf-8")
+    page = page.replace("</head>", f"<style>{css}</style></head>", 1)
     data: bytes = HTML(string=page, url_fetcher=fetcher).write_pdf()
     return data

@@ -41,11 +41,11 @@ def target_board_pose(scenario: DeckScenario, seed: int, head: str, number: int)
     pictures, where the outer discs of the board would be out of sight.
     """
     board, rng = scenario.target_board, stream(seed, "target board", head, number)
-    cell_T_frame = from_written(scenario.parts.frame_mm_deg)
+    frame_T_cell = from_written(scenario.parts.frame_mm_deg).inv()
     flange = measuring_flange(scenario, head)
     flange_x, looks = flange.rotation.apply([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    above = cell_T_frame.inv().apply(flange.translation)[2] - board.height_mm * MM
-    middle = flange.translation - looks * above / cell_T_frame.inv().rotation.apply(looks)[2]
+    above = frame_T_cell.apply(flange.translation)[2] - board.height_mm * MM
+    middle = flange.translation - looks * above / frame_T_cell.rotation.apply(looks)[2]
     middle = middle + flange.rotation.apply([*_BESIDE_FLANGE_MM, 0.0]) * MM
     turn = Rotation.from_euler("z", np.arctan2(flange_x[1], flange_x[0]))
     offset = rng.uniform(-1, 1, 3) * np.array(board.placement.xyz_mm) * MM

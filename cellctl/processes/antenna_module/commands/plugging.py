@@ -217,9 +217,5 @@ def _say(text: str) -> None:
 
 
 def _write(out: Path | None, record: Mapping[str, Any]) -> None:
-    if out is None:
-        return
-    try:
-        out.write_text(json.dumps(record, indent=2, allow_nan=False) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise FileInvalid(f"cannot write {out}: {error.strerror or error}") from error
+    if out is not None:
+        write_file(out, (json.dumps(record, indent=2, allow_nan=False) + "\n").encode())

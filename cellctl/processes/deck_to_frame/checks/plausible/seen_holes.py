@@ -66,7 +66,7 @@ def sight_issues(
             found = _beside(view, calibrated, "by the stored board transfer")
         elif modelled is None and calibrated is None:
             found = _spread(view)
-        found = found or _board(view, folder)
+        found = found or _board(view)
         if found is not None:
             yield found
             return  # the other head is mostly wrong by the same mistake
@@ -154,7 +154,7 @@ def _elsewhere(view: HeadView, modelled: RigidTransform, calibrated: RigidTransf
     return ConfigIssue(where, str(list(written)), allowed)
 
 
-def _board(view: HeadView, folder: Path) -> ConfigIssue | None:
+def _board(view: HeadView) -> ConfigIssue | None:
     """A target board that would lie behind the head, or on its side."""
     settings = cast(DeckSettings, view.cell.processes[view.recipe.process])
     mounted = view.cell.stereo_cameras[view.head].flange_T_camera
@@ -162,9 +162,8 @@ def _board(view: HeadView, folder: Path) -> ConfigIssue | None:
     if mounted is None:
         return None
     camera_T_board = pose_from_xyzabc(mounted).inv() * pose_from_xyzabc(written)
-    optics = Optics.of_head(view.cell, folder, view.role)
     facing = abs(camera_T_board.rotation.as_matrix()[2, 2])
-    if optics.holds(camera_T_board.translation) and facing > _FACING:
+    if view.optics.holds(camera_T_board.translation) and facing > _FACING:
         return None
     allowed = f"a board in the picture of {view.head}, z of the board along that of the camera"
     where = f"processes.{view.recipe.process}.flange_T_target_board"
