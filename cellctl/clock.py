@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 
 Monotonic = Callable[[], float]
 """``now_s``, or what stands in for it where time is simulated. Seconds."""
@@ -18,3 +18,8 @@ def now_s() -> float:
 def utc_now() -> datetime:
     """Wall-clock time for records, with its zone."""
     return datetime.now(UTC)
+
+
+def utc_at(time_s: float) -> datetime:
+    """Wall-clock time of a monotonic time, by the offset of both clocks now."""
+    return utc_now() - timedelta(seconds=now_s() - time_s)

@@ -24,6 +24,7 @@ from cellctl.cell.patience.patient_robot import patient_robot
 from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.robot_layers.permitted_robot import permitted
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace, slowed
+from cellctl.cell.run_notes import RunNotes
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.time_limits import USUAL, TimeLimits
 from cellctl.cell.zones.zoned_robot import zoned_robots
@@ -52,6 +53,7 @@ class Cell:
         self.config = config
         self.folder = folder
         self.robot_notes = RobotNotes()
+        self.run_notes = RunNotes()
         self.digital_ios = drivers_of(config, "digital_ios", PatientIo)
         built = [
             permitted(config, one, self.digital_ios)

@@ -20,6 +20,7 @@ from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.api.modbus.status import require_registers
 from cellctl.cell.devices import Cell
+from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.cell import Plc
@@ -84,7 +85,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         await unit.open()
         arbiter, plc = await _command_path(config.plc, unit, store)
         local = local_api(cell, unit, arbiter, store, data_dir, registers=plc.shown)
-        publisher = StatusPublisher(unit, partial(_show, plc, local.feed))
+        publisher = StatusPublisher(unit, partial(_show, plc, local.feed, cell.run_notes))
         stack.push_async_callback(plc.stop)
         await plc.start()  # first of all: a second daemon must not take over the robots
         stack.push_async_callback(local.server.stop)
@@ -121,10 +122,12 @@ async def _command_path(
     return arbiter, plc
 
 
-def _show(plc: PlcInterface, feed: LiveFeed, status: CellStatus) -> None:
-    """Line and pages are shown the same snapshot: it is built once."""
+def _show(plc: PlcInterface, feed: LiveFeed, notes: RunNotes, status: CellStatus) -> None:
+    """Line and pages are shown the same snapshot: it is built once, and a run keeps it."""
     plc.publish(status)
     feed.publish(status)
+    for topic, registers in plc.recorded().items():
+        notes.tell(topic, registers)
 
 
 async def until_told(stop: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:

@@ -30,6 +30,7 @@ from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.jobs.runner import JobRunner
 from cellctl.runtime.process import CellServices, calibration_kinds, open_processes
 from cellctl.runtime.progress import ProgressBoard, on_new_message
+from cellctl.runtime.state_notes import note_states
 from cellctl.runtime.status_view import StatusView
 
 _log = log.get(__name__)
@@ -77,6 +78,7 @@ class UnitController:
         """Runs that an earlier process left open, as long as nobody was told of them."""
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
+        note_states(self.machine, self.board, cell.run_notes)
         self.view = StatusView(
             cell,
             machine=self.machine,

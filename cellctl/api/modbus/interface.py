@@ -1,6 +1,7 @@
 """The Modbus TCP interface to the line PLC: submits its commands, publishes the status, beats."""
 
 import asyncio
+import re
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from functools import partial
@@ -8,7 +9,7 @@ from importlib.metadata import version
 from typing import Any
 
 from cellctl import log
-from cellctl.api.modbus.encoding import Value, input_block
+from cellctl.api.modbus.encoding import Value, decode, input_block
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
@@ -30,6 +31,15 @@ from cellctl.runtime.cell_status import CellStatus
 _log = log.get(__name__)
 _IDENTITY = ("cellctl", "cell controller", version("cellctl"))
 _QUEUE_LIMIT = 16
+INPUT_TOPIC, HOLDING_TOPIC = "/registers/input", "/registers/holding"
+_BEAT = "plc_heartbeat"
+_RESTLESS = re.compile(r"seq_(head|tail)|cell_heartbeat|(mode|state)_time|refusal_\d+_age|test_.*")
+"""Counters: they would make a message of every look."""
+_RECORDED = tuple(
+    item.name
+    for item in INPUT
+    if not (_RESTLESS.fullmatch(item.name) or item.name.startswith("spare"))
+)
 
 
 class PlcInterface:
@@ -95,6 +105,21 @@ class PlcInterface:
             for item in HOLDING
         ]
         return [*to_line, *from_line]
+
+    def recorded(self) -> dict[str, dict[str, Value]]:
+        """By topic of a run's recording: every register by name that says something of the run.
+
+        Numbers as they lie in the registers, in the units of the register map; counters that
+        change with every look are left out.
+        """
+        holding, order = self._registers.holding, self._config.word_order
+        to_line = self._values()
+        return {
+            INPUT_TOPIC: {name: _plain(to_line[name]) for name in _RECORDED},
+            HOLDING_TOPIC: {
+                item.name: decode(item, holding, order) for item in HOLDING if item.name != _BEAT
+            },
+        }
 
     async def start(self) -> None:
         """Listen and submit commands; raises ``PortInUse`` or ``CannotListen``."""
@@ -229,5 +254,10 @@ def _described(item: Item, writer: str, value: Value) -> dict[str, Any]:
         "text": item.text,
         "unit": item.unit,
         "writer": writer,
-        "value": int(value) if isinstance(value, int) else value,
+        "value": _plain(value),
     }
+
+
+def _plain(value: Value) -> Value:
+    """Without the names that enumerations give to their numbers."""
+    return int(value) if isinstance(value, int) else value

@@ -12,6 +12,7 @@ from rich.table import Table
 
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.plain_json import as_plain
+from cellctl.cli.records.run_mcap import Images, write_mcap
 from cellctl.cli.records.run_note import note
 from cellctl.cli.records.run_report import report
 from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
@@ -120,13 +121,23 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
 def export(
     run: Run,
     *,
-    out: Annotated[Path | None, typer.Option(help="Folder; default: run-NUMBER.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder or file; default: run-NUMBER, run-NUMBER.mcap.")
+    ] = None,
     data_dir: DataDir = None,
     single_file: Annotated[
         bool, typer.Option("--single-file", help="Pictures inside the report.")
     ] = False,
+    mcap: Annotated[
+        bool, typer.Option("--mcap", help="As one MCAP file for Foxglove, in place of a folder.")
+    ] = False,
+    images: Annotated[Images, typer.Option(help="Raw images in the MCAP file.")] = Images.LOSSLESS,
 ) -> None:
-    """Write record, report, pictures and recordings of a run into a folder."""
+    """Write record, report, pictures and recordings of a run into a folder, or into one file."""
+    if mcap:
+        with opened_store(data_dir) as store:
+            write_mcap(store, run, out, images)
+        return
     # Loaded here: the processes' pages bring scipy and matplotlib, which `runs list` does without.
     from cellctl.cli.records.process_pages import pages_of
     from cellctl.records.report.export import export_run

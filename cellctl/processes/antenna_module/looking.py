@@ -13,7 +13,7 @@ from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.standstill import require_unmoved
-from cellctl.clock import now_s
+from cellctl.clock import now_s, utc_at
 from cellctl.geometry.pose import MM, Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import Camera
@@ -27,6 +27,7 @@ from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.vision.measure import measure_connector, measure_marks
 from cellctl.processes.antenna_module.vision.measurement import ConnectorMeasurement, MeasuredMarks
 from cellctl.processes.antenna_module.vision.plane import ExpectedPlace, PlaneCalibration
+from cellctl.records.looks import TakenImage, documents_of_look
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.camera.depth import eight_bits
 from cellctl.vision.camera.single_camera import SingleCamera
@@ -90,6 +91,8 @@ class Eyes:
             if self.recorder is not None:
                 file = f"raw/{name}-frame-{number}.pgm.zst"
                 await self.recorder.exposures({file: taken.exposure})
+                kept = TakenImage(name, camera.name, utc_at(taken.time_s))
+                await self.recorder.add(*documents_of_look(name, {file: kept}, {}))
                 self.recorder.raw_image(file, image)
             images.append(image)
             found.append(await self.workers.run(measure, image))

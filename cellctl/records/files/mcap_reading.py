@@ -31,6 +31,27 @@ class RecordedMessage:
 
 
 @dataclass(frozen=True, slots=True)
+class RawMessage:
+    """One message as its bytes."""
+
+    topic: str
+    time_ns: int
+    """Wall-clock time since 1970, UTC."""
+    data: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class RawContent:
+    """What could be read of a file, its messages as they lie there."""
+
+    messages: tuple[RawMessage, ...]
+    facts: Mapping[str, str]
+    """Its newest metadata."""
+    complete: bool
+    """False when the file was cut off or is damaged; the messages then end early."""
+
+
+@dataclass(frozen=True, slots=True)
 class McapContent:
     """What could be read of a file."""
 
@@ -43,8 +64,23 @@ class McapContent:
 
 def read_mcap(data: bytes) -> McapContent:
     """Everything up to the first damage; ``RecordingUnreadable`` when no message lies before it."""
-    topics: dict[int, str] = {}
+    raw = read_raw(data)
     messages: list[RecordedMessage] = []
+    complete = raw.complete
+    try:
+        for one in raw.messages:
+            messages.append(RecordedMessage(one.topic, json.loads(one.data)))
+    except ValueError as error:
+        complete = False
+        if not messages:
+            raise RecordingUnreadable(str(error)) from error
+    return McapContent(tuple(messages), raw.facts, complete)
+
+
+def read_raw(data: bytes) -> RawContent:
+    """Likewise, without a look into the messages."""
+    topics: dict[int, str] = {}
+    messages: list[RawMessage] = []
     facts: dict[str, str] = {}
     complete = True
     try:
@@ -52,15 +88,15 @@ def read_mcap(data: bytes) -> McapContent:
             if isinstance(record, Channel):
                 topics[record.id] = record.topic
             elif isinstance(record, Message):
-                values = json.loads(record.data)
-                messages.append(RecordedMessage(topics[record.channel_id], values))
+                topic = topics[record.channel_id]
+                messages.append(RawMessage(topic, record.log_time, record.data))
             elif isinstance(record, Metadata):
                 facts = dict(record.metadata)
     except _DAMAGE as error:
         complete = False
         if not messages:
             raise RecordingUnreadable(str(error) or type(error).__name__) from error
-    return McapContent(tuple(messages), facts, complete)
+    return RawContent(tuple(messages), facts, complete)
 
 
 def has_messages(data: bytes) -> bool:

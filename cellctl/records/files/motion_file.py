@@ -1,13 +1,13 @@
-"""Recording of a run as one MCAP file: what robots were told, where they were, what pushed.
+"""Recording of a run as it goes: what robots were told, where they were, what pushed.
 
 Topics, all of JSON messages that common viewers plot:
 
 - ``/robots/NAME/command``: each move that was asked for, when it was asked for;
 - ``/robots/NAME/report``: each report of the controller;
-- ``/force/NAME/raw``: each sample of a force sensor, in its own frame, before any tare.
+- ``/force/NAME/raw``: each sample of a force sensor, in its own frame, before any tare;
+- what the notes of the run name, such as ``/unit/state``: each change.
 
-Message times are wall-clock times; ``time_s`` counts from the start of the recording. A daemon that
-dies leaves no file.
+Message times are wall-clock times; ``time_s`` counts from the start of the recording.
 """
 
 import json
@@ -70,6 +70,10 @@ class MotionWriter:
         for time_s, wrench in zip(times_s.tolist(), raw.round(4).tolist(), strict=True):
             values = dict(zip(_WRENCH, wrench, strict=True))
             self._add(f"/force/{sensor}/raw", time_s, values)
+
+    def note(self, topic: str, time_s: float, values: Mapping[str, Any]) -> None:
+        """A topic of the unit or the line; ``values`` are plain data with units in their names."""
+        self._add(topic, time_s, values)
 
     def flush(self) -> None:
         """Hand whole chunks to the kernel: what it has outlives this process."""

@@ -1,12 +1,13 @@
-"""Records what all robots are told and report, and what all force sensors feel, during a run."""
+"""Records what robots are told and report, what force sensors feel and what the unit does."""
 
 import asyncio
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import BinaryIO, Self
 
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.cell.robot_layers.noted_robot import RobotNote, RobotNotes
+from cellctl.cell.run_notes import RunNote, RunNotes
 from cellctl.clock import now_s, utc_now
 from cellctl.errors import CellError
 from cellctl.errors.records import RecordNotWritten
@@ -26,6 +27,7 @@ class _Collected:
     """What came in since the last writing."""
 
     notes: list[RobotNote] = field(default_factory=list)
+    run_notes: list[RunNote] = field(default_factory=list)
     states: list[tuple[str, RobotState]] = field(default_factory=list)
     samples: list[tuple[str, Array, Array]] = field(default_factory=list)
 
@@ -38,12 +40,17 @@ class MotionRecorder:
         robots: Mapping[str, Robot],
         guards: Mapping[str, GuardPort],
         notes: RobotNotes,
+        run_notes: RunNotes,
         file: BinaryIO,
     ) -> None:
-        """``notes`` are those of the robots. The recording goes to ``file`` as it comes in, so that
-        a daemon that dies in contact leaves the force curve."""
+        """``notes`` are those of the robots, ``run_notes`` those of the unit and the line.
+
+        The recording goes to ``file`` as it comes in, so that a daemon that dies in contact leaves
+        the force curve.
+        """
         self._file = file
         self._robots, self._guards, self._notes = robots, guards, notes
+        self._run_notes = run_notes
         self._collected = _Collected()
         self._reported_s: dict[str, float] = {}
         self._felt_s: dict[str, float] = {}
@@ -58,6 +65,10 @@ class MotionRecorder:
         begin_s = now_s()
         self._felt_s = dict.fromkeys(self._guards, begin_s)
         self._notes.listeners.append(self._noted)
+        # As of now: when it began may be hours ago, and a viewer would show all of them.
+        held = [replace(one, time_s=begin_s) for one in self._run_notes.newest]
+        self._collected.run_notes += held
+        self._run_notes.listeners.append(self._told)
         self._task = asyncio.create_task(self._run(), name="motion recorder")
         return self
 
@@ -67,6 +78,7 @@ class MotionRecorder:
         Raises ``RecordNotWritten`` when the file did not take all of it.
         """
         self._notes.listeners.remove(self._noted)
+        self._run_notes.listeners.remove(self._told)
         if self._task is not None:
             self._task.cancel()
             await asyncio.gather(self._task, return_exceptions=True)
@@ -81,6 +93,9 @@ class MotionRecorder:
 
     def _noted(self, note: RobotNote) -> None:
         self._collected.notes.append(note)
+
+    def _told(self, note: RunNote) -> None:
+        self._collected.run_notes.append(note)
 
     async def _run(self) -> None:
         next_write_s = now_s() + WRITE_S
@@ -120,6 +135,8 @@ class MotionRecorder:
         try:
             for note in collected.notes:
                 self._writer.command(note.robot, note.time_s, {"what": note.what, **note.values})
+            for told in collected.run_notes:
+                self._writer.note(told.topic, told.time_s, told.values)
             for name, state in collected.states:
                 self._writer.report(name, state)
             for name, times_s, raw in collected.samples:

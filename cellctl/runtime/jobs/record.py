@@ -160,7 +160,9 @@ class JobRecord:
         )
         cell = self._cell
         file = await self.store.do(RunStore.open_recording, self.number)
-        self._motion = MotionRecorder(cell.robots, cell.guards, cell.robot_notes, file).start()
+        self._motion = MotionRecorder(
+            cell.robots, cell.guards, cell.robot_notes, cell.run_notes, file
+        ).start()
 
 
 def _require_space(store: RunStore) -> None:

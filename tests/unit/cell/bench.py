@@ -13,6 +13,7 @@ from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.robot_layers.noted_robot import RobotNotes
+from cellctl.cell.run_notes import RunNotes
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.time_limits import TimeLimits
@@ -138,6 +139,7 @@ class CellInMemory:
         self.main.watched_by = self.guard
         self.workers = InlineWorkers()
         self.robot_notes = RobotNotes()
+        self.run_notes = RunNotes()
         self.pace = MaintenancePace()
         self.time_limits = TimeLimits()
         self.connected = True

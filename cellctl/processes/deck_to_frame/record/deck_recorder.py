@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.clock import utc_now
+from cellctl.clock import utc_at
 from cellctl.errors import CellError
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array, pose_to_xyzabc
@@ -55,14 +55,18 @@ from cellctl.processes.deck_to_frame.record.sources import (
     failed_from,
     measured_from,
     raw_images,
+    rims,
     seen_exposures,
     seen_images,
+    seen_taken,
+    taken,
 )
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document, PoseOrigin, RecordedPose
 from cellctl.records.figures import Limit, figure, split_document
 from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
+from cellctl.records.looks import documents_of_look
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
@@ -117,6 +121,7 @@ class DeckRecorder:
         source = failed_from(part, predicted, fault, list(images))
         await self.recorder.document(MEASURED_FROM, {name: source})
         await self.recorder.exposures(seen_exposures(name, seen))
+        await self.recorder.add(*documents_of_look(name, seen_taken(name, seen), {}))
         for file, image in images.items():
             self.recorder.raw_image(file, image)
 
@@ -205,9 +210,10 @@ class DeckRecorder:
             self._kept += 1
             if len(curve.time_s):
                 facts = {"attempt": str(self._kept)}
+                begun = utc_at(float(curve.time_s[0]))
                 # In a worker: compressing a curve of a minute would hold the interpreter lock,
                 # which the event loop needs for its heartbeats.
-                data = await self.workers.run(encode_curve, curve, utc_now(), facts)
+                data = await self.workers.run(encode_curve, curve, begun, facts)
                 await self.recorder.artefact(f"force-{self._kept}.mcap", data, MEDIA_TYPE)
 
     async def _images(self, kind: str, measured: PartMeasurement) -> None:
@@ -220,6 +226,8 @@ class DeckRecorder:
             source = measured_from(kind, measured, predicted, list(images))
             await self.recorder.document(MEASURED_FROM, {name: source})
             await self.recorder.exposures(exposures(name, measured.shots))
+            images_taken = taken(name, measured.shots)
+            await self.recorder.add(*documents_of_look(name, images_taken, rims(measured)))
             for file, image in images.items():
                 self.recorder.raw_image(file, image)
         await self._pictures(name, measured)

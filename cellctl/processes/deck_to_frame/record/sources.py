@@ -6,13 +6,18 @@ from typing import Any
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.clock import utc_at
 from cellctl.errors import CellError
+from cellctl.geometry.pose import Array
 from cellctl.interfaces import StereoPair
 from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, SeenPair
 from cellctl.processes.deck_to_frame.record.keys import FAILED, FRAME
+from cellctl.records.looks import Rim, TakenImage
+from cellctl.vision.measurement import HoleMeasurement, Side
 
+SIDES: tuple[Side, Side] = ("left", "right")
 IMAGES_PER_FRAME = 4
 """Left and right of head I, left and right of head II."""
 
@@ -42,6 +47,16 @@ def seen_exposures(name: str, seen: Sequence[SeenPair]) -> dict[str, ExposureRec
     return dict(zip(seen_images(name, seen), records, strict=True))
 
 
+def seen_taken(name: str, seen: Sequence[SeenPair]) -> dict[str, TakenImage]:
+    """When these images were taken and by which camera, by the same names."""
+    images = (
+        TakenImage(name, view_name(one.head, side), utc_at(one.pair.time_s))
+        for one in seen
+        for side in SIDES
+    )
+    return dict(zip(seen_images(name, seen), images, strict=True))
+
+
 def failed_from(
     part: str, predicted: RigidTransform, fault: CellError, images: list[str]
 ) -> dict[str, Any]:
@@ -64,6 +79,62 @@ def exposures(
         record for pairs in shots for pair in pairs for record in pair.exposures or (None, None)
     )
     return dict(zip(raw_images(name, shots), records, strict=True))
+
+
+def taken(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dict[str, TakenImage]:
+    """When these images were taken and by which camera, by the names of their files."""
+    views = [(head, side) for head in (1, 2) for side in SIDES]
+    images = (
+        TakenImage(name, view_name(head, side), utc_at(pairs[head - 1].time_s))
+        for pairs in shots
+        for head, side in views
+    )
+    return dict(zip(raw_images(name, shots), images, strict=True))
+
+
+def view_name(head: int, side: str) -> str:
+    """Of one camera of a head, as in the names of files."""
+    return f"head-{head}-{side}"
+
+
+def rims(measured: PartMeasurement) -> dict[str, tuple[Rim, ...]]:
+    """By view, what was found in the images of a measurement, with the residuals of its pose."""
+    distances_m = np.linalg.norm(measured.pose.residuals_m, axis=1).tolist()
+    residuals_um = {
+        name: distance_m * 1e6
+        for name, distance_m in zip(measured.pose.names, distances_m, strict=True)
+    }
+    return {
+        view_name(head, side): tuple(
+            _rim(hole, side, residuals_um.get(hole.name), measured.pose.outliers)
+            for hole in pair.holes
+        )
+        for head, pair in enumerate(measured.heads, start=1)
+        for side in SIDES
+    }
+
+
+def _rim(
+    hole: HoleMeasurement, side: Side, residual_um: float | None, outliers: Sequence[str]
+) -> Rim:
+    left = side == "left"
+    ellipse = hole.left_ellipse if left else hole.right_ellipse
+    centre = hole.left_px if left else hole.right_px
+    covariance = hole.left_covariance_px2 if left else hole.right_covariance_px2
+    return Rim(
+        name=hole.name,
+        centre_px=_pair(centre),
+        sigma_px=_pair(np.sqrt(np.diag(covariance))),
+        ellipse_centre_px=_pair(ellipse.centre_px),
+        semi_axes_px=_pair(np.array(ellipse.semi_axes_px)),
+        angle_rad=float(ellipse.angle_rad),
+        residual_um=residual_um,
+        used=hole.name not in outliers,
+    )
+
+
+def _pair(values: Array) -> tuple[float, float]:
+    return float(values[0]), float(values[1])
 
 
 def measured_from(

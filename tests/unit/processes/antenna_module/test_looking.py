@@ -70,8 +70,9 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
     exposures = [ExposureRecord("1", "Mono8", 8, exposure_s=seconds) for seconds in (0.01, 0.02)]
     grey = np.zeros((4, 4), np.uint8)
     images = [CameraImage(grey, PixelFormat.MONO8, 0.0, n, one) for n, one in enumerate(exposures)]
-    recorder = Mock(exposures=AsyncMock())
+    recorder = Mock(exposures=AsyncMock(), add=AsyncMock())
     camera = Mock(grab=AsyncMock(side_effect=images))
+    camera.name = "over_tray"
 
     async def find(device: Any) -> None:
         assert device is camera
@@ -89,6 +90,10 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
     assert [call.args[0] for call in recorder.raw_image.call_args_list] == files
     told = [call.args[0] for call in recorder.exposures.call_args_list]
     assert told == [{file: one} for file, one in zip(files, exposures, strict=True)]
+    taken = [call.args[0].content for call in recorder.add.call_args_list]
+    assert [(*one, one[file]["view"]) for one, file in zip(taken, files, strict=True)] == [
+        (file, "over_tray") for file in files
+    ]
 
 
 def test_frames_of_a_scene_that_moved_meanwhile_are_not_combined() -> None:

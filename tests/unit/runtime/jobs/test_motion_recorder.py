@@ -38,7 +38,7 @@ class Listening:
         self.file = Kept() if file is None else file
         cell = bench.cell
         self.recorder = MotionRecorder(
-            cell.robots, cell.guards, cell.robot_notes, self.file
+            cell.robots, cell.guards, cell.robot_notes, cell.run_notes, self.file
         ).start()
 
     async def finish(self) -> bytes:
@@ -95,6 +95,20 @@ async def test_after_its_end_nothing_listens(noted: Bench) -> None:
     await noted.cell.robots["main"].stop()
 
 
+async def test_notes_of_the_run_are_recorded_and_what_held_before_it(noted: Bench) -> None:
+    notes = noted.cell.run_notes
+    notes.tell("/unit/state", {"state": "IDLE"})
+    notes.tell("/unit/state", {"state": "STARTING"})
+    recorder = Listening(noted)
+    notes.tell("/unit/state", {"state": "STARTING"})
+    notes.tell("/unit/state", {"state": "EXECUTE"})
+    content = read_mcap(await recorder.finish())
+    states = [one.values for one in content.messages if one.topic == "/unit/state"]
+    assert [one["state"] for one in states] == ["STARTING", "EXECUTE"]
+    assert states[0]["time_s"] == pytest.approx(0.0, abs=0.1)
+    assert notes.listeners == []
+
+
 async def test_a_silent_robot_is_a_gap(noted: Bench) -> None:
     noted.cell.aux_1.faults["state"] = LinkLost("aux_1")
     recorder = Listening(noted)
@@ -126,5 +140,9 @@ async def test_each_run_has_one_whatever_its_end(rig: DaemonRig, end: State) -> 
     content = read_mcap(data)
     assert content.complete
     assert "/robots/main/report" in topics(content)
+    states = [one.values["state"] for one in content.messages if one.topic == "/unit/state"]
+    assert states[0] == "STARTING"
+    # The record of an aborted run is closed in Aborting, that of a good one in Completing.
+    assert states[-1] == ("ABORTING" if end is State.ABORTED else "COMPLETING")
     assert await rig.archive.do(RunStore.verify) == []
     assert list((rig.archive.path / "unfinished").iterdir()) == []

@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from cellctl.clock import now_s
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -16,6 +17,7 @@ from cellctl.processes.deck_to_frame.record.deck_recorder import draw
 from cellctl.processes.deck_to_frame.record.entries import rms_um
 from cellctl.records.entries import PoseOrigin, Verdict
 from cellctl.records.files.curve_file import read_recording
+from cellctl.records.looks import rims_of, taken_images
 from cellctl.vision.measurement import PairMeasurement
 from cellctl.vision.picture import INSET_PX
 from tests.unit.cell.bench import SIGMA, measurement
@@ -112,8 +114,9 @@ def test_a_picture_is_a_jpeg() -> None:
 async def test_raw_images_are_recorded_with_their_exposures(rig: RunRig) -> None:
     grey = np.zeros((4, 6), np.uint8)
     sides = [ExposureRecord(name, "Mono8", 8, exposure_s=0.004) for name in ("left", "right")]
-    told = StereoPair(grey, grey, 0.0, 1, tuple(sides))
-    silent = StereoPair(grey, grey, 0.0, 1)
+    time_s = now_s()
+    told = StereoPair(grey, grey, time_s, 1, tuple(sides))
+    silent = StereoPair(grey, grey, time_s - 60.0, 1)
     found = replace(
         measurement(PLACE, PLACE, rig.bench.features()[0], SIGMA),
         predicted=PLACE,
@@ -125,3 +128,16 @@ async def test_raw_images_are_recorded_with_their_exposures(rig: RunRig) -> None
     assert {file: one["serial_number"] for file, one in kept.items()} == dict(
         zip(files, ("left", "right"), strict=True)
     )
+    record = await rig.record()
+    taken = taken_images(record)
+    views = {"head-1-left", "head-1-right", "head-2-left", "head-2-right"}
+    assert {one.view for one in taken.values()} == views
+    apart = taken[files[0]].time - taken["raw/frame-frame-1-head-2-left.pgm.zst"].time
+    assert apart.total_seconds() == pytest.approx(60.0, abs=1.0)
+    rims = rims_of(record)
+    assert set(rims) == {("frame", view) for view in views}
+    hole = found.heads[0].holes[0]
+    (rim,) = (one for one in rims["frame", "head-1-right"] if one.name == hole.name)
+    assert rim.centre_px == pytest.approx(tuple(hole.right_px))
+    assert rim.semi_axes_px == pytest.approx(hole.right_ellipse.semi_axes_px)
+    assert rim.residual_um is not None
