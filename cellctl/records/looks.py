@@ -23,7 +23,7 @@ class TakenImage:
 
 
 @dataclass(frozen=True, slots=True)
-class Rim:
+class MeasuredRim:
     """A rim as it was measured in the images of one view.
 
     Pixels of the raw image with the centre of the first pixel at (0, 0), columns first.
@@ -46,7 +46,7 @@ class Rim:
 
 
 def documents_of_look(
-    look: str, taken: Mapping[str, TakenImage], rims: Mapping[str, Sequence[Rim]]
+    look: str, taken: Mapping[str, TakenImage], rims: Mapping[str, Sequence[MeasuredRim]]
 ) -> tuple[Document, ...]:
     """``taken`` by the names of the files, ``rims`` by views."""
     images = {
@@ -65,7 +65,7 @@ def taken_images(record: RunRecord) -> dict[str, TakenImage]:
     }
 
 
-def rims_of(record: RunRecord) -> dict[tuple[str, str], tuple[Rim, ...]]:
+def rims_of(record: RunRecord) -> dict[tuple[str, str], tuple[MeasuredRim, ...]]:
     """By look and view; empty in runs that did not keep them."""
     return {
         (look, view): tuple(_rim(one) for one in rims)
@@ -74,9 +74,9 @@ def rims_of(record: RunRecord) -> dict[tuple[str, str], tuple[Rim, ...]]:
     }
 
 
-def _rim(values: Mapping[str, object]) -> Rim:
+def _rim(values: Mapping[str, object]) -> MeasuredRim:
     pairs = {
         name: tuple(value) if isinstance(value, list | tuple) else value
         for name, value in values.items()
     }
-    return Rim(**pairs)  # type: ignore[arg-type]
+    return MeasuredRim(**pairs)  # type: ignore[arg-type]

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,7 +61,9 @@ def export_mcap(
             _write(writer, sources, form)
         part.replace(path)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        # The fault is that of the file; what is left of it must not hide it.
+        with suppress(OSError):
+            part.unlink()
         raise RecordNotWritten(f"{path}: {error.strerror}") from error
     return ExportedRun(path, dict(writer.written), tuple(sources.missing))
 

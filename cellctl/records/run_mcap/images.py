@@ -18,7 +18,7 @@ from foxglove_schemas_protobuf.TextAnnotation_pb2 import TextAnnotation
 from cellctl.errors.records import ArtefactDamaged
 from cellctl.records.entries import Artefact, RunRecord
 from cellctl.records.files.raw_images import MEDIA_TYPE, decode
-from cellctl.records.looks import Rim, TakenImage, rims_of, taken_images
+from cellctl.records.looks import MeasuredRim, TakenImage, rims_of, taken_images
 from cellctl.records.run_mcap.message import (
     Content,
     JsonValues,
@@ -105,7 +105,7 @@ def _image(
     return CompressedImage(timestamp=time, frame_id=image.view, format="jpeg", data=coded.tobytes())
 
 
-def _annotations(time_ns: int, rims: tuple[Rim, ...]) -> ImageAnnotations:
+def _annotations(time_ns: int, rims: tuple[MeasuredRim, ...]) -> ImageAnnotations:
     return ImageAnnotations(
         timestamp=stamp(time_ns),
         points=[_outline(rim) for rim in rims],
@@ -113,7 +113,7 @@ def _annotations(time_ns: int, rims: tuple[Rim, ...]) -> ImageAnnotations:
     )
 
 
-def _outline(rim: Rim) -> PointsAnnotation:
+def _outline(rim: MeasuredRim) -> PointsAnnotation:
     ellipse = Ellipse(np.array(rim.ellipse_centre_px), rim.semi_axes_px, rim.angle_rad)
     return PointsAnnotation(
         type=PointsAnnotation.LINE_LOOP,
@@ -123,7 +123,7 @@ def _outline(rim: Rim) -> PointsAnnotation:
     )
 
 
-def _label(rim: Rim) -> TextAnnotation:
+def _label(rim: MeasuredRim) -> TextAnnotation:
     far = "" if rim.residual_um is None else f" {rim.residual_um:.1f} µm"
     x, y = rim.ellipse_centre_px
     return TextAnnotation(
@@ -140,7 +140,7 @@ def _point(column_px: float, row_px: float) -> Point2:
 
 
 def _pictures(
-    sources: RunSources, rims: Mapping[tuple[str, str], tuple[Rim, ...]]
+    sources: RunSources, rims: Mapping[tuple[str, str], tuple[MeasuredRim, ...]]
 ) -> Iterator[TimedMessage]:
     """Drawn pictures, of which a viewer cannot draw the like from the rims."""
     drawn = {f"{look}-{view}" for look, view in rims}

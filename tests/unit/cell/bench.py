@@ -13,8 +13,8 @@ from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.cell.robot_layers.noted_robot import RobotNotes
-from cellctl.cell.run_notes import RunNotes
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace
+from cellctl.cell.run_notes import RunNotes
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.time_limits import TimeLimits
 from cellctl.clock import now_s, utc_now

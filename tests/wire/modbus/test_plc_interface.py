@@ -419,3 +419,20 @@ async def test_people_are_shown_what_a_plc_reads_and_has_written(line: Line) -> 
         assert (shown[name]["address"], shown[name]["value"]) == (address, block[address])
     assert (shown["cmd_seq"]["writer"], shown["cmd_seq"]["value"]) == ("line", "7")
     assert shown["test_text"]["value"] == "ABCDEF"
+
+
+async def test_a_run_keeps_registers_of_both_sides_without_their_counters(line: Line) -> None:
+    port, client = await line.open()
+    await line.command(client, 1, Command.RESET, serial="SAT-0042")
+    await until(client, lambda registers: registers[ACK] == 1)
+    port.publish(CellStatus(state=State.IDLE, serial="SAT-0042"))
+    recorded = port.recorded()
+    to_line, from_line = recorded["/registers/input"], recorded["/registers/holding"]
+    assert (to_line["state"], to_line["ack_seq"], to_line["serial_echo"]) == (4, 1, "SAT-0042")
+    assert (from_line["cmd_seq"], from_line["serial"]) == (1, "SAT-0042")
+    # Plain numbers: an enumeration would be another JSON.
+    assert {type(value) for value in to_line.values()} <= {int, float, str}
+    # The cell's own and the line's heartbeat alone make no further message.
+    port.beat()
+    await line.heartbeat(client)
+    assert port.recorded() == recorded

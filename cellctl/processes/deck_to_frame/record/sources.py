@@ -14,7 +14,7 @@ from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, SeenPair
 from cellctl.processes.deck_to_frame.record.keys import FAILED, FRAME
-from cellctl.records.looks import Rim, TakenImage
+from cellctl.records.looks import MeasuredRim, TakenImage
 from cellctl.vision.measurement import HoleMeasurement, Side
 
 SIDES: tuple[Side, Side] = ("left", "right")
@@ -97,7 +97,7 @@ def view_name(head: int, side: str) -> str:
     return f"head-{head}-{side}"
 
 
-def rims(measured: PartMeasurement) -> dict[str, tuple[Rim, ...]]:
+def rims(measured: PartMeasurement) -> dict[str, tuple[MeasuredRim, ...]]:
     """By view, what was found in the images of a measurement, with the residuals of its pose."""
     distances_m = np.linalg.norm(measured.pose.residuals_m, axis=1).tolist()
     residuals_um = {
@@ -116,12 +116,12 @@ def rims(measured: PartMeasurement) -> dict[str, tuple[Rim, ...]]:
 
 def _rim(
     hole: HoleMeasurement, side: Side, residual_um: float | None, outliers: Sequence[str]
-) -> Rim:
+) -> MeasuredRim:
     left = side == "left"
     ellipse = hole.left_ellipse if left else hole.right_ellipse
     centre = hole.left_px if left else hole.right_px
     covariance = hole.left_covariance_px2 if left else hole.right_covariance_px2
-    return Rim(
+    return MeasuredRim(
         name=hole.name,
         centre_px=_pair(centre),
         sigma_px=_pair(np.sqrt(np.diag(covariance))),

@@ -68,6 +68,19 @@ def test_a_run_is_exported(runner: CliRunner, folder: str, tmp_path: Path) -> No
     assert "Measure and compensate" in (out / "report.html").read_text(encoding="utf-8")
 
 
+def test_a_run_is_exported_for_foxglove(runner: CliRunner, folder: str, tmp_path: Path) -> None:
+    out = tmp_path / "handed on" / "run.mcap"
+    options = ["--mcap", "--images", "jpeg", "--out", str(out), "--data-dir", folder]
+    result = runner.invoke(app, ["export", "1", *options])
+    assert result.exit_code == 0, result.output
+    assert out.read_bytes().startswith(b"\x89MCAP0\r\n")
+    # The run of the sample has no motion, which whoever asks for it has to know.
+    assert "missing: motion.mcap" in result.stderr
+    assert re.search(r"run\.mcap: \d+ messages on \d+ topics, \d+\.\d MB", result.stdout)
+    layout = json.loads((tmp_path / "handed on" / "run.foxglove.json").read_text(encoding="utf-8"))
+    assert "Plot!contact-force" in layout["configById"]
+
+
 def test_a_gauge_is_entered(runner: CliRunner, folder: str, store: RunStore) -> None:
     options = ["--hole", "P1", "--mm", "5.91", "--source", "OP-7", "--data-dir", folder]
     assert runner.invoke(app, ["gauge", "1", *options]).exit_code == 0

@@ -17,8 +17,10 @@ from cellctl.processes.deck_to_frame.record.deck_recorder import draw
 from cellctl.processes.deck_to_frame.record.entries import rms_um
 from cellctl.records.entries import PoseOrigin, Verdict
 from cellctl.records.files.curve_file import read_recording
+from cellctl.records.files.mcap_reading import read_raw
 from cellctl.records.looks import rims_of, taken_images
-from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 from cellctl.vision.picture import INSET_PX
 from tests.unit.cell.bench import SIGMA, measurement
 from tests.unit.processes.deck_to_frame.rig import RunRig, curve
@@ -104,6 +106,19 @@ def test_peaks_are_unknown_before_the_first_contact(rig: RunRig) -> None:
     assert np.isnan(rig.recorder.force_peaks()).all()
 
 
+async def test_a_force_curve_is_dated_by_the_begin_of_its_contact(rig: RunRig) -> None:
+    felt = curve(50)
+    begun_s = now_s() - 30.0
+    rig.recorder.mating_progress(ended(replace(felt, time_s=felt.time_s + begun_s)))
+    await rig.recorder.force_curves()
+    record = await rig.record()
+    (artefact,) = (one for one in record.artefacts if one.name == "force-1.mcap")
+    data = await rig.archive.do(lambda store: store.artefacts.get(artefact.sha256))
+    first, *_, last = read_raw(data).messages
+    assert artefact.time.timestamp() - first.time_ns / 1e9 == pytest.approx(30.0, abs=2.0)
+    assert (last.time_ns - first.time_ns) / 1e9 == pytest.approx(0.049, abs=1e-6)
+
+
 def test_a_picture_is_a_jpeg() -> None:
     data = draw(np.zeros((40, 60), np.uint8), PairMeasurement("default", ()), "left")
     picture = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR)
@@ -122,6 +137,15 @@ async def test_raw_images_are_recorded_with_their_exposures(rig: RunRig) -> None
         predicted=PLACE,
         shots=((told, silent),),
     )
+    ellipse = Ellipse(np.array([20.4, 10.2]), (6.0, 5.0), 0.3)
+    hole = HoleMeasurement(
+        name=found.pose.names[0], kind="pin",
+        left_px=np.array([20.5, 10.25]), right_px=np.array([22.5, 10.25]),
+        left_covariance_px2=np.eye(2) * 4e-4, right_covariance_px2=np.eye(2) * 9e-4,
+        position_m=np.zeros(3), covariance_m2=np.eye(3) * 1e-12,
+        left_ellipse=ellipse, right_ellipse=ellipse, diameter_m=6e-3, epipolar_px=0.01,
+    )  # fmt: skip
+    found = replace(found, heads=(PairMeasurement("default", (hole,)), found.heads[1]))
     await rig.recorder.measurement("frame", found)
     kept = (await rig.record()).document("images.exposures")
     files = [f"raw/frame-frame-1-head-1-{side}.pgm.zst" for side in ("left", "right")]
@@ -136,8 +160,10 @@ async def test_raw_images_are_recorded_with_their_exposures(rig: RunRig) -> None
     assert apart.total_seconds() == pytest.approx(60.0, abs=1.0)
     rims = rims_of(record)
     assert set(rims) == {("frame", view) for view in views}
-    hole = found.heads[0].holes[0]
-    (rim,) = (one for one in rims["frame", "head-1-right"] if one.name == hole.name)
-    assert rim.centre_px == pytest.approx(tuple(hole.right_px))
-    assert rim.semi_axes_px == pytest.approx(hole.right_ellipse.semi_axes_px)
+    (rim,) = rims["frame", "head-1-right"]
+    assert rim.name == hole.name
+    assert rim.centre_px == (22.5, 10.25)
+    assert rim.sigma_px == pytest.approx((0.03, 0.03))
+    assert rim.semi_axes_px == (6.0, 5.0)
+    assert not rims["frame", "head-2-left"]
     assert rim.residual_um is not None

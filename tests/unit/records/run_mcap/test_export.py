@@ -1,0 +1,331 @@
+"""An exported run, read by the official reader and held against the record."""
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mcap.reader import make_reader
+from mcap_protobuf.decoder import DecoderFactory
+
+from cellctl.errors.records import RecordNotWritten, RunUnknown
+from cellctl.records import RunStore
+from cellctl.records.entries import RunRecord
+from cellctl.records.files.mcap_reading import read_mcap
+from cellctl.records.files.unfinished import MOTION
+from cellctl.records.run_mcap.export import ExportedRun, export_mcap
+from cellctl.records.run_mcap.images import ImageForm
+from cellctl.records.run_mcap.layout import layout_for
+from tests.unit.records.conftest import start
+from tests.unit.records.run_mcap.moved_run import (
+    BASE_T_C1,
+    FILE,
+    PIXELS,
+    PLACE,
+    REPORTS,
+    RIMS,
+    SAMPLES,
+    VIEW,
+    closed_run,
+    motion,
+    open_run,
+)
+
+PAGE = Path(__file__).parents[4] / "docs" / "recordings.md"
+_TYPES = {
+    "string": str, "number": (int, float), "integer": int, "boolean": bool, "array": list,
+    "object": dict, "null": type(None),
+}  # fmt: skip
+
+
+@dataclass
+class Content:
+    """Everything that a file holds."""
+
+    messages: list[tuple[str, int, Any]] = field(default_factory=list)
+    schemas: dict[str, str] = field(default_factory=dict)
+    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
+    attachments: dict[str, bytes] = field(default_factory=dict)
+
+    def of(self, topic: str) -> list[Any]:
+        """Messages of a topic."""
+        return [message for name, _, message in self.messages if name == topic]
+
+
+def read(path: Path) -> Content:
+    """Decoded by the official reader, checksums and JSON schemas checked."""
+    content = Content()
+    with path.open("rb") as stream:
+        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        for schema, channel, message in reader.iter_messages(log_time_order=False):
+            assert schema is not None
+            content.schemas[channel.topic] = schema.name
+            if channel.message_encoding == "json":
+                values = json.loads(message.data)
+                require_valid(values, json.loads(schema.data), channel.topic)
+            else:
+                decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
+                assert decode is not None
+                values = decode(message.data)
+            content.messages.append((channel.topic, message.log_time, values))
+        content.metadata = {one.name: dict(one.metadata) for one in reader.iter_metadata()}
+        content.attachments = {one.name: one.data for one in reader.iter_attachments()}
+        summary = reader.get_summary()
+        assert summary is not None
+        assert summary.statistics is not None
+        assert summary.statistics.message_count == len(content.messages)
+    return content
+
+
+def require_valid(values: dict[str, Any], schema: dict[str, Any], topic: str) -> None:
+    """What the schemas say is types; registers have the names of the register map."""
+    for name, value in values.items():
+        if name not in schema["properties"]:
+            assert topic.startswith("/registers/"), (topic, name)
+            continue
+        kinds = schema["properties"][name]["type"]
+        kinds = [kinds] if isinstance(kinds, str) else kinds
+        assert isinstance(value, tuple(_flat(_TYPES[kind] for kind in kinds))), (topic, name, value)
+
+
+def _flat(kinds: Any) -> list[type]:
+    return [one for kind in kinds for one in (kind if isinstance(kind, tuple) else (kind,))]
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A run that is only looked at: one for all tests."""
+
+    store: RunStore
+    found: ExportedRun
+    content: Content
+    record: RunRecord
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Exported]:
+    folder = tmp_path_factory.mktemp("exported")
+    store = RunStore(folder / "runs")
+    run = closed_run(store)
+    found = export_mcap(store, run, folder / "run.mcap")
+    yield Exported(store, found, read(found.path), store.run(run))
+    store.close()
+
+
+def test_times_never_go_back_and_lie_within_the_run(exported: Exported) -> None:
+    found, content = exported.found, exported.content
+    times = [time for _, time, _ in content.messages]
+    assert times == sorted(times)
+    assert (times[-1] - times[0]) / 1e9 < 60.0
+    assert found.missing == ()
+    assert found.messages == Counter(topic for topic, _, _ in content.messages)
+
+
+def test_what_was_recorded_is_there_unchanged(exported: Exported) -> None:
+    content, record = exported.content, exported.record
+    (artefact,) = (one for one in record.artefacts if one.name == MOTION)
+    recorded = read_mcap(exported.store.artefacts.get(artefact.sha256)).messages
+    for topic in {one.topic for one in recorded}:
+        assert content.of(topic) == [dict(one.values) for one in recorded if one.topic == topic]
+    assert len(content.of("/force/force/raw")) == SAMPLES
+    assert len(content.of("/robots/aux_1/report")) == REPORTS
+    assert content.of("/unit/state")[0]["state"] == "STARTING"
+    assert content.of("/registers/input")[0]["serial_echo"] == "SAT-0042"
+
+
+def test_robots_and_calibrations_make_one_tree(exported: Exported) -> None:
+    content = exported.content
+    parents: dict[str, str] = {}
+    found = [one for message in content.of("/tf") for one in message.transforms]
+    for one in found:
+        assert parents.setdefault(one.child_frame_id, one.parent_frame_id) == one.parent_frame_id
+    # The robot that has reported the recorded pose has the frames that the record names.
+    assert parents == {"c1": "base", "flange": "base", "aux_1/flange": "aux_1/base"}
+    (camera,) = (one for one in found if one.child_frame_id == "c1")
+    assert camera.translation.x == pytest.approx(BASE_T_C1[0, 3] / 1000)
+    assert (camera.rotation.z, camera.rotation.w) == pytest.approx((0.5**0.5, 0.5**0.5))
+    flange = next(one for one in found if one.child_frame_id == "flange")
+    place = (flange.translation.x, flange.translation.y, flange.translation.z)
+    assert place == pytest.approx([value / 1000 for value in PLACE[:3]])
+
+
+def test_targets_and_recorded_poses_are_poses_in_their_frames(exported: Exported) -> None:
+    content, record = exported.content, exported.record
+    (target,) = content.of("/robots/main/target")
+    assert target.frame_id == "base"
+    assert target.pose.position.z == pytest.approx(PLACE[2] / 1000)
+    (frame,) = content.of("/poses/measured/frame")
+    assert frame.frame_id == "c1"
+    assert frame.pose.position.x == pytest.approx(12.34e-3)
+    assert [one["key"] for one in content.of("/poses")] == [one.key for one in record.poses]
+    deck = content.of("/poses")[1]
+    assert deck["detail"]["residuals_mm"]["P5"] == [0.0, 0.0, 0.009]
+
+
+def test_an_image_has_every_pixel_and_its_rims_lie_on_it(exported: Exported) -> None:
+    content, record = exported.content, exported.record
+    (image,) = content.of(f"/images/{VIEW}")
+    assert (image.encoding, image.frame_id) == ("mono8", VIEW)
+    pixels = np.frombuffer(image.data, np.uint8).reshape(image.height, image.step)
+    assert np.array_equal(pixels, PIXELS)
+    (drawn,) = content.of(f"/images/{VIEW}/annotations")
+    assert drawn.timestamp.ToNanoseconds() == image.timestamp.ToNanoseconds()
+    assert [one.text for one in drawn.texts] == ["P1 3.4 µm", "P2 41.0 µm, not used"]
+    outline = np.array([(point.x, point.y) for point in drawn.points[0].points])
+    # The viewer counts from the corner of the first pixel.
+    assert outline.mean(axis=0) == pytest.approx(np.array(RIMS[0].ellipse_centre_px) + 0.5)
+    assert np.ptp(outline, axis=0).max() < 2 * RIMS[0].semi_axes_px[0] + 1e-9
+    (numbers,) = content.of(f"/images/{VIEW}/rims")
+    assert numbers["rims"][1]["residual_um"] == 41.0
+    assert [one.name for one in record.artefacts if one.media_type == "application/zstd"] == [FILE]
+
+
+def test_what_was_found_and_what_happened_is_that_of_the_record(
+    exported: Exported,
+) -> None:
+    content, record = exported.content, exported.record
+    passes = content.of("/passes")
+    assert [one["components"]["X"]["value"] for one in passes] == [
+        entry.components[0].value for entry in record.passes
+    ]
+    assert passes[0]["components"]["rz"]["unit"] == "°"
+    assert [one["key"] for one in content.of("/figures")] == [one.key for one in record.figures]
+    begins = [one["label"] for one in content.of("/steps") if one["event"] == "begins"]
+    assert begins == [phase.label for phase in record.phases]
+    assert [one["number"] for one in content.of("/alarms")] == [512]
+    assert [(one["action"], one["who"]) for one in content.of("/commands")] == [
+        ("start", "line:10.0.0.5")
+    ]
+    words = " | ".join(one.message for one in content.of("/log"))
+    for expected in ("start by line", "state EXECUTE", "creeps", "F512", "SIMULATED", "good"):
+        assert expected in words, expected
+    assert content.metadata["run"]["serial"] == "SAT-0042"
+    assert record.seal is not None
+    assert content.metadata["run"]["seal"] == record.seal.hash
+    assert json.loads(content.attachments["run.json"])["number"] == record.head.number
+
+
+def test_a_force_curve_begins_where_it_says(exported: Exported) -> None:
+    content, record = exported.content, exported.record
+    felt = [time for topic, time, _ in content.messages if topic == "/contact/force"]
+    (artefact,) = (one for one in record.artefacts if one.name == "force-1.mcap")
+    # The sample's file says of its begin what is the time of its end, as first releases did.
+    assert felt[-1] / 1e9 == pytest.approx(artefact.time.timestamp(), abs=1.0)
+    assert (felt[-1] - felt[0]) / 1e9 == pytest.approx(4.0, abs=0.01)
+
+
+def test_images_can_be_small_or_left_out(store: RunStore, tmp_path: Path) -> None:
+    run = closed_run(store)
+    small = read(export_mcap(store, run, tmp_path / "j.mcap", ImageForm.JPEG).path)
+    (image,) = small.of(f"/images/{VIEW}")
+    assert image.format == "jpeg"
+    assert image.data.startswith(b"\xff\xd8")
+    none = read(export_mcap(store, run, tmp_path / "n.mcap", ImageForm.NONE).path)
+    assert not none.of(f"/images/{VIEW}")
+    assert none.of(f"/images/{VIEW}/annotations")
+    assert {one for one in small.schemas if "pictures" in one}
+    assert not {one for one in none.schemas if "pictures" in one}
+
+
+def test_an_interrupted_run_exports_what_there_is_and_says_what_is_missing(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = open_run(store)
+    whole = motion()
+    with store.open_recording(run) as file:
+        file.write(whole[: int(len(whole) * 0.4)])
+    store.mark_interrupted()
+    found = export_mcap(store, run, tmp_path / "run.mcap")
+    content = read(found.path)
+    assert any(text.startswith("motion.mcap") for text in found.missing)
+    assert content.metadata["run"]["result"] == "interrupted"
+    assert set(content.metadata["missing"].values()) == set(found.missing)
+    assert any("missing: motion.mcap" in one.message for one in content.of("/log"))
+    assert content.of("/poses")
+
+
+def test_an_open_run_says_that_it_is_open(store: RunStore, tmp_path: Path) -> None:
+    found = export_mcap(store, open_run(store), tmp_path / "run.mcap")
+    assert any("still open" in text for text in found.missing)
+    assert any(text.startswith("motion.mcap") for text in found.missing)
+    assert read(found.path).metadata["run"]["result"] == "open"
+
+
+@pytest.mark.parametrize("name", [MOTION, FILE, "force-1.mcap"])
+@pytest.mark.parametrize("damage", ["gone", "changed"])
+def test_a_damaged_file_is_left_out_and_named(
+    store: RunStore, tmp_path: Path, name: str, damage: str
+) -> None:
+    run = closed_run(store)
+    (artefact,) = (one for one in store.run(run).artefacts if one.name == name)
+    path = store.artefacts.path(artefact.sha256)
+    if damage == "gone":
+        path.unlink()
+    else:
+        path.write_bytes(path.read_bytes()[:-20])
+    found = export_mcap(store, run, tmp_path / "run.mcap")
+    assert [text.split(":")[0] for text in found.missing] == [name]
+    assert read(found.path).of("/figures")
+
+
+def test_a_run_without_images_motion_or_figures_is_a_file_all_the_same(
+    store: RunStore, tmp_path: Path
+) -> None:
+    content = read(export_mcap(store, start(store), tmp_path / "run.mcap").path)
+    assert set(content.schemas) == {"/log"}
+
+
+def test_no_run_and_no_place_are_told(store: RunStore, tmp_path: Path) -> None:
+    with pytest.raises(RunUnknown):
+        export_mcap(store, 7, tmp_path / "run.mcap")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(RecordNotWritten):
+        export_mcap(store, start(store), tmp_path / "file" / "run.mcap")
+
+
+def rows() -> dict[str, str]:
+    """Topic and schema of each row of the page."""
+    text = PAGE.read_text(encoding="utf-8")
+    return dict(re.findall(r"^\| `(/[^`]+)` \| (\S+) \|", text, re.MULTILINE))
+
+
+def test_the_page_lists_every_topic_with_its_schema(exported: Exported) -> None:
+    content = exported.content
+    table = rows()
+    patterns = {name: re.sub(r"[A-Z]{2,}", "[^/]+", name) for name in table}
+    used = set()
+    for topic, schema in content.schemas.items():
+        matching = [name for name, pattern in patterns.items() if re.fullmatch(pattern, topic)]
+        assert len(matching) == 1, topic
+        assert table[matching[0]] == schema
+        used.add(matching[0])
+    assert used == set(table)
+
+
+def test_the_layout_shows_topics_that_the_run_has(exported: Exported) -> None:
+    content = exported.content
+    text = layout_for(content.schemas)
+    layout = json.loads(text)
+    named = set(re.findall(r'"(/[^"]+?)(?:\.[\w.]+)?"', text))
+    assert named <= set(content.schemas)
+    assert {"/contact/force", f"/images/{VIEW}", f"/images/{VIEW}/annotations"} <= named
+    shown = set(re.findall(r'"(?:first|second)": "([^"]+)"', text))
+    assert shown == set(layout["configById"])
+    fields = {path for one in layout["configById"].values() for path in one.get("paths", ())
+              for path in (path["value"],)}  # fmt: skip
+    for path in fields:
+        topic, *keys = path.split(".")
+        value = content.of(topic)[0]
+        for key in keys:
+            value = value[key]
+        assert value is not None
+
+
+def test_a_layout_of_a_run_without_images_has_no_image_panels() -> None:
+    layout = json.loads(layout_for(["/log", "/unit/state"]))
+    assert set(layout["configById"]) == {"3D!scene", "StateTransitions!states", "RosOut!log"}
