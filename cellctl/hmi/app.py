@@ -14,11 +14,12 @@ from cellctl.hmi.archive import ArchiveReader
 from cellctl.hmi.daemon_link import DaemonLink
 from cellctl.hmi.event_stream import Streams
 from cellctl.hmi.hub import Hub
+from cellctl.hmi.metrics.keeper import MetricsKeeper
 from cellctl.hmi.notifying.notifier import Notifier
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import RESPONSES, add_handlers
 from cellctl.hmi.rates import RateLimit
-from cellctl.hmi.routes import commands, files, live, records, session
+from cellctl.hmi.routes import commands, files, live, metrics, records, session
 from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
 from cellctl.hmi.shell import Shell
@@ -41,6 +42,7 @@ class Parts:
     archive: ArchiveReader
     commands: RateLimit
     sign_ins: RateLimit
+    metrics: MetricsKeeper
 
 
 def hmi_app(settings: PageSettings) -> ASGIApp:
@@ -48,16 +50,18 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
     hub = Hub()
     notifier = Notifier(hub, settings.notify)
     people, sessions = People(settings.people, settings.tokens), Sessions(settings.idle_s)
+    streams, data_dir = Streams(hub), Path(settings.data_dir)
     parts = Parts(
         hub=hub,
         link=DaemonLink(Path(settings.socket), hub),
-        streams=Streams(hub),
+        streams=streams,
         gatekeeper=Gatekeeper(settings, people, sessions),
         people=people,
         sessions=sessions,
-        archive=ArchiveReader(Path(settings.data_dir)),
+        archive=ArchiveReader(data_dir),
         commands=RateLimit(COMMANDS_A_MINUTE, 60.0),
         sign_ins=RateLimit(SIGN_INS_A_MINUTE, 60.0),
+        metrics=MetricsKeeper(hub, streams, data_dir),
     )
 
     @asynccontextmanager
@@ -65,6 +69,7 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
         tasks = [
             asyncio.create_task(parts.link.follow(), name="follow the daemon"),
             asyncio.create_task(notifier.run(), name="tell what happens"),
+            asyncio.create_task(parts.metrics.run(), name="count what happens"),
         ]
         try:
             yield
@@ -85,7 +90,7 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
     )
     app.state.parts = parts
     add_handlers(app)
-    for one in (session, live, commands, records):
+    for one in (session, live, metrics, commands, records):
         app.include_router(one.router, prefix="/api/v1")
     app.include_router(files.router)
     return Shell(app, LOOPBACK | frozenset(settings.hosts))

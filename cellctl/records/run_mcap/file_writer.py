@@ -61,18 +61,18 @@ class RunFileWriter:
             name = content.DESCRIPTOR.full_name
             if name not in self._schemas:
                 self._schemas[name] = register_schema(self._writer, type(content))
-            return self._writer.register_channel(topic, "protobuf", self._schemas[name])
+            return int(self._writer.register_channel(topic, "protobuf", self._schemas[name]))
         if content.schema not in self._schemas:
             schema = json.dumps(json_schema(content.schema)).encode()
             self._schemas[content.schema] = self._writer.register_schema(
                 content.schema, "jsonschema", schema
             )
-        return self._writer.register_channel(topic, "json", self._schemas[content.schema])
+        return int(self._writer.register_channel(topic, "json", self._schemas[content.schema]))
 
 
 def _encoded(content: Content) -> bytes:
     if isinstance(content, Message):
-        return bytes(content.SerializeToString())
+        return content.SerializeToString()
     if isinstance(content, JsonValues):
         # NaN would be no JSON, and viewers refuse the whole message.
         return json.dumps(content.values, allow_nan=False).encode()

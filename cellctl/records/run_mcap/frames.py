@@ -127,7 +127,7 @@ def _same(report: Mapping[str, Any], recorded: Numbers) -> bool:
         abs(report[name] - (value or 0.0))
         for name, value in zip(WRITTEN[:3], recorded, strict=False)
     ]
-    return max(apart) < _SAME_POSE_MM
+    return bool(max(apart) < _SAME_POSE_MM)
 
 
 def _components(place_m: Array, quaternion: Array) -> tuple[Vector3, Quaternion]:

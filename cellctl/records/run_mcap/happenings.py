@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from datetime import datetime
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
@@ -43,7 +44,7 @@ def alarms(record: RunRecord) -> Iterator[TimedMessage]:
     """Faults and warnings of the run, and their acknowledgement as long as it lasted."""
     ended = record.head.ended
     for alarm in record.alarms:
-        events = [("raised", alarm.time, None)]
+        events: list[tuple[str, datetime, str | None]] = [("raised", alarm.time, None)]
         if alarm.acknowledged is not None and ended is not None and alarm.acknowledged <= ended:
             events.append(("acknowledged", alarm.acknowledged, alarm.acknowledged_by))
         for event, time, who in events:

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import Any, TypeAlias
 
 from google.protobuf.message import Message
 from google.protobuf.timestamp_pb2 import Timestamp
@@ -26,7 +26,7 @@ class RecordedJson:
     data: bytes
 
 
-Content = Message | JsonValues | RecordedJson
+Content: TypeAlias = Message | JsonValues | RecordedJson
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import zstandard
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import now_s, utc_now
-from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces import RobotState
 from cellctl.interfaces.robot import RobotMode
 from cellctl.records import RunResult, RunStore
@@ -26,7 +26,7 @@ PLACE = (1525.0, 12.5, 2110.0, 90.0, 1.5, 180.0)
 ELSEWHERE = (-300.0, 0.0, 900.0, 0.0, 0.0, 0.0)
 VIEW = "head-1-left"
 FILE = f"raw/frame-frame-1-{VIEW}.pgm.zst"
-PIXELS: Array = np.random.default_rng(5).integers(0, 256, (40, 60), dtype=np.uint8)
+PIXELS = np.random.default_rng(5).integers(0, 256, (40, 60), dtype=np.uint8)
 RIMS = (
     MeasuredRim("P1", (20.5, 10.25), (0.02, 0.03), (20.4, 10.2), (6.0, 5.0), 0.3, 3.4),
     MeasuredRim("P2", (40.5, 20.25), (0.02, 0.03), (40.4, 20.2), (6.0, 5.0), 0.3, 41.0, used=False),
@@ -53,7 +53,7 @@ def motion() -> bytes:
     for name, place in (("main", PLACE), ("aux_1", ELSEWHERE)):
         for index in range(REPORTS):
             writer.report(name, report(start_s - 1.0 + 0.02 * index, place))
-    times_s = start_s + 0.001 * np.arange(SAMPLES)
+    times_s = start_s + 0.001 * np.arange(SAMPLES, dtype=np.float64)
     writer.force("force", times_s, np.tile([0.0, 1.0, -2.0, 0.0, 0.0, 0.1], (SAMPLES, 1)))
     writer.finish()
     return file.getvalue()
